@@ -28,6 +28,9 @@ if TYPE_CHECKING:
     from vibroimpact.calibration.charts import calibration_charts as calibration_charts
     from vibroimpact.calibration.folder import save_calibration as save_calibration
     from vibroimpact.calibration.force_record import impacts_in_force as impacts_in_force
+    from vibroimpact.calibration.friction.calibrate import FrictionCalibration as FrictionCalibration
+    from vibroimpact.calibration.friction.calibrate import calibrate_friction as calibrate_friction
+    from vibroimpact.calibration.friction.measured import ObliqueImpacts as ObliqueImpacts
     from vibroimpact.calibration.observations import Observations as Observations
     from vibroimpact.calibration.position_record import impacts_in_position as impacts_in_position
     from vibroimpact.calibration.speed_function import SpeedFunction as SpeedFunction
@@ -122,6 +125,7 @@ _HOME = {
     "Comparison": "comparison.comparison",
     "ComputationError": "errors",
     "ContactLaw": "contact.law",
+    "FrictionCalibration": "calibration.friction.calibrate",
     "InputError": "errors",
     "Material": "materials",
     "Mesh": "structures.mesh",
@@ -131,6 +135,7 @@ _HOME = {
     "Outcome": "dynamics.outcome",
     "PointContact": "dynamics.system",
     "Oblique": "dynamics.oblique.statement",
+    "ObliqueImpacts": "calibration.friction.measured",
     "PlateMotion": "dynamics.shaken.statement",
     "Problem": "dynamics.problem",
     "QuasiStatic": "contact.quasi_static",
@@ -147,6 +152,7 @@ _HOME = {
     "achieved_restitution": "dynamics.restitution",
     "calibrate": "calibration.calibrate",
     "calibrate_case": "calibration.calibrate_case",
+    "calibrate_friction": "calibration.friction.calibrate",
     "calibrated_case": "calibration.calibrate_case",
     "calibration_charts": "calibration.charts",
     "case_schema": "cases.case",

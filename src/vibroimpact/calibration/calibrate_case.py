@@ -12,8 +12,11 @@ import numpy as np
 from vibroimpact.calibration.calibrate import calibrate
 from vibroimpact.calibration.calibrated_drops import impact_count
 from vibroimpact.calibration.calibration import Calibration
+from vibroimpact.calibration.friction.calibrate import FrictionCalibration, calibrate_friction
+from vibroimpact.calibration.friction.measured import oblique_impacts_in_file
+from vibroimpact.calibration.friction.parameters import friction_parameters
 from vibroimpact.calibration.matching import Tunable
-from vibroimpact.calibration.section import CalibrateSection
+from vibroimpact.calibration.section import FRICTION, CalibrateSection, FileTarget, friction_names
 from vibroimpact.calibration.targets import target_of
 from vibroimpact.calibration.tunables import law_parameter, modal_damping
 from vibroimpact.cases.build import problem_of, resolved_case
@@ -22,8 +25,9 @@ from vibroimpact.cases.fields.contact import read_contact
 from vibroimpact.cases.fields.local import LocalSection
 from vibroimpact.cases.reader import load_table, prefix_errors, read_case
 from vibroimpact.cases.slips.find import slips
+from vibroimpact.contact.friction.law import FrictionLaw
 from vibroimpact.contact.pair import ContactPair
-from vibroimpact.contact.registry import find_contact_law
+from vibroimpact.contact.registry import find_contact_law, friction_laws
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.errors import InputError
 
@@ -31,7 +35,9 @@ MODEL = "adams-impact"
 """The law that is tuned by default."""
 
 _LOCAL = tuple(LocalSection.model_fields)
+_COEFFICIENT = FrictionLaw.__dataclass_fields__["coefficient"].metadata["example"]
 _ANY_PAIR = ContactPair(1e9, 0.01, 0.01, 1e8, 0.3)
+_ITS_TARGET = "a table of measured oblique impacts; give its file"
 _DAMPINGS = ("sphere.damping", "plate.damping")
 
 
@@ -78,6 +84,8 @@ def read_calibration(table: Mapping[str, Any]) -> ToCalibrate:
         model = section.pop("model", None)
         model = {"law": model} if isinstance(model, str) else model
         own = "target" in section
+        if not own and (names := friction_names(section.get("parameter"))):
+            raise InputError(f"it is missing; {names[0]} is fitted to {_ITS_TARGET}", "calibrate.target")
         if not own:
             if contact.get("law") == MODEL and model is None:
                 words = f"nothing says what impacts are to be like, since the law of the case is {MODEL} itself"
@@ -98,8 +106,8 @@ def read_calibration(table: Mapping[str, Any]) -> ToCalibrate:
 
 def calibrate_case(
     what: ToCalibrate, progress: Callable[[float], None] | None = None, tell: Callable[[str], None] | None = None
-) -> Calibration:
-    """Calibrate the contact law of a case, or the damping of its elastic bodies.
+) -> Calibration | FrictionCalibration:
+    """Calibrate the contact law of a case, the damping of its elastic bodies, or its friction law.
 
     Parameters
     ----------
@@ -127,45 +135,87 @@ def calibrate_case(
     if case.plate.motion is not None:
         raise InputError("what is wanted is the rebound from a plate at rest, and this one moves; leave its motion out", "plate.motion")
     problem = problem_of(case, progress, tell)
-    if problem.same_spot and getattr(problem.laws[0], "lasting", False) and impact_count(problem) > 1:
+    names = friction_names(section.parameter)
+    if not names and problem.same_spot and getattr(problem.laws[0], "lasting", False) and impact_count(problem) > 1:
         words = f"{case.contact.law} leaves a dent that the next impact falls into, and each impact is matched on fresh surfaces"
         raise InputError(f"{words}; set it to false, or run.impacts = 1", "drop.same_spot")
+    found: Calibration | FrictionCalibration
     try:
-        tunable = _tunable(problem, section.parameter)
-        found = calibrate(
-            problem,
-            target_of(case, problem, section),
-            tunable=tunable if what.given else replace(tunable, given=np.full(1, np.nan)),
-            weights=section.match,
-            degree=section.degree,
-            speeds=None if section.speeds is None else section.speeds.values(),
-            confidence=section.confidence,
-            bootstrap=section.bootstrap,
-            seed=section.seed,
-            progress=progress,
-        )
+        if names:
+            found = _calibrated_friction(what, problem, section, names, progress)
+        else:
+            found = _calibrated_law(what, problem, section, progress)
     except InputError as error:
         raise InputError(error.message, f"calibrate.{error.key}".rstrip(".")) from None
-    tuned = (f"contact.{found.parameter}", found.parameter)  # its value is only an initial guess, and is not checked for slips of units
-    return replace(found, doubts=(*slips(resolved_case(case), tuned), *found.doubts))
+    tuned = names if isinstance(found, FrictionCalibration) else (found.parameter,)
+    # its value is only an initial guess, and is not checked for slips of units
+    aside = {*tuned, *(f"contact.{name}" for name in tuned)}
+    return replace(found, doubts=(*slips(resolved_case(case), aside), *found.doubts))
 
 
-def calibrated_case(case: Case, found: Calibration) -> Case:
-    """Return the case with the calibrated values: one per impact for a law parameter, a single one for modal damping.
+def calibrated_case(case: Case, found: Calibration | FrictionCalibration) -> Case:
+    """Return the case with the calibrated values: one per impact for a law parameter, a single one for modal damping and friction.
 
     Parameters
     ----------
     case : Case
         The calibrated case.
-    found : Calibration
+    found : Calibration or FrictionCalibration
         Result of its calibration.
     """
     table: dict[str, Any] = {key: value for key, value in resolved_case(case).items() if key != "calibrate"}
+    if isinstance(found, FrictionCalibration):
+        friction = {**table["contact"]["friction"], **dict(zip(found.parameters.names, found.values.tolist(), strict=True))}
+        return read_case({**table, "contact": {**table["contact"], "friction": friction}})
     values = found.impacts[1].tolist()
     if found.parameter in _DAMPINGS:
         body = found.parameter.partition(".")[0]
         return read_case({**table, body: {**table[body], "damping": values[0]}})
     return read_case({**table, "contact": {**table["contact"], found.parameter: values}})
+
+
+def _calibrated_law(
+    what: ToCalibrate, problem: Problem, section: CalibrateSection, progress: Callable[[float], None] | None
+) -> Calibration:
+    assert not isinstance(section.parameter, tuple)
+    tunable = _tunable(problem, section.parameter)
+    return calibrate(
+        problem,
+        target_of(what.case, problem, section),
+        tunable=tunable if what.given else replace(tunable, given=np.full(1, np.nan)),
+        weights=section.match,
+        degree=section.degree,
+        speeds=None if section.speeds is None else section.speeds.values(),
+        confidence=section.confidence,
+        bootstrap=section.bootstrap,
+        seed=section.seed,
+        progress=progress,
+    )
+
+
+def _calibrated_friction(
+    what: ToCalibrate, problem: Problem, section: CalibrateSection, names: tuple[str, ...], progress: Callable[[float], None] | None
+) -> FrictionCalibration:
+    if not isinstance(section.target, FileTarget):
+        raise InputError(f"{names[0]} is fitted to {_ITS_TARGET}", "target")
+    for key in ("degree", "speeds", "air"):
+        if getattr(section, key):
+            raise InputError(f"{names[0]} is one number, fitted to single impacts; leave this out", key)
+    friction_parameters(problem, names)  # what is wrong with the names is told before what is wrong with the file
+    found = calibrate_friction(
+        problem,
+        oblique_impacts_in_file(what.case, section.target, section.match),
+        names,
+        weights=section.match,
+        confidence=section.confidence,
+        bootstrap=section.bootstrap or 0,
+        seed=section.seed,
+        progress=progress,
+    )
+    if what.given:
+        return found
+    unknown = np.array([name == "coefficient" for name in found.parameters.names])
+    return replace(found, given=np.where(unknown, np.nan, found.given), as_given={})
 
 
 def _where(line: str, own_target: bool, own_model: bool) -> str:
@@ -177,8 +227,10 @@ def _where(line: str, own_target: bool, own_model: bool) -> str:
     return line
 
 
-def _with_start(contact: dict[str, Any], parameter: str | None) -> dict[str, Any]:
+def _with_start(contact: dict[str, Any], parameter: Any) -> dict[str, Any]:
     """Return a [contact] section with an initial guess of the tuned parameter; the same object if it has a value."""
+    if names := friction_names(parameter):
+        return _with_coefficient(contact, names)
     try:
         section = read_contact(contact)
     except InputError:
@@ -198,6 +250,18 @@ def _with_start(contact: dict[str, Any], parameter: str | None) -> dict[str, Any
         if item.name == (parameter or made.free_parameter):
             return {**contact, item.name: start}
     return contact
+
+
+def _with_coefficient(contact: dict[str, Any], names: tuple[str, ...]) -> dict[str, Any]:
+    """Return a [contact] section with an initial guess of the coefficient of friction, if it is tuned; the same object if it has one."""
+    friction = contact.get("friction")
+    if not isinstance(friction, dict) or "coefficient" in friction:
+        return contact
+    law = friction_laws().get(str(friction.get("law")))
+    known = {f"{FRICTION}{item.name}" for item in fields(law)} if law else set()
+    if f"{FRICTION}coefficient" not in names and known.issuperset(names):  # an unknown parameter is reported later
+        return contact
+    return {**contact, "friction": {**friction, "coefficient": _COEFFICIENT}}
 
 
 def _tunable(problem: Problem, parameter: str | None) -> Tunable:

@@ -6,6 +6,8 @@ import numpy as np
 
 from vibroimpact.calibration.calibration import Calibration
 from vibroimpact.calibration.differences import COMPARED, WAYS, differences
+from vibroimpact.calibration.friction.calibrate import FrictionCalibration
+from vibroimpact.calibration.friction.charts import friction_charts
 from vibroimpact.calibration.record_chart import record_chart
 from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
@@ -17,18 +19,19 @@ _FEW = 12
 """Impacts up to which each has its number on the axis."""
 
 
-def calibration_charts(found: Calibration) -> list[Chart]:
+def calibration_charts(found: Calibration | FrictionCalibration) -> list[Chart]:
     """Return the charts of a calibration.
 
     Parameters
     ----------
-    found : Calibration
+    found : Calibration or FrictionCalibration
         Result of the calibration.
 
     Returns
     -------
     list of Chart
-        `parameter`; `record` if a record was measured; `differences` if there are several impacts and a reference.
+        `parameter`; `record` if a record was measured; `differences` if there are several impacts and a reference. Of friction those of
+        `friction_charts`.
 
     Examples
     --------
@@ -37,6 +40,8 @@ def calibration_charts(found: Calibration) -> list[Chart]:
     >>> [chart.name for chart in calibration_charts(found)]
     ['parameter', 'differences']
     """
+    if isinstance(found, FrictionCalibration):
+        return friction_charts(found)
     charts = [_parameter_chart(found)]
     if found.overlays:
         charts.append(record_chart(found.overlays))

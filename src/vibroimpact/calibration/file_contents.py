@@ -1,4 +1,4 @@
-"""Contents of the files of a calibration: calibration.json, matched.csv and comparison.csv; and what `calibrate --json` prints."""
+"""Contents of the files of a calibration: calibration.json, matched.csv and comparison.csv."""
 
 from __future__ import annotations
 
@@ -62,17 +62,6 @@ def calibration_table(case: Case, found: Calibration) -> dict[str, Any]:
         "doubts": list(found.doubts),
         "case": resolved_case(case),
     }
-
-
-def calibration_document(case: Case, found: Calibration) -> dict[str, Any]:
-    """Return what `calibrate --json` prints: the contents of `calibration.json`, and the rows of `comparison.csv`.
-
-    Parameters
-    ----------
-    case, found
-        As for `calibration_table`.
-    """
-    return {**calibration_table(case, found), "comparison": comparison_rows(found)}
 
 
 def matched_rows(found: Calibration) -> list[dict[str, Any]]:

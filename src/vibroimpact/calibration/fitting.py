@@ -42,9 +42,7 @@ class Fit:
 
     def quantile(self, confidence: float) -> float:
         """Return the half width of a confidence interval in standard deviations (Student's t)."""
-        from scipy.stats import t as students_t  # imported late: it takes longer to load than a calibration
-
-        return float(students_t.ppf(0.5 + 0.5 * confidence, self.freedom))
+        return half_width(confidence, self.freedom)
 
     def half_widths(self, confidence: float) -> Floats:
         """Return the half widths of the confidence intervals of the coefficients."""
@@ -55,6 +53,13 @@ class Fit:
         powers = _powers(np.asarray(speeds, dtype=float), self.function.degree)
         spread = np.einsum("ni,ij,nj->n", powers, self.covariance, powers)
         return np.asarray(self.quantile(confidence) * np.sqrt(np.maximum(spread, 0.0)))
+
+
+def half_width(confidence: float, freedom: float) -> float:
+    """Return the half width of a confidence interval in standard deviations, by Student's t."""
+    from scipy.stats import t as students_t  # imported late: it takes longer to load than a calibration
+
+    return float(students_t.ppf(0.5 + 0.5 * confidence, freedom))
 
 
 def check_degree(speeds: Floats, degree: int) -> None:
@@ -159,12 +164,12 @@ def fit_observations(tunable: Tunable, observations: Observations, weights: Mapp
     left = whitened[1] - whitened[0] @ coefficients
     freedom = len(left) - degree - 1
     scatter = float(np.sqrt((left @ left) / freedom)) if freedom else np.nan
-    if known and not (freedom and _misfits(scatter, freedom)):
+    if known and not (freedom and misfits(scatter, freedom)):
         return Fit(_function(coefficients, speeds), covariance, np.inf, scatter)
     return Fit(_function(coefficients, speeds), scatter**2 * covariance, freedom, scatter)
 
 
-def _misfits(scatter: float, freedom: int) -> bool:
+def misfits(scatter: float, freedom: int) -> bool:
     """Return whether the residuals exceed the 99.9 % quantile expected from the given noise."""
     from scipy.stats import chi2
 

@@ -26,6 +26,17 @@ MATCHABLE = {
 }
 """The quantities that can be matched, by name."""
 
+ALONG_PLATE = {
+    "tangential_restitution": MatchableQuantity("tangential_restitution", "", "tangential restitution"),
+    "separation_velocity_x": MatchableQuantity("separation_velocity_x_m_s", "m/s", "velocity along the plate after the impact"),
+    "rebound_angle": MatchableQuantity("rebound_angle_deg", "deg", "rebound angle"),
+    "spin_y_after": MatchableQuantity("spin_y_after_rad_s", "rad/s", "angular velocity after the impact"),
+}
+"""Those of an oblique impact that friction determines."""
+
+DIRECTIONS = tuple(ALONG_PLATE)[:3]
+"""Three measures of the motion of the centre along the plate after an impact."""
+
 REBOUNDS = ("separation_speed", "rebound_height")
 """Two measures of the rebound; they differ slightly under a law that releases before the overlap has vanished."""
 
@@ -39,14 +50,16 @@ def check_weights(weights: Mapping[str, float]) -> None:
     Raises
     ------
     InputError
-        If a name is unknown, a weight is not positive, both rebounds are given, or none at all.
+        If a name is unknown, a weight is not positive, several say the same, or there is none at all.
     """
+    known = {**MATCHABLE, **ALONG_PLATE}
     for name, weight in weights.items():
-        if name not in MATCHABLE:
-            raise InputError(f'"{name}" can\'t be matched; there are {", ".join(MATCHABLE)}.{did_you_mean(name, MATCHABLE)}', "match")
+        if name not in known:
+            raise InputError(f'"{name}" can\'t be matched; there are {", ".join(known)}.{did_you_mean(name, known)}', "match")
         if not 0.0 < weight < math.inf:
             raise InputError(f"{weight:g} is not allowed as a weight; it must be greater than 0", f"match.{name}")
-    if set(REBOUNDS) <= set(weights):
-        raise InputError(f"{' and '.join(REBOUNDS)} say the same; give one of them", "match")
+    for alike in (REBOUNDS, DIRECTIONS):
+        if len(given := [name for name in alike if name in weights]) > 1:
+            raise InputError(f"{' and '.join(given)} say the same; give one of them", "match")
     if not weights:
-        raise InputError(f"name at least one of {', '.join(MATCHABLE)}", "match")
+        raise InputError(f"name at least one of {', '.join(known)}", "match")

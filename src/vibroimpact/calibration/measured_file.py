@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -25,7 +26,9 @@ from vibroimpact.measurements.record_file import SPHERE_ACCELERATION, is_univers
 from vibroimpact.measurements.table_file import TableFile, read_table_file, strictly_increasing
 
 _MATCHABLE = {name: quantity.unit for name, quantity in MATCHABLE.items()}
-_DEVIATION = "_standard_deviation"
+DEVIATION = "_standard_deviation"
+"""Ending of the names of columns with standard deviations."""
+
 _COLUMNS = {
     "time": "s",
     "position": "m",
@@ -37,7 +40,7 @@ _COLUMNS = {
     "restitution_achieved": "",
     "rebound_height": "m",
     **_MATCHABLE,
-    **{f"{name}{_DEVIATION}": unit for name, unit in {"restitution": "", "rebound_height": "m", **_MATCHABLE}.items()},
+    **{f"{name}{DEVIATION}": unit for name, unit in {"restitution": "", "rebound_height": "m", **_MATCHABLE}.items()},
 }
 _RECORDED = ("position", "force", "sphere_acceleration")
 _KINDS = (
@@ -86,7 +89,7 @@ def file_measurement(case: Case, target: FileTarget, by_rebound: bool) -> Measur
                 words = "the line is empty; rebound heights are those of one impact after another, and none can be missing"
                 raise InputError(f"line {table.empty[0]}: {words}")
             labels = tuple(f"line {line}" for line in table.lines)
-            deviation = columns.get(f"rebound_height{_DEVIATION}")
+            deviation = columns.get(f"rebound_height{DEVIATION}")
             return _naming_file(target.file, heights_measurement(case, columns["rebound_height"], deviation, labels))
         if "acceleration" in columns and not set(_RECORDED) & set(columns):
             raise InputError(_WHOSE)
@@ -96,7 +99,7 @@ def file_measurement(case: Case, target: FileTarget, by_rebound: bool) -> Measur
         values = {name: table.columns[name] for name in _RECORDED if name in table.columns}
         return _naming_file(target.file, _record_measurement(case, Recorded(table.columns["time"], values, table.lines), by_rebound))
     except InputError as error:
-        raise _in_file(target.file, error) from None
+        raise in_file(target.file, error) from None
 
 
 def _record_measurement(case: Case, record: Recorded, by_rebound: bool) -> Measurement:
@@ -126,21 +129,17 @@ def _rows_measurement(case: Case, table: TableFile) -> Measurement:
     columns, speeds = dict(table.columns), table.columns["approach_speed"]
     if "restitution_achieved" in columns:  # name of the column in the impact table of a result
         columns.setdefault("restitution", columns["restitution_achieved"])
-    for name in ("approach_speed", *(name for name in columns if name.endswith(_DEVIATION))):
-        _positive(table, name)
-    for ending in ("", _DEVIATION):  # as separation speed, by the definition of restitution
+    for name in ("approach_speed", *(name for name in columns if name.endswith(DEVIATION))):
+        check_positive(table, name)
+    for ending in ("", DEVIATION):  # as separation speed, by the definition of restitution
         if f"restitution{ending}" in columns:
             columns.setdefault(f"separation_speed{ending}", columns[f"restitution{ending}"] * speeds)
     wanted = {name: columns[name] for name in MATCHABLE if name in columns}
     if not wanted:
         raise InputError(f"{table.path}: beside approach_speed a column is missing: restitution, {', '.join(MATCHABLE)}", "target")
     for name in wanted:
-        _positive(table, next(column for column in (name, "restitution", "restitution_achieved") if column in table.columns))
-    known = [name for name in wanted if f"{name}{_DEVIATION}" in columns]
-    if known and len(known) < len(wanted):
-        without = next(name for name in wanted if name not in known)
-        raise InputError(f"{table.path}: {known[0]} has a standard deviation and {without} has none; give {without}{_DEVIATION}", "target")
-    deviations = {name: columns[f"{name}{_DEVIATION}"] for name in wanted} if known else None
+        check_positive(table, next(column for column in (name, "restitution", "restitution_achieved") if column in table.columns))
+    deviations = known_deviations(table.path, columns, wanted)
     labels, radius, gravity = tuple(f"line {line}" for line in table.lines), case.sphere.radius, case.drop.gravity
 
     def evaluated(flights: Flights | None) -> Observations:
@@ -156,7 +155,32 @@ def _rows_measurement(case: Case, table: TableFile) -> Measurement:
     return Measurement(evaluated, float(np.max(wanted.get("rebound_height", radius))) - radius)
 
 
-def _positive(table: TableFile, column: str) -> None:
+def known_deviations(path: Path, columns: Mapping[str, Floats], wanted: Iterable[str]) -> dict[str, Floats] | None:
+    """Return the standard deviations of quantities, which all have a column of them or none; None without.
+
+    Raises
+    ------
+    InputError
+        If only some have one.
+    """
+    known = {name: f"{name}{DEVIATION}" in columns for name in wanted}
+    if not any(known.values()):
+        return None
+    for name, has in known.items():
+        if not has:
+            one = next(other for other, there in known.items() if there)
+            raise InputError(f"{path}: {one} has a standard deviation and {name} has none; give {name}{DEVIATION}", "target")
+    return {name: columns[f"{name}{DEVIATION}"] for name in known}
+
+
+def check_positive(table: TableFile, column: str) -> None:
+    """Check that all values of a column are greater than zero.
+
+    Raises
+    ------
+    InputError
+        If one is not, with its line.
+    """
     wrong = np.flatnonzero(~(table.columns[column] > 0.0))
     if wrong.size:
         value = table.columns[column][wrong[0]]
@@ -180,12 +204,13 @@ def _naming_file(file: str, measurement: Measurement) -> Measurement:
         try:
             return measurement.evaluated(flights)
         except InputError as error:
-            raise _in_file(file, error) from None
+            raise in_file(file, error) from None
 
     return Measurement(evaluated, measurement.highest)
 
 
-def _in_file(file: str, error: InputError) -> InputError:
+def in_file(file: str, error: InputError) -> InputError:
+    """Return an error with a message that names the file."""
     if file in error.message:
         return InputError(error.message, "target")
     between = ", " if error.message.startswith("line ") else ": "

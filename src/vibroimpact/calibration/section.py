@@ -19,6 +19,10 @@ from vibroimpact.ranges import Range
 from vibroimpact.shown import shown
 
 MOST_SPEEDS = 10_000
+FRICTION = "friction."
+"""Beginning of the names of parameters of the friction law."""
+
+_MOST_PARAMETERS = 10
 
 _POSITIVE = Range(above=0)
 _Measured = Annotated[float, Quantity("", "restitution; noise may lift it a little above 1", _POSITIVE)]
@@ -173,8 +177,10 @@ class CalibrateSection(Section):
     model: Annotated[Any, BeforeValidator(_read_model), JsonSchema(_LAW, law_schema)] = Field(
         None, description="the contact law that is tuned; by default that of the case"
     )
-    parameter: Name | None = Field(
-        None, description='what is tuned: a parameter of the law, "sphere.damping" or "plate.damping"; by default what sets the law\'s loss'
+    parameter: Annotated[Name | tuple[Name, ...], at_most(_MOST_PARAMETERS, "parameters")] | None = Field(
+        None,
+        description='what is tuned: a parameter of the law, "sphere.damping" or "plate.damping"; or one or a list of those of the friction '
+        'law, such as "friction.coefficient"; by default what sets the law\'s loss',
     )
     air: StrictBool | None = Field(
         None,
@@ -194,6 +200,19 @@ class CalibrateSection(Section):
         description="how often the measurement is drawn again for the intervals, 0 or at least 20; by default where they are wide",
     )
     seed: Annotated[int, Field(ge=0, strict=True)] = Field(0, description="of the drawing")
+
+
+def friction_names(parameter: Any) -> tuple[str, ...]:
+    """Return the parameters of the friction law that are fitted together; empty if it is another one, or what a user wrote is not a name.
+
+    Examples
+    --------
+    >>> friction_names("friction.coefficient"), friction_names("damping_max")
+    (('friction.coefficient',), ())
+    """
+    if isinstance(parameter, (list, tuple)):
+        return tuple(str(name) for name in parameter)
+    return (parameter,) if isinstance(parameter, str) and parameter.startswith(FRICTION) else ()
 
 
 def calibrate_table(section: CalibrateSection) -> dict[str, Any]:

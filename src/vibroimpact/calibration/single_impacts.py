@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import fields, replace
 
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.calibration.matchable import MATCHABLE
+from vibroimpact.calibration.matchable import ALONG_PLATE, MATCHABLE, MatchableQuantity
 from vibroimpact.contact.law import ContactLaw
+from vibroimpact.dynamics.oblique.statement import Oblique
 from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.simulate import simulate
+from vibroimpact.dynamics.tabulate import tabulate
 
 _TOLERANCE = 1e-12
 
@@ -44,12 +47,46 @@ def single_impacts(problem: Problem, law: ContactLaw, speeds: Floats) -> dict[st
     >>> single_impacts(problem, problem.laws[0], np.array([8.826664149]))["separation_speed"].round(6).tolist()
     [6.838627]
     """
-    begun = replace(problem, laws=(law,), height=None, speed=np.asarray(speeds, dtype=float), tolerance=_TOLERANCE)
-    response = simulate(replace(begun, impacts=1, duration=None, rest_speed=0.0, sensors=()))
-    failed = np.array([outcome is Outcome.FAILED for outcome in response.outcomes])
-    found = {name: np.where(failed, np.nan, response.impacts[column][:, 0]) for name, (column, *_) in MATCHABLE.items()}
+    response = simulate(replace(_one_impact(problem, law, speeds), tolerance=_TOLERANCE))
     rise = np.maximum(response.impacts["rebound_height_m"][:, 0] - problem.sphere.contact_offset, 0.0)
-    return {**found, "next_speed": np.sqrt(2.0 * problem.gravity * rise)}
+    return {**_first_impacts(response, MATCHABLE), "next_speed": np.sqrt(2.0 * problem.gravity * rise)}
+
+
+def oblique_impacts(problem: Problem, law: ContactLaw, speeds: Floats, oblique: Oblique) -> dict[str, Floats]:
+    """Return what friction determines of single oblique impacts, by the names of `ALONG_PLATE`, and their separation speeds [m/s].
+
+    Parameters
+    ----------
+    problem : Problem
+        The bodies.
+    law : ContactLaw
+        The contact law; array parameters have one value per impact.
+    speeds : array, shape (n,)
+        Approach speeds along the normal [m/s].
+    oblique : Oblique
+        Velocities along the plate, spins and friction law; arrays have one value per impact.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> problem = vi.load_case("paper:type1-theory").to_problem()
+    >>> slippery = Oblique(velocity=(1.0, 0.0))
+    >>> oblique_impacts(problem, problem.laws[0], np.array([2.0]), slippery)["tangential_restitution"].tolist()
+    [1.0]
+    """
+    response = tabulate(replace(_one_impact(problem, law, speeds), oblique=oblique, same_spot=False))
+    return _first_impacts(response, {"separation_speed": MATCHABLE["separation_speed"], **ALONG_PLATE})
+
+
+def _one_impact(problem: Problem, law: ContactLaw, speeds: Floats) -> Problem:
+    begun = replace(problem, laws=(law,), height=None, speed=np.asarray(speeds, dtype=float))
+    return replace(begun, impacts=1, duration=None, rest_speed=0.0, sensors=())
+
+
+def _first_impacts(response: Response, quantities: Mapping[str, MatchableQuantity]) -> dict[str, Floats]:
+    """Return quantities of the first impacts, NaN of those that could not be computed."""
+    failed = np.array([outcome is Outcome.FAILED for outcome in response.outcomes])
+    return {name: np.where(failed, np.nan, response.impacts[column][:, 0]) for name, (column, *_) in quantities.items()}
 
 
 def first_approach_speed(problem: Problem) -> float:

@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 from vibroimpact.calibration.calibration import Calibration
 from vibroimpact.calibration.differences import COMPARED, WAYS, differences, largest_misfit
 from vibroimpact.calibration.matchable import MATCHABLE, REBOUNDS
+from vibroimpact.calibration.report import Cells
 from vibroimpact.calibration.tunables import law_parameter
 from vibroimpact.runs.tables import formatted_column
 from vibroimpact.units.display import column_texts, digits, fixed, largest, text
@@ -20,8 +21,6 @@ _MEANING = {
     "variable": "each impact its own value",
     "function": "the polynomial of the approach speed",
 }
-
-Cells = tuple[list[tuple[str, str]], list[list[str]]]
 
 
 def values_table(found: Calibration) -> Cells:

@@ -6,39 +6,29 @@ from rich.columns import Columns
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from vibroimpact.calibration.calibration import Calibration
-from vibroimpact.calibration.tables import (
-    Cells,
-    differences_tables,
-    fit_sentences,
-    function_words,
-    given_sentences,
-    match_words,
-    values_table,
-    ways_words,
-)
+from vibroimpact.calibration.report import CalibrationReport, Cells
 from vibroimpact.cases.case import Case
 from vibroimpact.report.terminal_table import TerminalColumn, TerminalTable, numbers
 
 
-def calibration_summary(case: Case, found: Calibration) -> RenderableType:
-    """Return the values, the fitted polynomial, the remaining differences and the warnings of a calibration, for the terminal."""
+def calibration_summary(case: Case, told: CalibrationReport) -> RenderableType:
+    """Return the values, the fit, the remaining differences and the warnings of a calibration, for the terminal."""
     parts: list[RenderableType] = [
         Text(case.name or "a drop", style="bold"),
-        Text(f"{case.contact.law}, so that {match_words(found)}"),
+        Text(f"{told.law}, so that {told.matched}"),
         Text(),
-        _table(values_table(found)),
+        _table(told.values),
         Text(),
-        Text(function_words(found), style="bold"),
-        *(Text(f" {sentence}") for sentence in fit_sentences(found)),
+        Text(told.function, style="bold"),
+        *(Text(f" {sentence}") for sentence in told.fit),
     ]
-    if sentences := given_sentences(found):
-        parts += [Text(), *(Text(sentence) for sentence in sentences)]
-    if tables := differences_tables(found):
+    if told.given:
+        parts += [Text(), *(Text(sentence) for sentence in told.given)]
+    if told.differences:
         parts += [Text(), Text("What is still wrong", style="bold")]
-        parts.append(Columns([Group(Text(f" {title}"), _table(cells)) for title, cells in tables.items()], padding=(0, 4)))
-        parts.append(Text(f" {ways_words(found)}", style="dim"))
-    parts += [Text(), *(Text(f"Doubt: {doubt}.") for doubt in found.doubts)] if found.doubts else []
+        parts.append(Columns([Group(Text(f" {title}"), _table(cells)) for title, cells in told.differences.items()], padding=(0, 4)))
+        parts.append(Text(f" {told.ways}", style="dim"))
+    parts += [Text(), *(Text(f"Doubt: {doubt}.") for doubt in told.doubts)] if told.doubts else []
     return Group(*parts)
 
 

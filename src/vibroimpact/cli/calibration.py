@@ -41,8 +41,8 @@ def calibrate(
     damping of Adams' IMPACT is found with which the sphere bounces as under the law of the case.
     """
     from vibroimpact.calibration.calibrate_case import calibrate_case, load_calibration
-    from vibroimpact.calibration.file_contents import calibration_document
     from vibroimpact.calibration.folder import save_calibration
+    from vibroimpact.calibration.reported import report_of
     from vibroimpact.calibration.text import calibration_summary
     from vibroimpact.cases.reader import prefix_errors
     from vibroimpact.report.progress import patient_progress
@@ -56,9 +56,10 @@ def calibrate(
         with patient_progress("calibrating", screen) as progress:
             found = prefix_errors(case, lambda: calibrate_case(what, progress, note))
         folder = save_calibration(what.case, found, target, force=force, figures=("png",) if figures else ())
+    told = report_of(what.case, found)
     show(
-        lambda: {"folder": str(folder), **calibration_document(what.case, found)},
-        lambda: calibration_summary(what.case, found),
+        lambda: {"folder": str(folder), **told.document, **told.tables},
+        lambda: calibration_summary(what.case, told),
         as_json=as_json,
     )
     say(f"wrote {folder / 'report.html'}", err=as_json)

@@ -122,6 +122,8 @@ def _of_calibration(folder: Path) -> Drop:
 
 def _fitted(found: dict[str, Any]) -> tuple[str, SpeedFunction] | None:
     """Return the fitted function; None if it is a constant, which the case holds, or not of a parameter of the contact law."""
+    if "parameters" in found:  # of the friction
+        return None
     fit = found["fit"]
     coefficients = tuple(float(one) for one in fit["coefficients"])
     if len(coefficients) == 1 or "." in found["parameter"]:

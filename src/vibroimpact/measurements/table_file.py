@@ -34,6 +34,8 @@ _LONG_NAME = 40  # characters of a name in a message
 _ENDINGS = {
     "_m_s2": "m/s^2",
     "_m_s": "m/s",
+    "_rad_s": "rad/s",
+    "_deg": "deg",
     "_s": "s",
     "_ms": "ms",
     "_us": "us",

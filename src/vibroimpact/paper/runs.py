@@ -63,7 +63,9 @@ class Runs:
     @cached_property
     def calibration(self) -> Calibration:
         """The calibrated damping of Adams' IMPACT that reproduces each impact of the theory."""
-        return calibrate_case(load_calibration("paper:calibration"))
+        found = calibrate_case(load_calibration("paper:calibration"))
+        assert isinstance(found, Calibration)
+        return found
 
     def below_theory(self, damping: str, column: str) -> Floats:
         """Return the shortfall of a column of the impact table against the theory [%], for a simulation of `DAMPINGS`."""

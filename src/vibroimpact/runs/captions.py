@@ -238,6 +238,21 @@ def _along_plate(result: Result) -> str:
     return words
 
 
+def _path(result: Result) -> str:
+    impacts, history = result.impacts, result.history
+    words = "Seen from above, to scale; the sphere where it is at the end"
+    if result.case.get("plate", {}).get("inclination"):
+        words += ", and +x downhill"
+    number = len(impacts["time_s"])
+    if number > 1:
+        first, last = (np.array([impacts[f"position_{axis}_m"][place] for axis in "xy"]) for place in (0, -1))
+        words += f". From impact 1 to impact {number} it moves {text(float(np.hypot(*(last - first))), 'm')}"
+    elif not number:
+        words += ". It has not touched the plate"
+    length = float(np.hypot(np.diff(history["position_x_m"]), np.diff(history["position_y_m"])).sum())
+    return f"{words}; its way over the plate is {text(length, 'm')} long."
+
+
 _WRITERS = {
     "position": _position,
     "force": _force,
@@ -246,6 +261,7 @@ _WRITERS = {
     "force_indentation": _loops,
     "energy": _energy,
     "along_plate": _along_plate,
+    "path": _path,
     "sphere_energy": sphere_energy_caption,
     "plate_motion": plate_motion_caption,
     "plate_energy": plate_energy_caption,

@@ -75,7 +75,8 @@ def case_explained(case: Case, aside: Container[str] = ()) -> RenderableType:
     stop += [f"at {case.run.duration:g} s"] if case.run.duration else []
     rows += [("stops", " or ".join(stop)), ("tolerance", f"{case.run.tolerance:g}")]
     if case.calibrate is not None:
-        tuned = case.calibrate.parameter or "what sets the loss of the law"
+        named = case.calibrate.parameter
+        tuned = ", ".join(named) if isinstance(named, tuple) else named or "what sets the loss of the law"
         rows.append(("to calibrate", f"{tuned}; a run takes no notice of [calibrate]"))
     if isinstance(laws[0], CompliantLaw) and laws[0].lasting:
         where = "on the same spot: the dent of the last one lasts" if case.drop.same_spot else "on fresh surfaces"

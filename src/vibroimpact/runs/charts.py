@@ -14,6 +14,7 @@ from vibroimpact.runs.energy_chart import ledger_chart
 from vibroimpact.runs.force_indentation_chart import loops_chart
 from vibroimpact.runs.history_charts import ACCELERATION, FORCE, POSITION, VELOCITY, history_chart
 from vibroimpact.runs.oblique_chart import moves_along, oblique_chart
+from vibroimpact.runs.path_chart import moves_over, path_chart
 from vibroimpact.runs.sensor_charts import drawn_sensors, sensor_chart
 from vibroimpact.runs.vibration_charts import plate_energy_chart, plate_motion_chart, sphere_energy_chart
 
@@ -29,7 +30,8 @@ def chart_makers(result: Result) -> dict[str, Callable[[], Chart]]:
     Returns
     -------
     dict of str to callable
-        `position`, `force`, `velocity`, `acceleration`, `force_indentation`, `along_plate` where there is such a motion, and `energy`;
+        `position`, `force`, `velocity`, `acceleration`, `force_indentation`, `along_plate` and `path` where there is such a motion, and
+        `energy`;
         where bodies vibrate also `sphere_energy`, `plate_motion`, `plate_energy`, `deflection` and one per sensor. Force, acceleration
         and force over indentation exist only for contacts of finite duration, not with an instantaneous law.
     """
@@ -42,6 +44,8 @@ def chart_makers(result: Result) -> dict[str, Callable[[], Chart]]:
         makers["force_indentation"] = partial(loops_chart, result)
     if moves_along(history):
         makers["along_plate"] = partial(oblique_chart, result, history)
+    if moves_over(history):
+        makers["path"] = partial(path_chart, result, history)
     makers["energy"] = partial(ledger_chart, result, history)
     if result.vibrates and len(result.impacts["time_s"]):
         makers["sphere_energy"] = partial(sphere_energy_chart, result, history)

@@ -42,7 +42,7 @@ def setup_chart(result: Result) -> Chart:
     return Chart("setup", "Set-up", (tuple(panels),), caption, height=2.9)
 
 
-def _radius(result: Result) -> float:
+def drawn_radius(result: Result) -> float:
     """Return the radius of the sphere as it is drawn [m]; of a body made in Python the height of its centre at first touch."""
     given = result.case.get("sphere", {}).get("radius")
     radius = float(given) if given is not None else touch_height(result)
@@ -58,7 +58,7 @@ def _contact_point(result: Result) -> tuple[float, float]:
 
 
 def _from_the_side(result: Result, extent: Extent | None) -> Panel:
-    radius, below = _radius(result), result.case.get("plate", {}).get("radius")
+    radius, below = drawn_radius(result), result.case.get("plate", {}).get("radius")
     if below is not None:
         marks, half, at = _sphere_below(result, float(below)), max(float(below), 2.0 * radius), 0.0
     else:
@@ -69,17 +69,17 @@ def _from_the_side(result: Result, extent: Extent | None) -> Panel:
     marks += [
         Line(np.array([at, at]), np.array([0.0, high - radius]), role="dotted"),
         Outline(at + radius * np.cos(_TURN), high + radius * np.sin(_TURN), role="ball"),
-        Label(at - radius, high, f"radius {_given(radius, 'm')}", "right"),
+        Label(at - radius, high, f"radius {as_given(radius, 'm')}", "right"),
     ]
     beside = at + 1.8 * radius + 0.02 * half
-    marks += _dimension((beside, 0.0), (beside, high), _drop_words(result), "left")
+    marks += dimension((beside, 0.0), (beside, high), _drop_words(result), "left")
     return Panel(Axis("x", "m"), Axis("z", "m"), tuple(marks), "From the side", picture=True)
 
 
 def _sphere_below(result: Result, radius: float) -> list[Mark]:
     """Return the sphere in the plate's place, on what holds it."""
     marks: list[Mark] = [Outline(radius * np.cos(_TURN), radius * np.sin(_TURN) - radius)]
-    marks.append(Label(radius, -radius, f"radius {_given(radius, 'm')}", "left"))
+    marks.append(Label(radius, -radius, f"radius {as_given(radius, 'm')}", "left"))
     if result.case["plate"].get("supports") != "free":
         ground, deep = np.array([-0.6, 0.6, 0.6, -0.6]) * radius, np.array([2.0, 2.0, 2.25, 2.25]) * radius
         marks.insert(0, Outline(ground, -deep, role="support"))
@@ -94,8 +94,8 @@ def _plate(result: Result, extent: Extent, *, dimensioned: bool) -> list[Mark]:
     if dimensioned:
         outlines = [mark for mark in marks if isinstance(mark, Outline)]
         low, beside = min(float(one.y.min()) for one in outlines) - 0.04 * (right - left), max(float(one.x.max()) for one in outlines)
-        marks += _dimension((left, low), (right, low), _given(right - left, "m"), "below")
-        marks += [Label(beside, -0.5 * thickness, f"{_given(thickness, 'm')} thick", "left")] if known else []
+        marks += dimension((left, low), (right, low), as_given(right - left, "m"), "below")
+        marks += [Label(beside, -0.5 * thickness, f"{as_given(thickness, 'm')} thick", "left")] if known else []
     return marks
 
 
@@ -108,28 +108,29 @@ def _drop_words(result: Result) -> str:
         parts = [float(result.impacts[name][0]) if name in result.impacts else 0.0 for name in _APPROACH]
         down, speed = parts[0], float(np.linalg.norm(parts))
         angle = f" at {np.degrees(np.arccos(down / speed)):.4g}° from the normal" if down < speed else ""
-        return f"arrives at {_given(speed, 'm/s')}{angle}"
+        return f"arrives at {as_given(speed, 'm/s')}{angle}"
     below = "lower sphere" if result.case.get("plate", {}).get("radius") is not None else "plate"
-    return f"{_given(start, 'm')} above the {below}"
+    return f"{as_given(start, 'm')} above the {below}"
 
 
 def _from_above(result: Result, extent: Extent) -> Panel:
-    (left, right), (front, back), radius, (x, y) = extent.x, extent.y, _radius(result), _contact_point(result)
+    (left, right), (front, back), radius, (x, y) = extent.x, extent.y, drawn_radius(result), _contact_point(result)
     marks: list[Mark] = [Outline(np.array([left, right, right, left]), np.array([front, front, back, back]))]
     marks += [Outline(*outline, name="support", role="held") for outline in support_outlines(result)]
     marks.append(Outline(x + radius * np.cos(_TURN), y + radius * np.sin(_TURN), role="ball"))
     low, beside = min(front, y - radius) - 0.07 * (back - front), max(right, x + radius) + 0.05 * (right - left)
-    marks += _dimension((left, low), (right, low), _given(right - left, "m"), "below")
-    marks += _dimension((beside, front), (beside, back), _given(back - front, "m"), "left")
+    marks += dimension((left, low), (right, low), as_given(right - left, "m"), "below")
+    marks += dimension((beside, front), (beside, back), as_given(back - front, "m"), "left")
     return Panel(Axis("x", "m"), Axis("y", "m"), (*marks, *sensor_marks(result)), "From above", picture=True)
 
 
-def _dimension(start: tuple[float, float], end: tuple[float, float], words: str, anchor: str) -> list[Mark]:
+def dimension(start: tuple[float, float], end: tuple[float, float], words: str, anchor: str) -> list[Mark]:
+    """Return an arrow in both directions with words at its middle."""
     middle = 0.5 * (start[0] + end[0]), 0.5 * (start[1] + end[1])
     return [Arrow(start, end, both=True), Label(*middle, words, anchor)]
 
 
-def _given(value: float, unit: str) -> str:
+def as_given(value: float, unit: str) -> str:
     """Return a value [SI] as somebody gave it, without zeros at its end."""
     best = multiple(unit, value)
     shown = digits(value / best.size, 6)
@@ -153,7 +154,7 @@ def setup_rows(result: Result) -> list[tuple[str, str]]:
         return []
     below = "Plate" if case["plate"].get("radius") is None else "Lower sphere"
     rows = [("Sphere", _body_words(case["sphere"])), (below, f"{_body_words(case['plate'])}, {support_words(result)}")]
-    rows.append(("Drop", f"{_drop_words(result)}, gravity {_given(float(case['drop'].get('gravity', 0.0)), 'm/s2')}"))
+    rows.append(("Drop", f"{_drop_words(result)}, gravity {as_given(float(case['drop'].get('gravity', 0.0)), 'm/s2')}"))
     plate: Mapping[str, Any] = case["plate"]
     if (inclination := plate.get("inclination")) is not None:
         rows.append(("Inclination", f"{np.degrees(float(inclination)):.4g}° about y"))
@@ -163,7 +164,7 @@ def setup_rows(result: Result) -> list[tuple[str, str]]:
     if (friction := case["contact"].get("friction")) is not None:
         rows.append(("Friction", _law_words(friction)))
     for one in case.get("sensors", ()):
-        words = f"{one['quantity']} at {_place(one['position'])}, {_given(float(one['rate']), 'Hz')}"
+        words = f"{one['quantity']} at {_place(one['position'])}, {as_given(float(one['rate']), 'Hz')}"
         rows.append((f"Sensor {shortened(visible(one['name']), 60)}", words))
     return rows
 
@@ -182,14 +183,14 @@ def _motion_words(motion: Mapping[str, Any]) -> str:
 def _body_words(body: Mapping[str, Any]) -> str:
     words = [str(body.get("model", "rigid"))]
     if body.get("radius") is not None:
-        words.append(f"radius {_given(float(body['radius']), 'm')}")
+        words.append(f"radius {as_given(float(body['radius']), 'm')}")
     if body.get("size"):
-        words.append(" \u00d7 ".join(_given(float(side), "m") for side in body["size"]))
+        words.append(" \u00d7 ".join(as_given(float(side), "m") for side in body["size"]))
     material = body.get("material")
     if isinstance(material, Mapping):
         name = f"{shortened(visible(material['name']), 60)}: " if material.get("name") else ""
-        stiff = f"E {_given(float(material['youngs_modulus']), 'Pa')}, \u03bd {_given(float(material['poissons_ratio']), '')}"
-        words.append(f"{name}{stiff}, {_given(float(material['density']), 'kg/m^3')}")
+        stiff = f"E {as_given(float(material['youngs_modulus']), 'Pa')}, \u03bd {as_given(float(material['poissons_ratio']), '')}"
+        words.append(f"{name}{stiff}, {as_given(float(material['density']), 'kg/m^3')}")
     elif material is not None:
         words.append(f"material {material}")
     if body.get("modes"):
@@ -208,7 +209,7 @@ def _law_words(contact: Mapping[str, Any]) -> str:
         if value is None or (item.metadata.get("memory") and not np.any(value)):
             continue
         unit = unit_of(item, contact.get("exponent", 1))
-        numbers = [_given(float(one), unit) for one in (value if isinstance(value, Sequence) else [value])]
+        numbers = [as_given(float(one), unit) for one in (value if isinstance(value, Sequence) else [value])]
         found.append(f"{key.replace('_', ' ')} {', '.join(numbers)}")
     return f"{name}: {', '.join(found)}" if found else name
 
@@ -217,4 +218,4 @@ def _place(position: Any) -> str:
     if isinstance(position, str):
         return shortened(visible(position), 60)
     best = multiple("m", position)
-    return f"({', '.join(_given(float(part) / best.size, '') for part in position)})\u00a0{best.unit}"
+    return f"({', '.join(as_given(float(part) / best.size, '') for part in position)})\u00a0{best.unit}"

@@ -1,0 +1,1 @@
+"""Calibration of the friction law: parameters that are fitted together to measured oblique impacts."""

@@ -1,0 +1,273 @@
+"""Fit parameters of the friction law to measured oblique impacts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from vibroimpact.arrays import Bools, Floats, Indices
+from vibroimpact.calibration.fitting import half_width, misfits
+from vibroimpact.calibration.friction.intervals import bootstrap_intervals, profile_intervals
+from vibroimpact.calibration.friction.least_squares import Bounds, Minimum, Residuals, minimize
+from vibroimpact.calibration.friction.measured import ObliqueImpacts
+from vibroimpact.calibration.friction.parameters import FrictionParameters, ImpactModel, friction_parameters, impact_model
+from vibroimpact.calibration.observations import Observations
+from vibroimpact.calibration.section import FRICTION
+from vibroimpact.dynamics.problem import Problem, StatesProblem
+from vibroimpact.errors import ComputationError, InputError
+from vibroimpact.units.display import digits, text
+
+_NEARLY = 0.999  # gravity acts too
+_ALIKE = 1e-6  # relative difference of sums of squares
+_STARTS = 3  # of the best combinations of values, from which the search goes on
+
+
+@dataclass(frozen=True)
+class FrictionCalibration:
+    """Parameters of a friction law fitted to measured oblique impacts.
+
+    Parameters
+    ----------
+    problem : Problem
+        The drop with its laws as given.
+    parameters : FrictionParameters
+        What was fitted.
+    impacts : ObliqueImpacts
+        The measured impacts.
+    weights : mapping of str to float
+        Weights of the matched quantities, by the names of `ALONG_PLATE`.
+    model : ImpactModel
+        The impacts as a function of the parameters.
+    values : array, shape (K,)
+        The values with the least sum of squares.
+    intervals : array, shape (K, 2), optional
+        Their confidence intervals; an end is infinite, or that of the range, where the measurement sets none. None: nothing tells the
+        noise.
+    outcomes : mapping of str to array, shape (n,)
+        Quantities of the impacts computed with these values.
+    given : array, shape (K,)
+        The values of the case; NaN where it gives none.
+    as_given : mapping of str to array, shape (n,)
+        Quantities of the impacts computed with the values of the case; empty where it does not give all.
+    freedom : float
+        Degrees of freedom of the estimate of the noise; infinite where its magnitude is known and agrees with the residuals.
+    scatter : float
+        Standard deviation of the residuals over that of the noise; NaN if there are no more measured values than parameters.
+    confidence : float
+        Confidence level of the intervals.
+    bootstrap : int
+        Number of bootstrap samples; 0 if the intervals are those of the profile of the sum of squares.
+    doubts : tuple of str
+        Warnings about the validity of the result, as sentences.
+    """
+
+    problem: Problem = field(repr=False)
+    parameters: FrictionParameters
+    impacts: ObliqueImpacts = field(repr=False)
+    weights: Mapping[str, float]
+    model: ImpactModel = field(repr=False)
+    values: Floats
+    intervals: Floats | None
+    outcomes: Mapping[str, Floats] = field(repr=False)
+    given: Floats
+    as_given: Mapping[str, Floats] = field(repr=False)
+    freedom: float
+    scatter: float
+    confidence: float
+    bootstrap: int
+    doubts: tuple[str, ...]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the parameters, as [calibrate] has them."""
+        return tuple(f"{FRICTION}{name}" for name in self.parameters.names)
+
+    @property
+    def slips(self) -> Bools:
+        """Which impacts slip throughout with the values found, (n,): friction changes their velocity as much as it can."""
+        taken = np.abs(self.outcomes["separation_velocity_x"] - self.impacts.velocity)
+        coefficient = self.parameters.with_values(self.values).coefficient
+        return np.asarray(taken >= _NEARLY * coefficient * (self.impacts.seen.speeds + self.outcomes["separation_speed"]))
+
+
+def calibrate_friction(
+    problem: StatesProblem,
+    impacts: ObliqueImpacts,
+    names: Sequence[str],
+    *,
+    weights: Mapping[str, float] | None = None,
+    confidence: float = 0.95,
+    bootstrap: int = 0,
+    seed: int = 0,
+    progress: Callable[[float], None] | None = None,
+) -> FrictionCalibration:
+    r"""Return the parameters of the friction law that agree best with measured oblique impacts.
+
+    The sum of squares of computed less measured quantities, over their standard deviations, is minimized over all parameters together.
+    Where no standard deviations are given, they are estimated from the residuals. The interval of a parameter has the values with which
+    the sum of squares, minimized over the others, rises by at most :math:`t^2`, where t is the quantile of Student's distribution: so
+    an interval may be open to one side, as that of the coefficient where all contacts stick.
+
+    Parameters
+    ----------
+    problem : Problem or Case
+        The drop whose friction law is calibrated.
+    impacts : ObliqueImpacts
+        The measured impacts.
+    names : sequence of str
+        The parameters, such as "friction.coefficient".
+    weights : mapping of str to float, optional
+        Weights of the matched quantities, used where no standard deviations are known; by default 1.
+    confidence : float, default 0.95
+        Confidence level of the intervals.
+    bootstrap : int, default 0
+        Number of samples of a parametric bootstrap, from which the closed ends of the intervals are then taken.
+    seed : int, default 0
+        Seed of the bootstrap.
+    progress : callable, optional
+        Called with the fraction done, in [0, 1].
+
+    Raises
+    ------
+    InputError
+        If the friction law has no such parameter, or none of them has an influence on what was measured.
+    """
+    tell, stated = progress or (lambda done: None), problem.to_problem()
+    if stated.shape != ():
+        raise InputError("one drop is calibrated at a time; take one of the batch")
+    if bootstrap != 0 and not bootstrap >= 20:
+        raise InputError(f"{bootstrap} draws tell no interval; it must be 0, or at least 20", "bootstrap")
+    parameters = friction_parameters(stated, names)
+    seen, bounds = impacts.seen, parameters.bounds
+    model, counted = impact_model(stated, parameters, impacts), dict.fromkeys(seen.wanted, 1.0) if weights is None else dict(weights)
+    sizes = {
+        name: np.linalg.norm(seen.noise[name], axis=1) / (1.0 if seen.deviations_known else np.sqrt(weight))
+        for name, weight in counted.items()
+    }
+    drawn = _samples(impacts, bootstrap, seed)
+
+    def residuals(values: Floats, chains: Indices) -> Floats:
+        found = model(values)
+        return np.concatenate([(found[name] - drawn[name][chains]) / size for name, size in sizes.items()], axis=1)
+
+    begin = parameters.starts()
+    first = np.zeros(len(begin), dtype=np.intp)
+    costs = (residuals(begin, first) ** 2).sum(axis=1)
+    best = begin[np.argsort(np.where(np.isnan(costs), np.inf, costs), kind="stable")[:_STARTS]]
+    tell(0.1)
+
+    def measured(values: Floats, chains: Indices) -> Floats:
+        return residuals(values, np.zeros_like(chains))
+
+    found = minimize(measured, best, bounds)
+    at = int(np.argmin(found.cost))
+    if not np.isfinite(found.cost[at]):
+        raise ComputationError("none of these impacts could be computed; look at the measured speeds, and at the case")
+    least = _as_given(measured, Minimum(found.values[[at]], found.cost[[at]]), parameters.given, bounds)
+    tell(0.3)
+    freedom = float(len(sizes) * len(seen.speeds) - len(names))
+    scatter = float(np.sqrt(least.cost[0] / freedom)) if freedom > 0 else np.nan
+    known = seen.deviations_known and not (freedom > 0 and misfits(scatter, int(freedom)))
+    intervals = None
+    if known or freedom > 0:
+        width = half_width(confidence, np.inf if known else freedom) * (1.0 if known else scatter)
+        intervals = profile_intervals(residuals, least, bounds, width)
+        open_ends = np.stack([intervals[:, 0] <= bounds.least, intervals[:, 1] >= bounds.most], axis=1)
+        tell(0.5)
+        if bootstrap:
+            sample = bootstrap_intervals(residuals, least, bounds, bootstrap, confidence, lambda done: tell(0.5 + 0.4 * done))
+            intervals = np.where(open_ends, intervals, sample)
+        intervals = np.where(open_ends, parameters.allowed, intervals)
+        idle = np.atleast_2d(open_ends.all(axis=1))
+        if idle.any():  # what the measurement does not determine stays as it is
+            start = np.where(idle, parameters.given, least.values)
+            least = minimize(measured, start, bounds, idle)
+    values, given = least.values[0], parameters.given
+    return FrictionCalibration(
+        problem=stated,
+        parameters=parameters,
+        impacts=impacts,
+        weights=counted,
+        model=model,
+        values=values,
+        intervals=intervals,
+        outcomes=_one(model, values),
+        given=given,
+        as_given=_one(model, given),
+        freedom=np.inf if known else freedom,
+        scatter=scatter,
+        confidence=confidence,
+        bootstrap=bootstrap,
+        doubts=tuple(_doubts(parameters, values, intervals, seen, confidence, freedom, scatter, known=known)),
+    )
+
+
+_WIDE = 1.0  # width of an interval, over its value or half its range, above which a value counts as undetermined
+_WOULD_TELL = {
+    "coefficient": "; impacts at larger angles from the normal, which slip throughout, would tell it",
+    "slip_restitution": "; impacts at smaller angles from the normal, which do not slip throughout, would tell it",
+    "effective_shear_modulus": "; impacts at smaller angles from the normal, which do not slip throughout, would tell it",
+}
+
+
+def _doubts(
+    parameters: FrictionParameters,
+    values: Floats,
+    intervals: Floats | None,
+    seen: Observations,
+    confidence: float,
+    freedom: float,
+    scatter: float,
+    *,
+    known: bool,
+) -> Iterator[str]:
+    """Yield warnings about parameters that the measurement does not determine, and about a law that does not follow it."""
+    if intervals is None:
+        yield "there are no more measured values than parameters, and no standard deviations: nothing tells how well these are known"
+        return
+    at = f"at {100.0 * confidence:g} %"
+    for name, unit, value, interval, ends in zip(parameters.names, parameters.units, values, intervals, parameters.allowed, strict=True):
+        low, high, shown = *(text(float(end), unit) for end in interval), text(float(value), unit)
+        below, above = interval == ends
+        full, more = f"{FRICTION}{name}", _WOULD_TELL.get(name, "")
+        wide = interval[1] - interval[0] > _WIDE * (0.5 * np.ptp(ends) if np.isfinite(ends).all() else abs(value))
+        if below and above:
+            yield f"these impacts do not determine {full}, which stays {shown}: they are met as well, {at}, with any value{more}"
+        elif above:
+            stick = " (with more friction they stick)" if name == "coefficient" else ""
+            yield f"these impacts tell that {full} is at least {low} {at}, and not how large it is{stick}{more}"
+        elif below and wide:
+            yield f"these impacts tell that {full} is at most {high} {at}, and not how small it is{more}"
+        elif wide:
+            yield f"these impacts do not determine {full}: {shown}, but {low} to {high} {at}"
+    if seen.deviations_known and freedom > 0 and not known:
+        yield (
+            f"residuals are {digits(scatter, 3)} times as large as their standard deviations: {parameters.law.name} does not follow the "
+            "measurement, or its noise is larger; the intervals are widened by that"
+        )
+
+
+def _as_given(residuals: Residuals, best: Minimum, given: Floats, bounds: Bounds) -> Minimum:
+    """Return a minimum that is as low, in which parameters are as given whose values make no difference."""
+    fixed = np.zeros((1, len(given)), dtype=bool)
+    for place in range(len(given)):
+        start = best.values.copy()
+        start[0, place] = given[place]
+        fixed[0, place] = True
+        found = minimize(residuals, start, bounds, fixed)
+        fixed[0, place] = found.cost[0] <= best.cost[0] * (1.0 + _ALIKE) + _ALIKE**2
+        best = found if fixed[0, place] else best
+    return best
+
+
+def _samples(impacts: ObliqueImpacts, number: int, seed: int) -> dict[str, Floats]:
+    """Return the measured quantities, (1 + number, n), and realizations of their noise about them after the first row."""
+    random = np.random.default_rng(seed)
+    rows = [dict(impacts.seen.wanted), *(impacts.seen.redrawn(random)[1] for _ in range(number))]
+    return {name: np.stack([row[name] for row in rows]) for name in impacts.seen.wanted}
+
+
+def _one(model: ImpactModel, values: Floats) -> dict[str, Floats]:
+    return {name: column[0] for name, column in model(values[None]).items()}

@@ -1,0 +1,145 @@
+"""Measured oblique impacts, one a row of a table."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.calibration.matchable import ALONG_PLATE, DIRECTIONS
+from vibroimpact.calibration.measured_case import check_restitutions
+from vibroimpact.calibration.measured_file import DEVIATION, check_positive, in_file, known_deviations
+from vibroimpact.calibration.observations import Observations, from_table
+from vibroimpact.calibration.section import FileTarget
+from vibroimpact.cases.case import Case
+from vibroimpact.errors import InputError
+from vibroimpact.measurements.record_file import is_universal
+from vibroimpact.measurements.table_file import TableFile, read_table_file
+
+_COLUMNS = {
+    "angle": "deg",
+    "speed": "m/s",
+    "approach_speed": "m/s",
+    "approach_velocity_x": "m/s",
+    "spin_y_before": "rad/s",
+    "restitution": "",
+    "restitution_achieved": "",
+    "separation_speed": "m/s",
+    **{name: quantity.unit for name, quantity in ALONG_PLATE.items()},
+    **{f"{name}{DEVIATION}": quantity.unit for name, quantity in ALONG_PLATE.items()},
+}
+_APPROACH = "angle and speed, or approach_speed (along the normal) and approach_velocity_x"
+
+
+@dataclass(frozen=True)
+class ObliqueImpacts:
+    """Measured oblique impacts in the plane of x and the plate's normal.
+
+    Parameters
+    ----------
+    seen : Observations
+        Approach speeds along the normal, and the quantities that are matched by the names of `ALONG_PLATE`.
+    velocity : array, shape (n,)
+        Velocities of the centre along x at first touch [m/s].
+    spin : array, shape (n,)
+        Angular velocities about y at first touch [rad/s].
+    measured : mapping of str to array, shape (n,)
+        All measured quantities, matched or not, by the names of `ALONG_PLATE`.
+    separation_speed : array, shape (n,), optional
+        Measured separation speeds along the normal [m/s].
+    """
+
+    seen: Observations
+    velocity: Floats
+    spin: Floats
+    measured: Mapping[str, Floats]
+    separation_speed: Floats | None = None
+
+    @property
+    def angle(self) -> Floats:
+        """Angles of incidence from the normal [deg]."""
+        return np.asarray(np.degrees(np.arctan2(self.velocity, self.seen.speeds)))
+
+
+def default_weights(measured: Iterable[str]) -> dict[str, float]:
+    """Return the quantities that are matched by default: the first measure of the motion along the plate, and the spin.
+
+    Examples
+    --------
+    >>> default_weights(["spin_y_after", "rebound_angle", "tangential_restitution"])
+    {'tangential_restitution': 1.0, 'spin_y_after': 1.0}
+    """
+    there = set(measured)
+    others = set(next(([*DIRECTIONS[place + 1 :]] for place, name in enumerate(DIRECTIONS) if name in there), []))
+    return {name: 1.0 for name in ALONG_PLATE if name in there - others}
+
+
+def oblique_impacts_in_file(case: Case, target: FileTarget, match: Iterable[str] | None) -> ObliqueImpacts:
+    """Return the oblique impacts of a file; `match`: the names of what is matched, by default those of `default_weights`.
+
+    Raises
+    ------
+    InputError
+        If it can't be read, lacks columns, or has an impossible value; the message names the line.
+    """
+    if is_universal(target.file) or target.function is not None:
+        raise InputError(f"oblique impacts are rows of a table, with {_APPROACH}, and what was measured after", "target")
+    try:
+        table = read_table_file(target.file, _COLUMNS)
+    except InputError as error:
+        raise InputError(error.message, "target") from None
+    speeds, velocity = _approach(table)
+    measured = {name: table.columns[name] for name in ALONG_PLATE if name in table.columns}
+    if not measured:
+        raise InputError(f"{table.path}: what was measured after the impacts is missing: {', '.join(ALONG_PLATE)}", "target")
+    if "tangential_restitution" in measured and not velocity.all():
+        words = "a sphere that does not move along the plate has no tangential restitution"
+        raise InputError(f"{table.path}, line {table.lines[int(np.argmin(np.abs(velocity)))]}: {words}", "target")
+    names = tuple(default_weights(measured) if match is None else match)
+    if missing := [name for name in names if name not in measured]:
+        raise InputError(f"{', '.join(missing)} was not measured; there is {', '.join(measured)}", "match")
+    wanted = {name: measured[name] for name in names}
+    for name in names:
+        if f"{name}{DEVIATION}" in table.columns:
+            check_positive(table, f"{name}{DEVIATION}")
+    deviations = known_deviations(table.path, table.columns, names)
+    # of unknown magnitude: the same for all impacts, and of several quantities the same part of the largest of each
+    sizes = deviations or {name: np.full(len(speeds), np.abs(values).max() or 1.0) for name, values in wanted.items()}
+    labels = tuple(f"line {line}" for line in table.lines)
+    seen = replace(from_table(speeds, wanted, sizes, labels), deviations_known=deviations is not None)
+    spin = table.columns.get("spin_y_before", np.zeros(len(speeds)))
+    return ObliqueImpacts(seen, velocity, spin, measured, _separation_speed(case, table, speeds, labels))
+
+
+def _approach(table: TableFile) -> tuple[Floats, Floats]:
+    """Return approach speeds along the normal, and velocities along x [m/s]."""
+    columns = table.columns
+    if {"angle", "speed"} <= set(columns):
+        check_positive(table, "speed")
+        steep = np.flatnonzero(np.abs(columns["angle"]) >= 90.0)
+        if steep.size:
+            value = columns["angle"][steep[0]]
+            words = f"angle is {value:g} deg; it is that from the plate's normal, greater than -90 and less than 90 deg"
+            raise InputError(f"{table.path}, line {table.lines[steep[0]]}: {words}", "target")
+        angle = np.radians(columns["angle"])
+        return columns["speed"] * np.cos(angle), columns["speed"] * np.sin(angle)
+    if {"approach_speed", "approach_velocity_x"} <= set(columns):
+        check_positive(table, "approach_speed")
+        return columns["approach_speed"], columns["approach_velocity_x"]
+    raise InputError(f"{table.path}: the columns {', '.join(columns)} do not tell how the sphere came; it takes {_APPROACH}", "target")
+
+
+def _separation_speed(case: Case, table: TableFile, speeds: Floats, labels: tuple[str, ...]) -> Floats | None:
+    """Return the measured separation speeds along the normal [m/s], if there are any."""
+    name = next((name for name in ("separation_speed", "restitution", "restitution_achieved") if name in table.columns), None)
+    if name is None:
+        return None
+    check_positive(table, name)
+    found = table.columns[name] if name == "separation_speed" else table.columns[name] * speeds
+    try:
+        check_restitutions(from_table(speeds, {"separation_speed": found}, None, labels), case)
+    except InputError as error:
+        raise in_file(str(table.path), error) from None
+    return found

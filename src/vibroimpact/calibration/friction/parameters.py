@@ -1,0 +1,178 @@
+"""The parameters of a friction law that are fitted together, and oblique impacts as a function of them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.calibration.friction.least_squares import Bounds
+from vibroimpact.calibration.friction.measured import ObliqueImpacts
+from vibroimpact.calibration.matching import match
+from vibroimpact.calibration.observations import from_table
+from vibroimpact.calibration.section import FRICTION
+from vibroimpact.calibration.single_impacts import oblique_impacts
+from vibroimpact.calibration.tunables import law_parameter
+from vibroimpact.calibration.uncertainty import with_nearest_bound
+from vibroimpact.contact.friction.law import FrictionLaw
+from vibroimpact.contact.law import ContactLaw
+from vibroimpact.dynamics.oblique.statement import Oblique
+from vibroimpact.dynamics.problem import Problem
+from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.ranges import Range
+
+_FAR = 1e4  # times the size of a value: that of a contact that sticks, or is stiff
+_SMALL = 1e-2
+
+
+@dataclass(frozen=True)
+class FrictionParameters:
+    """Parameters of a friction law to be fitted.
+
+    Parameters
+    ----------
+    law : FrictionLaw
+        The law as given.
+    names : tuple of str
+        Names of its fields.
+    """
+
+    law: FrictionLaw
+    names: tuple[str, ...]
+
+    @property
+    def units(self) -> tuple[str, ...]:
+        """SI units."""
+        return tuple(self._told(name)["unit"] for name in self.names)
+
+    @property
+    def words(self) -> tuple[str, ...]:
+        """Their meanings."""
+        return tuple(self._told(name)["meaning"] for name in self.names)
+
+    @property
+    def given(self) -> Floats:
+        """The values of the law as given, (K,)."""
+        return np.array([float(getattr(self.law, name)) for name in self.names])
+
+    @property
+    def bounds(self) -> Bounds:
+        """Bounds of the values within which they matter."""
+        sizes, ends = np.array([self._size(name) for name in self.names]), self.allowed.T
+        open_below = [np.isfinite(self._range(name).above) for name in self.names]
+        return Bounds(np.where(open_below, sizes / _FAR, ends[0]), np.minimum(ends[1], _FAR * sizes), _SMALL * sizes)
+
+    @property
+    def allowed(self) -> Floats:
+        """The ends of their ranges, (K, 2)."""
+        return np.array([self._range(name).bounded(np.array([-np.inf, np.inf])) for name in self.names])
+
+    def starts(self) -> Floats:
+        """Return the values from which the search begins, (S, K): all combinations of some of each."""
+        each = []
+        for name, ends in zip(self.names, self.allowed, strict=True):
+            inside = np.isfinite(ends).all()
+            each.append(np.linspace(float(ends[0]), float(ends[1]), 5)[1:-1] if inside else self._size(name) * 2.0 ** np.arange(-4.0, 4.0))
+        return np.stack(np.meshgrid(*each, indexing="ij"), axis=-1).reshape(-1, len(self.names))
+
+    def with_values(self, values: Floats) -> FrictionLaw:
+        """Return the law with values of the parameters, (K,) or (n, K)."""
+        return self.law.changed({name: values[..., place] for place, name in enumerate(self.names)})
+
+    def _told(self, name: str) -> Any:
+        return self.law.__dataclass_fields__[name].metadata
+
+    def _range(self, name: str) -> Range:
+        found: Range = self._told(name)["range"]
+        return found
+
+    def _size(self, name: str) -> float:
+        return float(self._told(name)["example"] or getattr(self.law, name) or 1.0)
+
+
+def friction_parameters(problem: Problem, names: Sequence[str]) -> FrictionParameters:
+    """Return parameters of the friction law of a drop, by their names such as "friction.coefficient".
+
+    Raises
+    ------
+    InputError
+        If there is no friction law, or it has no such parameter.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> ball, wall = vi.Body(mass=0.02, contact_offset=0.01), vi.rigid_plate()
+    >>> oblique = vi.Oblique(velocity=(1.0, 0.0), friction=vi.find_friction_law("coulomb")(coefficient=0.2))
+    >>> law = vi.find_contact_law("newton")(restitution=0.8)
+    >>> friction_parameters(vi.Problem(sphere=ball, plate=wall, laws=(law,), speed=2.0, oblique=oblique), ["friction.coefficient"]).given
+    array([0.2])
+    """
+    law = None if problem.oblique is None else problem.oblique.friction
+    if law is None:
+        raise InputError('the case has no friction; give contact.friction a law, such as { law = "mdr" }', "parameter")
+    known = [f"{FRICTION}{item.name}" for item in fields(law)]
+    for name in names:
+        if name not in known:
+            words = f'{law.name} has no parameter "{name.removeprefix(FRICTION)}"; there are {", ".join(known)}.{did_you_mean(name, known)}'
+            raise InputError(words if name.startswith(FRICTION) else f"{name} is not fitted together with friction", "parameter")
+    if len(set(names)) < len(names):
+        raise InputError("a parameter is named twice", "parameter")
+    return FrictionParameters(law, tuple(name.removeprefix(FRICTION) for name in names))
+
+
+@dataclass(frozen=True)
+class ImpactModel:
+    """Oblique impacts as a function of the parameters of the friction law.
+
+    Parameters
+    ----------
+    problem : Problem
+        The drop, whose bodies and gravity the impacts have.
+    law : ContactLaw
+        The contact law; its arrays have one value an impact.
+    parameters : FrictionParameters
+        The parameters of the friction law.
+    speeds, velocity, spin : array, shape (n,)
+        Approach speeds along the normal [m/s], velocities along x [m/s] and angular velocities about y [rad/s] of the impacts.
+    """
+
+    problem: Problem
+    law: ContactLaw
+    parameters: FrictionParameters
+    speeds: Floats
+    velocity: Floats
+    spin: Floats
+
+    def __call__(self, values: Floats) -> dict[str, Floats]:
+        """Return the quantities of the impacts (S, n), as `oblique_impacts` has them, with values (S, K) of the parameters."""
+        assert self.problem.oblique is not None
+        number = len(self.speeds)
+        which = np.tile(np.arange(number), len(values))
+        oblique = Oblique(
+            velocity=(self.velocity[which], 0.0),
+            spin=(0.0, self.spin[which], 0.0),
+            gravity=self.problem.oblique.gravity,
+            friction=self.parameters.with_values(np.repeat(values, number, axis=0)),
+            inertia_ratio=self.problem.oblique.inertia_ratio,
+        )
+        found = oblique_impacts(self.problem, self.law.take(which), self.speeds[which], oblique)
+        return {name: column.reshape(len(values), number) for name, column in found.items()}
+
+
+def impact_model(problem: Problem, parameters: FrictionParameters, impacts: ObliqueImpacts) -> ImpactModel:
+    """Return the measured impacts as a function of the parameters; with measured separation speeds, the contact law meets each of them."""
+    law, speeds = problem.laws[0], impacts.seen.speeds
+    if impacts.separation_speed is not None:
+        if law.free_parameter is None:
+            words = f"the normal rebound was measured too, and {law.name} has no parameter to meet it with"
+            raise InputError(f"{words}; take another contact law, or leave that column out", "target")
+        alone = replace(problem, oblique=None, laws=(law,))
+        tuned, wanted = law_parameter(alone), {"separation_speed": impacts.separation_speed}
+        seen = from_table(speeds, wanted, None, impacts.seen.labels)
+        weights = {"separation_speed": 1.0}
+        values = match(tuned, speeds, wanted, weights, seen.which).values
+        law = law.changed({tuned.name: with_nearest_bound(tuned, values, speeds, wanted, weights, seen.which)})
+    return ImpactModel(problem, law, parameters, speeds, impacts.velocity, impacts.spin)

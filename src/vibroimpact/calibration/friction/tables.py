@@ -1,0 +1,163 @@
+"""What is told of calibrated friction: sentences, the table of the impacts, and the contents of the files."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from vibroimpact._version import __version__
+from vibroimpact.arrays import Floats
+from vibroimpact.calibration.friction.calibrate import FrictionCalibration
+from vibroimpact.calibration.matchable import ALONG_PLATE
+from vibroimpact.calibration.report import Cells
+from vibroimpact.cases.build import resolved_case
+from vibroimpact.cases.case import Case
+from vibroimpact.runs.tables import formatted_column
+from vibroimpact.units.display import column_texts, digits, fixed, text
+
+_MOST_ROWS = 50
+
+
+def friction_words(found: FrictionCalibration) -> str:
+    """Return the values found as text."""
+    each = zip(found.names, found.values, found.parameters.units, strict=True)
+    return ", ".join(f"{name} = {text(float(value), unit)}" for name, value, unit in each)
+
+
+def together_words(found: FrictionCalibration) -> str:
+    """Return in words what was matched."""
+    every = " and the ".join(ALONG_PLATE[name].phrase for name in found.weights)
+    return f"the {every} of all impacts together is as near to what was measured as can be"
+
+
+def friction_sentences(found: FrictionCalibration) -> list[str]:
+    """Return sentences on the intervals of the values, and on the residuals."""
+    percent, told = f"{100.0 * found.confidence:g} %", []
+    if found.intervals is not None:
+        each = [
+            f"{name} {_interval_words(interval, ends, unit)}"
+            for name, interval, ends, unit in zip(
+                found.names, found.intervals, found.parameters.allowed, found.parameters.units, strict=True
+            )
+        ]
+        way = f"by drawing the measurement {found.bootstrap} times again" if found.bootstrap else "by the profile of the sum of squares"
+        source = "the given standard deviations" if found.impacts.seen.deviations_known else "the scatter of what was measured"
+        told.append(f"At {percent}: {', '.join(each)}. Intervals are {way}, from {source}.")
+    for name, (_, unit, phrase) in ALONG_PLATE.items():
+        if name in found.weights:
+            off = found.outcomes[name] - found.impacts.measured[name]
+            mean, most = (text(float(value), unit, 3) for value in (np.abs(off).mean(), np.abs(off).max()))
+            told.append(f"Computed and measured {phrase} differ by {mean} in the mean and {most} at most.")
+    if found.impacts.seen.deviations_known and math.isfinite(found.scatter):
+        told.append(f"Residuals are {digits(found.scatter, 3)} times as large as their standard deviations.")
+    slip, number = int(found.slips.sum()), len(found.slips)
+    told.append(f"Of {number} impacts {slip} slip throughout; where an impact slips throughout, the coefficient alone counts.")
+    if found.impacts.separation_speed is not None:
+        told.append("The normal rebound was measured too: the contact law meets that of each impact.")
+    return told
+
+
+def given_values_sentences(found: FrictionCalibration) -> list[str]:
+    """Return sentences on the values that the case gives."""
+    told = []
+    for place, (name, unit) in enumerate(zip(found.names, found.parameters.units, strict=True)):
+        value = float(found.given[place])
+        if not math.isfinite(value) or math.isclose(value, found.values[place], rel_tol=1e-3):
+            continue
+        inside = found.intervals is not None and found.intervals[place, 0] <= value <= found.intervals[place, 1]
+        verdict = "which the measurement leaves open" if inside else "which the measurement contradicts"
+        told.append(f"The case gives {name} = {text(value, unit)}{f', {verdict}' if found.intervals is not None else ''}.")
+    return told
+
+
+def friction_table(found: FrictionCalibration) -> Cells:
+    """Return headers with units, and a row per impact."""
+    impacts = found.impacts
+    headers = [("", ""), ("Angle", "deg"), ("Speed", "m/s")]
+    columns = [list(impacts.seen.labels), column_texts(impacts.angle), column_texts(np.hypot(impacts.velocity, impacts.seen.speeds))]
+    for name, (column, _, phrase) in ALONG_PLATE.items():
+        if name not in impacts.measured:
+            continue
+        measured, number = impacts.measured[name], len(impacts.velocity)
+        unit, cells = formatted_column(column, np.concatenate([measured, found.outcomes[name]]))
+        headers += [(phrase.capitalize(), unit), ("computed", unit)]
+        columns += [cells[:number], cells[number:]]
+        if name in found.weights and impacts.seen.deviations_known:
+            headers.append(("off by standard deviations", ""))
+            columns.append([fixed(float(part), 2) for part in (found.outcomes[name] - measured) / _deviations(found, name)])
+        if found.as_given:
+            headers.append(("as the case gives it", unit))
+            columns.append(formatted_column(column, np.concatenate([measured, found.as_given[name]]))[1][number:])
+    headers.append(("Slips throughout", ""))
+    columns.append(["yes" if slips else "no" for slips in found.slips])
+    rows = [list(row) for row in zip(*columns, strict=True)]
+    return headers, rows if len(rows) <= _MOST_ROWS else [*rows[: _MOST_ROWS - 1], ["…", *[""] * (len(headers) - 1)]]
+
+
+def friction_document(case: Case, found: FrictionCalibration) -> dict[str, Any]:
+    """Return the contents of `calibration.json`; None where there is no finite value.
+
+    Parameters
+    ----------
+    case : Case
+        The calibrated case.
+    found : FrictionCalibration
+        Result of its calibration.
+    """
+    ends = np.full((len(found.values), 2), np.nan) if found.intervals is None else found.intervals
+    return {
+        "version": __version__,
+        "name": case.name,
+        "law": found.parameters.law.name,
+        "match": dict(found.weights),
+        "parameters": [
+            {"parameter": name, "unit": unit, "value": float(value), "low": _finite(low), "high": _finite(high), "given": _finite(given)}
+            for name, unit, value, (low, high), given in zip(
+                found.names, found.parameters.units, found.values, ends, found.given, strict=True
+            )
+        ],
+        "degrees_of_freedom": _finite(found.freedom),
+        "scatter": _finite(found.scatter),
+        "confidence": found.confidence,
+        "bootstrap": found.bootstrap,
+        "matched": friction_rows(found),
+        "doubts": list(found.doubts),
+        "case": resolved_case(case),
+    }
+
+
+def friction_rows(found: FrictionCalibration) -> list[dict[str, Any]]:
+    """Return the impacts, one mapping each: how they came, what was measured, and what is computed."""
+    impacts, rows = found.impacts, []
+    for place, label in enumerate(impacts.seen.labels):
+        row: dict[str, Any] = {"label": label, "angle_deg": float(impacts.angle[place])}
+        row["approach_speed_m_s"] = float(impacts.seen.speeds[place])
+        row["approach_velocity_x_m_s"] = float(impacts.velocity[place])
+        row["spin_y_before_rad_s"] = float(impacts.spin[place])
+        for name, (column, *_) in ALONG_PLATE.items():
+            if name in impacts.measured:
+                row[f"measured_{column}"] = _finite(impacts.measured[name][place])
+            if name in found.weights and impacts.seen.deviations_known:
+                row[f"standard_deviation_{column}"] = float(_deviations(found, name)[place])
+            row[column] = _finite(found.outcomes[name][place])
+            if found.as_given:
+                row[f"as_given_{column}"] = _finite(found.as_given[name][place])
+        rows.append({**row, "slips_throughout": bool(found.slips[place])})
+    return rows
+
+
+def _deviations(found: FrictionCalibration, name: str) -> Floats:
+    return np.asarray(np.linalg.norm(found.impacts.seen.noise[name], axis=1))
+
+
+def _interval_words(interval: Floats, ends: Floats, unit: str) -> str:
+    if np.array_equal(interval, ends):
+        return "of any value"
+    low, high = (text(float(end), unit) for end in interval)
+    return f"{low} to {high}" if np.isfinite(interval[1]) else f"at least {low}"
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if math.isfinite(value) else None
