@@ -174,7 +174,7 @@ def _motion_words(motion: Mapping[str, Any]) -> str:
     if (file := motion.get("file")) is not None:
         words = [f"as in {shortened(visible(Path(file).name), 60)}"]
     else:
-        words = [f"amplitude {_given(float(motion['amplitude']), 'm')}, frequency {_given(float(motion['frequency']), 'Hz')}"]
+        words = [f"amplitude {as_given(float(motion['amplitude']), 'm')}, frequency {as_given(float(motion['frequency']), 'Hz')}"]
         words += [f"phase {np.degrees(float(motion['phase'])):.4g}°"] if motion.get("phase") else []
     along = [float(part) for part in motion["direction"]]
     return ", ".join([*words, "along the normal" if not any(along[:2]) else f"along ({', '.join(f'{part:.4g}' for part in along)})"])
