@@ -129,7 +129,27 @@ def test_a_soft_sphere_comes_to_rest_on_a_plate_that_moves() -> None:
     assert later["position_m"] - 0.01 == pytest.approx(later["surface_m"] - sag, abs=1e-15)
     assert later["velocity_m_s"] == pytest.approx(later["surface_velocity_m_s"], abs=1e-12)
     assert later["force_N"] == pytest.approx(0.1 * (9.8 - (50.0 * np.pi) ** 2 * later["surface_m"]), rel=1e-12)
-    assert response.status.endswith("on the sphere moves with the plate, which does not fall away from under it any more.")
+    assert response.status.endswith("on the sphere moves with the plate, which does not fall away from under it before the run ends.")
+
+
+def test_a_run_that_ends_in_a_ride_ends_on_time() -> None:
+    strong = vi.PlateMotion(amplitude=5e-4, frequency=25.0)
+    response = vi.simulate(problem(Newton(restitution=0.0), impacts=None, duration=0.121, motion=strong))
+    assert response.end_time[0] == 0.121
+    last = response.at(0.121)
+    assert last["position_m"] - 0.01 == pytest.approx(last["surface_m"], abs=1e-15)
+    touch = float(response.impacts["time_s"][-1])
+    assert response.impacts["rebound_height_m"][-1] == pytest.approx(0.01 + response.problem.surface(touch)[0], abs=1e-12)
+
+
+def test_a_hard_ball_rides_on_a_tabulated_motion(tmp_path: Path) -> None:
+    time = np.linspace(0.0, 2.0, 2001)
+    table = written(tmp_path, time, 2e-4 * np.sin(50.0 * np.pi * time))
+    hard = {"contact": {"law": "newton", "restitution": 0.3}, "run": {}}
+    response = vi.simulate(vi.read_case(with_values(table, hard)))
+    assert response.outcomes == (vi.Outcome.REST_SPEED,)
+    assert response.end_time[0] == pytest.approx(2.0)
+    assert response.energy["closure_relative"] <= 1e-9
 
 
 def test_without_gravity_a_sphere_leaves_a_plate_that_moves() -> None:

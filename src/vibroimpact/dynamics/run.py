@@ -93,9 +93,8 @@ class Run:
         done = len(self.rows) / (self.problem.impacts or MOST_IMPACTS)
         if self.problem.duration is not None:
             done = max(done, float(self.time[self.moving].min()) / self.problem.duration)
-        if (
-            self.problem.impacts is None and self.rows and not self.problem.shaken
-        ):  # up to rest: the logarithm of the speed falls about linearly
+        # up to rest: the logarithm of the speed falls about linearly
+        if self.problem.impacts is None and self.rows and not self.problem.shaken:
             first = self.rows.first["approach_speed_m_s"][self.moving]
             slowed = np.log(first / self.velocity[self.moving]) / np.log(first / self.rest_speed[self.moving])
             done = max(done, float(np.nanmin(np.clip(slowed, 0.0, 1.0), initial=1.0)))
@@ -172,7 +171,10 @@ class Run:
         self.dissipated[drops] += lost - row["plastic_work_J"][drops]
         self.plastic[drops] += row["plastic_work_J"][drops]
         separation = row["separation_speed_m_s"][drops]
-        rising = np.maximum(self.velocity[drops], 0.0) if self.problem.shaken else separation
+        rising = separation
+        if self.problem.shaken:  # where it leaves, its velocity is not that relative to the plate
+            leaves = ~self.bodies.rests(drops, self.velocity[drops], self.rest_speed[drops])
+            rising = np.where(np.isnan(separation), np.nan, np.maximum(self.velocity[drops], 0.0) * leaves)
         row["restitution_achieved"][drops] = separation / speed
         row["energy_lost_J"][drops] = lost
         with np.errstate(divide="ignore", invalid="ignore"):

@@ -59,7 +59,8 @@ def status_of(run: Ended) -> str:
         return f"Failed {after}: {why_failed(run.energy)}"
     if run.problem.shaken:
         when = _time(run, float(run.rest.time[0]), 7)
-        return f"At rest {after}: from {when} s on the sphere moves with the plate, which does not fall away from under it any more."
+        until = "before the run ends" if run.problem.duration else "again"
+        return f"At rest {after}: from {when} s on the sphere moves with the plate, which does not fall away from under it {until}."
     return f"At rest {after}: {_at_rest(run)}{_moves_on(run)}"
 
 

@@ -85,7 +85,10 @@ class ShakenBodies(RigidBodies):
         return Ride(ends, self.mass[drops], gravity, motion)
 
     def _time_to_launch(self, drop: int, time: float) -> float:
-        """Return how long it takes from a time on until the downward acceleration of the plate reaches gravity [s]; infinite if never."""
+        """Return how long it takes from a time on until the downward acceleration of the plate reaches gravity [s].
+
+        It is infinite if the run ends before.
+        """
         system, driven = self.systems[drop], slice(1, None)
         omega, none = system.angular_frequency[driven], np.zeros(0)
         no = np.zeros(len(omega), dtype=bool)
@@ -102,11 +105,11 @@ class ShakenBodies(RigidBodies):
             mobility=none,
             local_contact=np.zeros(0, dtype=np.intp),
         )
-        state = self._state(system, time, 0.0, 0.0)
-        return next_touch(FreeMotion(pressing, State(state.displacement[driven], state.velocity[driven], none)), 0.0, np.inf)
+        state, until = self._state(system, time, 0.0, 0.0), (self.problem.duration or np.inf) - time
+        return next_touch(FreeMotion(pressing, State(state.displacement[driven], state.velocity[driven], none)), 0.0, until)
 
     def rests(self, drops: Drops, velocity: Floats, rest_speed: Floats) -> Bools:
-        """Return which drops ride on the plate for good."""
+        """Return which drops ride on the plate until the run ends."""
         return np.asarray(np.isfinite(self.since[drops]))
 
     def static_state(self, drops: Drops, law: ContactLaw, weight: Floats, energy: Floats) -> dict[str, Floats]:
