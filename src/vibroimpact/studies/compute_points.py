@@ -193,7 +193,8 @@ def _noise(sensor: Sensor, number: int) -> Sensor:
 def _columns(response: Response, keep: tuple[str, ...]) -> dict[str, NDArray[Any]]:
     """Return peaks, outcomes, and if kept the impact table of the drops of a response."""
     impacts = {name: np.atleast_2d(values) for name, values in response.impacts.items()}
-    first = {peak: impacts[name][:, 0] if impacts[name].size else np.full(len(response), np.nan) for peak, name in FIRST.items()}
+    firsts = {peak: impacts[name] for peak, name in FIRST.items() if name in impacts}
+    first = {peak: values[:, 0] if values.size else np.full(len(response), np.nan) for peak, values in firsts.items()}
     peaks = {
         "number_of_impacts": np.isfinite(impacts["impact"]).sum(axis=1).astype(float),
         "end_time_s": response.end_time,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Literal, NamedTuple
 
-from vibroimpact.dynamics.columns import IMPACT_COLUMNS
+from vibroimpact.dynamics.columns import ALL_IMPACT_COLUMNS
 
 
 class PeakVariable(NamedTuple):
@@ -35,7 +35,7 @@ class PeakVariable(NamedTuple):
 
 def _first(column: str, meaning: str, title: str = "", short: str = "", *, is_drawn: bool = True) -> PeakVariable:
     """Return the value of a column at the first impact; unit and label are those of the column unless given."""
-    source = IMPACT_COLUMNS[column]
+    source = ALL_IMPACT_COLUMNS[column]
     return PeakVariable(
         source.unit, meaning, title or f"{source.label}, first impact", short or source.label, column, "first", is_drawn=is_drawn
     )
@@ -43,13 +43,13 @@ def _first(column: str, meaning: str, title: str = "", short: str = "", *, is_dr
 
 def _largest(column: str, scope: str) -> PeakVariable:
     """Return the maximum of a column over all impacts; `scope` completes its meaning."""
-    source = IMPACT_COLUMNS[column]
+    source = ALL_IMPACT_COLUMNS[column]
     return PeakVariable(source.unit, f"{source.meaning} {scope}", source.label, source.label, column, "largest")
 
 
 def _total(column: str, meaning: str, title: str) -> PeakVariable:
     """Return the sum of a column over all impacts."""
-    source = IMPACT_COLUMNS[column]
+    source = ALL_IMPACT_COLUMNS[column]
     return PeakVariable(source.unit, meaning, title, source.label, column, "total")
 
 
@@ -57,6 +57,10 @@ PEAK_TABLE: dict[str, PeakVariable] = {
     "largest_force_N": _largest("max_force_N", "of all impacts"),
     "largest_indentation_m": _largest("max_indentation_m", "of all impacts"),
     "first_restitution_achieved": _first("restitution_achieved", "restitution achieved at the first impact"),
+    "first_tangential_restitution": _first(
+        "tangential_restitution", "velocity of the centre along the plate after over before, at the first impact"
+    ),
+    "first_rebound_angle_deg": _first("rebound_angle_deg", "angle of the first rebound from the normal, positive onwards"),
     "first_duration_s": _first("duration_s", "duration of the first contact", "Duration of the first contact", "Duration of contact"),
     "total_energy_lost_J": _total(
         "energy_lost_J", "energy dissipated in all contacts, without what goes into vibration", "Energy lost in all contacts"
@@ -87,7 +91,7 @@ PEAK_TABLE: dict[str, PeakVariable] = {
         is_drawn=False,
     ),
 }
-"""The peaks by name, the most important first."""
+"""The peaks by name, the most important first. Those of a column that the drops have not, as of oblique impacts, are left out."""
 
 PEAKS: dict[str, tuple[str, str]] = {name: (peak.unit, peak.meaning) for name, peak in PEAK_TABLE.items()}
 """Unit and meaning of each peak."""

@@ -3,19 +3,34 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.calibration.friction.calibrate import FrictionCalibration
+from vibroimpact.calibration.friction.parameters import ImpactModel
 from vibroimpact.calibration.matchable import ALONG_PLATE
+from vibroimpact.cases.reader import read_case
 from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.marks import Line, Mark, Points
+from vibroimpact.dynamics.oblique.statement import SOLID_SPHERE
+from vibroimpact.runs.slip_map import moduli_ratio, slip_map
 
 _SMOOTH = 121
 _ALIKE = 0.05
 """Relative spread of the speeds up to which they count as one."""
+
+
+class Curve(NamedTuple):
+    """Computed impacts over the angle of incidence [deg]: their model and their quantities, name and role."""
+
+    angle: Floats
+    model: ImpactModel
+    outcomes: dict[str, Floats]
+    name: str
+    role: str
 
 
 def friction_charts(found: FrictionCalibration) -> list[Chart]:
@@ -29,19 +44,20 @@ def friction_charts(found: FrictionCalibration) -> list[Chart]:
     Returns
     -------
     list of Chart
-        `angle`: tangential restitution, rebound angle, and what else was measured, over the angle of incidence.
+        `angle`: tangential restitution, rebound angle, and what else was measured, over the angle of incidence; `slip_map`, where the
+        moduli of the materials are known.
     """
-    return [_angle_chart(found)]
-
-
-def _angle_chart(found: FrictionCalibration) -> Chart:
-    impacts, axis = found.impacts, Axis("Angle of incidence from the normal", "deg")
     curves = _curves(found)
+    return [_angle_chart(found, curves), *_slip_charts(found, curves)]
+
+
+def _angle_chart(found: FrictionCalibration, curves: list[Curve]) -> Chart:
+    impacts, axis = found.impacts, Axis("Angle of incidence from the normal", "deg")
     panels = []
     for name, (_, unit, phrase) in ALONG_PLATE.items():
         if name not in impacts.measured and name not in ("tangential_restitution", "rebound_angle"):
             continue
-        marks: list[Mark] = [Line(angle, outcomes[name], words, role) for angle, outcomes, words, role in curves]
+        marks: list[Mark] = [Line(angle, outcomes[name], words, role) for angle, _, outcomes, words, role in curves]
         if not curves:
             marks.append(Points(impacts.angle, found.outcomes[name], "computed", "other mark", impacts.seen.labels))
         if name in impacts.measured:
@@ -58,8 +74,45 @@ def _angle_chart(found: FrictionCalibration) -> Chart:
     return Chart("angle", "Measured and computed over the angle of incidence", rows, caption, height=3.0)
 
 
-def _curves(found: FrictionCalibration) -> list[tuple[Floats, dict[str, Floats], str, str]]:
-    """Return angles [deg], quantities over them, name and role of the curves; none where speeds or spins of the impacts differ."""
+def _slip_charts(found: FrictionCalibration, curves: list[Curve]) -> list[Chart]:
+    """Return the dimensionless map of the impacts; none where its scale is not known."""
+    law, source, model, impacts = found.parameters.with_values(found.values), found.problem.source, found.model, found.impacts
+    ratio = moduli_ratio(law, None if source is None else read_case(source))
+    scale, radius = float(law.coefficient) * ratio, float(found.problem.sphere.contact_offset)
+    if not scale > 0.0:
+        return []
+    whole = 1.0 + 1.0 / SOLID_SPHERE  # of the change of the centre's velocity is that of the contact point
+
+    def psi(one: ImpactModel, velocity: Floats) -> tuple[Floats, Floats]:
+        """Return dimensionless slips before and after impacts, with velocities along the plate after them [m/s]."""
+        before = one.velocity - radius * one.spin
+        return before / (scale * one.speeds), (before + whole * (velocity - one.velocity)) / (scale * one.speeds)
+
+    marks: list[Mark] = [
+        Line(*psi(one, outcomes["separation_velocity_x"]), words, role) for _, one, outcomes, words, role in curves if role == "fit"
+    ]
+    before, computed = psi(model, found.outcomes["separation_velocity_x"])
+    if not marks:
+        marks.append(Points(before, computed, "computed", "other mark", impacts.seen.labels))
+    marks.append(Points(*psi(model, _measured_velocity(found, radius)), "measured", "matched", impacts.seen.labels))
+    restitution = found.outcomes["separation_speed"] / impacts.seen.speeds
+    return [slip_map(marks, before, restitution, np.full(len(before), ratio), "Single impacts, measured and computed with what was found.")]
+
+
+def _measured_velocity(found: FrictionCalibration, radius: float) -> Floats:
+    """Return the velocities along the plate after the impacts [m/s] by what was matched."""
+    impacts, matched = found.impacts, found.impacts.seen.wanted
+    if "tangential_restitution" in matched:
+        return np.asarray(matched["tangential_restitution"] * impacts.velocity)
+    if "separation_velocity_x" in matched:
+        return matched["separation_velocity_x"]
+    if "rebound_angle" in matched:
+        return np.asarray(found.outcomes["separation_speed"] * np.tan(np.radians(matched["rebound_angle"])))
+    return np.asarray(impacts.velocity - SOLID_SPHERE * radius * (matched["spin_y_after"] - impacts.spin))
+
+
+def _curves(found: FrictionCalibration) -> list[Curve]:
+    """Return the curves over the angle of incidence; none where speeds or spins of the impacts differ."""
     impacts = found.impacts
     along, across = impacts.seen.speeds, np.abs(impacts.velocity)
     speeds = {"total": np.hypot(along, across), "normal": along}
@@ -83,4 +136,4 @@ def _curves(found: FrictionCalibration) -> list[tuple[Floats, dict[str, Floats],
     curves = [(found.values, "computed", "fit")]
     if found.as_given and not np.allclose(found.given, found.values, rtol=1e-3):
         curves.insert(0, (found.given, "as the case gives it", "muted"))
-    return [(angle, {name: row[0] for name, row in model(values[None]).items()}, words, role) for values, words, role in curves]
+    return [Curve(angle, model, {name: row[0] for name, row in model(values[None]).items()}, words, role) for values, words, role in curves]

@@ -12,6 +12,9 @@ from vibroimpact.studies.study import Study
 
 _WORDS = {
     "contact": "contact law",
+    "contact.friction.coefficient": "coefficient of friction",
+    "contact.friction.law": "friction law",
+    "contact.friction.slip_restitution": "restitution of the slip",
     "contact.finite_sphere": "correction for a finite sphere",
     "contact.full_damping_penetration": "full damping penetration",
     "contact.law": "contact law",
@@ -19,12 +22,14 @@ _WORDS = {
     "contact.local_damping": "damping of the local element",
     "contact.local_stiffness": "stiffness of the local element",
     "contact.restitution": "restitution asked",
+    "drop.angle": "angle of incidence from the normal",
     "drop.gravity": "gravity",
     "drop.height": "drop height",
     "drop.position.x": "place of the drop, x",
     "drop.position.y": "place of the drop, y",
     "drop.speed": "speed at first touch",
     "plate.damping": "damping ratio of the plate",
+    "plate.inclination": "inclination of the plate",
     "plate.element": "kind of element of the plate",
     "plate.max_frequency": "highest frequency of the plate's modes",
     "plate.modes": "number of modes of the plate",
@@ -39,6 +44,8 @@ _WORDS = {
     "plate.material": "material of the plate",
 }
 """What a reader calls a key whose path or meaning says it less well."""
+
+_DIGITS_OF_ANGLES = 12  # so that 20 deg, given so, is 20
 
 _UNSAID = ("material", "size")
 """Tables of a body whose keys are properties of the body."""
@@ -55,9 +62,9 @@ class StudyAxis:
     words : str
         What it is, such as "radius of the sphere".
     unit : str
-        SI unit; "1" for a plain number.
+        SI unit, but "deg" of an angle; "1" for a plain number.
     values : array
-        Levels of a grid, or one value per drop; numbers in SI units, or names.
+        Levels of a grid, or one value per drop; numbers in that unit, or names.
     """
 
     key: str
@@ -78,10 +85,13 @@ class StudyAxis:
 
 def study_axes(study: Study) -> list[StudyAxis]:
     """Return the axes of a study in order."""
-    return [
-        StudyAxis(key, key_words(key, study.meanings[key][1]), study.meanings[key][0], _as_numbers(values))
-        for key, values in study.coordinates.items()
-    ]
+    return [_axis(key, *study.meanings[key], _as_numbers(values)) for key, values in study.coordinates.items()]
+
+
+def _axis(key: str, unit: str, meaning: str, values: NDArray[Any]) -> StudyAxis:
+    if unit == "rad":
+        unit, values = "deg", np.degrees(values).round(_DIGITS_OF_ANGLES)
+    return StudyAxis(key, key_words(key, meaning), unit, values)
 
 
 def key_words(key: str, meaning: str) -> str:

@@ -18,6 +18,7 @@ from vibroimpact.studies.report.restitution import restitution_chart
 from vibroimpact.studies.report.sensitivity import Sensitivity, sensitivity_of
 from vibroimpact.studies.report.sensitivity_chart import sensitivity_chart
 from vibroimpact.studies.report.signals import signal_charts
+from vibroimpact.studies.report.slip_chart import slip_chart
 from vibroimpact.studies.study import Study
 
 _MOST_RESULTS = 6  # of a chart of the sensitivity
@@ -39,7 +40,8 @@ def study_charts(study: Study, outputs: list[Output] | None = None, found: Sensi
     -------
     list of Chart
         `curves` or `maps` of a grid; `inputs` and `outputs` of drawn points; of many keys one by the name of each result; `restitution`,
-        `sensitivity`, and one per sensor whose signals were kept. Left out is what has nothing to show.
+        `slip_map` of oblique impacts that were kept, `sensitivity`, and one per sensor whose signals were kept. Left out is what has
+        nothing to show.
     """
     if outputs is None:
         outputs = study_outputs(study)
@@ -49,7 +51,7 @@ def study_charts(study: Study, outputs: list[Output] | None = None, found: Sensi
     charts: list[Chart | None] = []
     if drawn and axes:
         charts += _of_grid(study, axes, drawn, found) if study.is_grid else _of_samples(study, axes, drawn)
-    charts.append(restitution_chart(study))
+    charts += [restitution_chart(study), slip_chart(study)]
     if found is not None:
         charts.append(sensitivity_chart(study, found, drawn[:_MOST_RESULTS]))
     return [*(chart for chart in charts if chart is not None), *signal_charts(study)]

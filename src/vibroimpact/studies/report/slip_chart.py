@@ -1,0 +1,68 @@
+"""Chart of a study of oblique drops: the dimensionless map of their first impacts."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from vibroimpact.arrays import Floats, Indices
+from vibroimpact.cases.oblique import friction_law_of
+from vibroimpact.charts.chart import Chart
+from vibroimpact.charts.marks import Points
+from vibroimpact.dynamics.columns import OBLIQUE_IMPACT_COLUMNS
+from vibroimpact.runs.slip_map import moduli_ratio, slip_map, slips
+from vibroimpact.studies.report.axes import study_axes
+from vibroimpact.studies.report.drops import MOST_DROPS, drop_texts, grouped, values_at
+from vibroimpact.studies.report.outputs import drop_numbers, sampled_output, sampled_places
+from vibroimpact.studies.study import Study
+from vibroimpact.studies.swept_keys import case_at
+
+_COLUMNS = (*tuple(OBLIQUE_IMPACT_COLUMNS)[2:12], "approach_speed_m_s", "restitution_achieved")
+_OF_THE_CONTACT = ("sphere.radius", "sphere.material", "plate.radius", "plate.material", "contact.")
+"""Beginnings of the keys on which radius, coefficient and moduli depend."""
+
+
+def slip_chart(study: Study) -> Chart | None:
+    """Return the dimensionless map of the first impacts; None if the study did not keep oblique impacts, or they have no friction."""
+    if any(name not in study.shapes or not study.shapes[name][-1] for name in _COLUMNS):
+        return None
+    numbers = drop_numbers(study, *sampled_places(study, MOST_DROPS))
+    impacts = {name: sampled_output(study, name, MOST_DROPS).reshape(len(numbers), -1)[:, 0] for name in _COLUMNS}
+    pairs = _pairs(study, numbers)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        scale = pairs.coefficient * pairs.ratio * impacts["approach_speed_m_s"]
+        before, after = (slip / scale for slip in slips(impacts, pairs.radius))
+    there = np.flatnonzero(np.isfinite(before) & np.isfinite(after))
+    if not there.size:
+        return None
+    told = {"Slip before, ψ": ("1", before[there]), "Slip after, ψ": ("1", after[there])}
+    axes = [axis for axis in study_axes(study) if axis.varies]
+    groups = grouped(study, axes, numbers[there], drop_texts(study, told, numbers[there]))
+    marks = [Points(before[there][one.chosen], after[there][one.chosen], one.name, one.role, one.texts, one.keys) for one in groups]
+    restitution, ratio = impacts["restitution_achieved"][there], pairs.ratio[there]
+    return slip_map(marks, before[there], restitution, ratio, "The first impact of each drop a mark.")
+
+
+class _Pairs(NamedTuple):
+    """Radius of the sphere [m], coefficient of friction and E*/G* of drops; NaN where they are not known."""
+
+    radius: Floats
+    coefficient: Floats
+    ratio: Floats
+
+
+def _pairs(study: Study, numbers: Indices) -> _Pairs:
+    """Return what the contacts of drops are; each combination of the keys on which it depends is read once."""
+    table = {key: value for key, value in study.table.items() if key != "sweep"}
+    first = {key: values[0] for key, values in study.coordinates.items()}
+    axes = [replace(axis, values=study.coordinates[axis.key]) for axis in study_axes(study) if axis.key.startswith(_OF_THE_CONTACT)]
+    rows = list(zip(*(values_at(study, axis, numbers).tolist() for axis in axes), strict=True)) or [()] * len(numbers)
+    found = {}
+    for row in dict.fromkeys(rows):
+        case = case_at(table, {**first, **dict(zip((axis.key for axis in axes), row, strict=True))})
+        law = friction_law_of(case)
+        known = (np.nan, np.nan) if law is None else (law.coefficient, moduli_ratio(law, case))
+        found[row] = (case.sphere.radius, *known)
+    return _Pairs(*np.array([found[row] for row in rows], dtype=float).T)
