@@ -57,6 +57,7 @@ if TYPE_CHECKING:
     from vibroimpact.contact.registry import find_contact_law as find_contact_law
     from vibroimpact.contact.registry import find_friction_law as find_friction_law
     from vibroimpact.contact.registry import friction_laws as friction_laws
+    from vibroimpact.dynamics.air import Air as Air
     from vibroimpact.dynamics.local_element import identify_local_element as identify_local_element
     from vibroimpact.dynamics.local_element import local_element_deviations as local_element_deviations
     from vibroimpact.dynamics.oblique.statement import Oblique as Oblique
@@ -116,6 +117,7 @@ if TYPE_CHECKING:
     from vibroimpact.units.reading import to_si as to_si
 
 _HOME = {
+    "Air": "dynamics.air",
     "Accelerometer": "dynamics.sensors.sensor",
     "Body": "bodies.body",
     "BodyModes": "cases.elastic.modes",

@@ -37,7 +37,7 @@ class ResolvedPlate(ResolvedBody, total=False):
 
 
 class ResolvedDrop(TypedDict, total=False):
-    """The drop: height or speed [m], [m/s], its angle [rad] or a velocity, spin [rad/s], position [m], gravity [m/s^2]."""
+    """The drop: height or speed [m], [m/s], its angle [rad] or a velocity, spin [rad/s], position [m], gravity [m/s^2], air."""
 
     height: Array
     speed: Array
@@ -46,6 +46,7 @@ class ResolvedDrop(TypedDict, total=False):
     spin: Sequence[Array]
     position: Sequence[Array]
     gravity: Array
+    air: Mapping[str, Array]
     same_spot: bool
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.calibration.flights import EndSpeeds, ReturnFlight
-from vibroimpact.dynamics.air import drag
+from vibroimpact.dynamics.air import Air
 from vibroimpact.errors import InputError
 
 _POINTS = 513  # of a table; cubic interpolation errs by 1e-9 for a fall of 4 m
@@ -24,7 +24,7 @@ class AirFlights:
     r"""Vertical flights of a sphere in still air.
 
     Below the top of a flight, at a depth s, :math:`v\,dv/ds = g - a(v)` on the way down and :math:`g + a(v)` on the way up, with
-    the drag deceleration a of `vibroimpact.dynamics.air.drag`. Both equations are integrated once over the square root of s, in which
+    the drag deceleration a of `vibroimpact.dynamics.air`. Both equations are integrated once over the square root of s, in which
     speeds and times are smooth, and then interpolated by cubic Hermite splines.
 
     Parameters
@@ -35,6 +35,8 @@ class AirFlights:
         Radius [m] and density [kg/m^3] of the sphere.
     highest : float
         The largest rise to be tabulated [m].
+    air : Air
+        What it flies through; by default air at 20 C and sea level.
 
     Raises
     ------
@@ -52,16 +54,17 @@ class AirFlights:
     radius: float
     density: float
     highest: float
+    air: Air = Air()
 
     def speed_after_fall(self, height: Floats) -> tuple[Floats, Floats]:
         """Return the speed after a fall from rest through a height [m/s], and its derivative with respect to the height [1/s]."""
         speed = self._within(self._tables.down, height)
-        return speed, (self.gravity - drag(speed, self.radius, self.density)) / speed
+        return speed, (self.gravity - self.air.drag(speed, self.radius, self.density)) / speed
 
     def speed_to_rise(self, height: Floats) -> tuple[Floats, Floats]:
         """Return the initial speed needed to rise by a height [m/s], and its derivative with respect to the height [1/s]."""
         speed = self._within(self._tables.up, height)
-        return speed, (self.gravity + drag(speed, self.radius, self.density)) / speed
+        return speed, (self.gravity + self.air.drag(speed, self.radius, self.density)) / speed
 
     def depth_at(self, time: Floats) -> tuple[Floats, Floats]:
         """Return the depth below the apex [m] at a time relative to the apex [s], and the downward velocity [m/s]."""
@@ -111,7 +114,7 @@ class AirFlights:
         for sign, (speed, _) in ((1.0, up), (-1.0, down)):
             with np.errstate(invalid="ignore"):
                 slow = np.where(root > 0.0, 2.0 * root / speed, np.sqrt(2.0 / self.gravity))
-            slopes.append((slow * (self.gravity + sign * drag(speed, self.radius, self.density)), slow))
+            slopes.append((slow * (self.gravity + sign * self.air.drag(speed, self.radius, self.density)), slow))
         times = up[1] + down[1]
         by_root = slopes[0][1] + slopes[1][1]
         clock = np.concatenate([-up[1][:0:-1], down[1]])
@@ -133,7 +136,7 @@ class AirFlights:
 
         def slope(root: float, state: Floats) -> list[float]:
             slow = 2.0 * root / state[0]
-            return [slow * (self.gravity + sign * float(drag(state[0], self.radius, self.density))), slow]
+            return [slow * (self.gravity + sign * float(self.air.drag(state[0], self.radius, self.density))), slow]
 
         def too_fast(root: float, state: Floats) -> float:
             return float(state[0]) - _FASTEST

@@ -12,7 +12,7 @@ from vibroimpact.calibration.flights import Flights
 from vibroimpact.calibration.matchable import MATCHABLE
 from vibroimpact.calibration.matching import Tunable
 from vibroimpact.calibration.observations import Observations
-from vibroimpact.calibration.single_impacts import first_approach_speed
+from vibroimpact.calibration.single_impacts import first_approach_speed, return_speeds
 from vibroimpact.calibration.speed_function import SpeedFunction
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.simulate import simulate
@@ -65,7 +65,9 @@ def _impact_sequence(
         speed = float(found["next_speed"][0])
         if not speed > 0.0:
             break
-        if flights is not None:
+        if flights is None:
+            speed = float(return_speeds(tunable.drop(value), np.array([speed]))[0])
+        else:
             speed = float(flights.flight(np.asarray(speed)).return_speed)
     return {name: np.array([row[name] for row in rows]) for name in rows[0]}
 

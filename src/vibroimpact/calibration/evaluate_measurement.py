@@ -14,7 +14,7 @@ from vibroimpact.calibration.observations import Observations
 from vibroimpact.calibration.restitution_limit import measured_restitutions
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.rigid import touch_speed
-from vibroimpact.dynamics.air import AIR_DENSITY
+from vibroimpact.dynamics.air import Air
 from vibroimpact.errors import InputError
 
 _MATTERS = 0.002  # relative change of a restitution by drag above which a warning is given
@@ -31,25 +31,32 @@ class Measurement(NamedTuple):
 
 def speed_at_touch(case: Case, flights: Flights | None) -> float:
     """Return the speed at first touch of a case [m/s], with drag if flights are given and the case gives the height."""
-    if flights is None or case.drop.height is None:
+    if flights is None or case.drop.height is None or case.drop.air is not None:
         return touch_speed(case)
     return float(flights.speed_after_fall(np.array(case.drop.height - case.sphere.radius))[0])
 
 
 def evaluate(case: Case, measurement: Measurement, air: bool | None) -> Observations:
-    """Return the evaluated measurement, with drag if `air`; if `air` is None, without drag and with a warning where drag matters.
+    """Return the evaluated measurement, with drag if `air`, or if the drop of the case has it.
+
+    If neither says so, it is without drag, and with a warning where drag matters.
 
     Raises
     ------
     InputError
-        If the measurement shows no impacts, or flights that are impossible in air.
+        If the measurement shows no impacts, or flights that are impossible in air, or the case has air and `air` is False.
     """
+    own = case.drop.air
+    if own is not None and air is False:
+        raise InputError("the sphere flies through air, as drop.air says; leave one of them out", "air")
     if case.drop.gravity == 0.0:  # no flight returns
         return measurement.evaluated(None)
     highest = max(measurement.highest, (case.drop.height or 0.0) - case.sphere.radius, 0.5 * touch_speed(case) ** 2 / case.drop.gravity)
-    flights = AirFlights(case.drop.gravity, case.sphere.radius, case.sphere.material.density, _ROOM * highest)
-    if air:
-        note = f"Flights have the drag of air ({AIR_DENSITY:g} kg/m³; Clift and Gauvin)."
+    through = Air() if own is None else own.air()
+    flights = AirFlights(case.drop.gravity, case.sphere.radius, case.sphere.material.density, _ROOM * highest, through)
+    if air or own is not None:
+        source = "Clift and Gauvin" if through.drag_coefficient is None else f"drag coefficient {through.drag_coefficient:g}"
+        note = f"Flights have the drag of air ({through.density:g} kg/m³; {source})."
         seen = measurement.evaluated(flights)
         heights = " Rebound heights are those that the sphere would reach without it." if "rebound_height" in seen.wanted else ""
         return replace(seen, notes=(note + heights, *seen.notes))

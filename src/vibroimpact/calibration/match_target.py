@@ -17,7 +17,7 @@ from vibroimpact.calibration.fitting import Fit, distinct, fit_observations, fit
 from vibroimpact.calibration.matchable import MATCHABLE
 from vibroimpact.calibration.matching import Tunable, match
 from vibroimpact.calibration.observations import Observations, with_noise_scale
-from vibroimpact.calibration.single_impacts import batched_law, single_impacts
+from vibroimpact.calibration.single_impacts import batched_law, return_speeds, single_impacts
 from vibroimpact.calibration.uncertainty import bootstrap_intervals, default_draws, undetermined_doubts, with_nearest_bound
 from vibroimpact.calibration.unreachable import check_reached
 from vibroimpact.dynamics.problem import Problem
@@ -75,7 +75,7 @@ def match_drop(
         if set(weights) != {"separation_speed"}:
             break  # the rebound is not matched exactly: the approach speeds remain those of the target
         # a law that releases before the overlap has vanished returns slightly faster than it separated
-        after = tuned.respond(at, values, np.arange(len(at)))["next_speed"][:-1]
+        after = return_speeds(problem, tuned.respond(at, values, np.arange(len(at)))["next_speed"][:-1])
         if np.allclose(after, at[1:], rtol=1e-10, atol=0.0):
             break
         at = np.append(at[0], after)

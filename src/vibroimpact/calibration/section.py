@@ -184,8 +184,8 @@ class CalibrateSection(Section):
     )
     air: StrictBool | None = Field(
         None,
-        description="whether the sphere was measured in air, whose drag its flights then have; without this key they are those of a "
-        "vacuum, and a doubt says where drag matters",
+        description="whether the sphere was measured in air, whose drag its flights then have, as drop.air says, or at 20 C and sea "
+        "level; without both keys they are those of a vacuum, and a doubt says where drag matters",
     )
     match: Annotated[Any, BeforeValidator(_read_match), JsonSchema("what of an impact is matched", _match_schema)] = Field(
         None, description="what of an impact is matched: one, or a table of several with weights; by default the rebound, if it is there"

@@ -10,6 +10,7 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.calibration.matchable import ALONG_PLATE, MATCHABLE, MatchableQuantity
 from vibroimpact.contact.law import ContactLaw
+from vibroimpact.dynamics.flight_in_air import flights_of, speed_of_fall
 from vibroimpact.dynamics.oblique.statement import Oblique
 from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.dynamics.problem import Problem
@@ -37,8 +38,8 @@ def single_impacts(problem: Problem, law: ContactLaw, speeds: Floats) -> dict[st
     Returns
     -------
     dict of str to array, shape (n,)
-        By the names of `MATCHABLE`, and `next_speed`, the approach speed of the next impact in a vacuum [m/s]. Quantities of an impact
-        that could not be computed are NaN.
+        By the names of `MATCHABLE`, the rebound height as in a vacuum, and `next_speed`, the approach speed of the next
+        impact in a vacuum [m/s]. Quantities of an impact that could not be computed are NaN.
 
     Examples
     --------
@@ -79,7 +80,7 @@ def oblique_impacts(problem: Problem, law: ContactLaw, speeds: Floats, oblique: 
 
 
 def _one_impact(problem: Problem, law: ContactLaw, speeds: Floats) -> Problem:
-    begun = replace(problem, laws=(law,), height=None, speed=np.asarray(speeds, dtype=float))
+    begun = replace(problem, laws=(law,), height=None, speed=np.asarray(speeds, dtype=float), air=None)
     return replace(begun, impacts=1, duration=None, rest_speed=0.0, sensors=())
 
 
@@ -93,7 +94,16 @@ def first_approach_speed(problem: Problem) -> float:
     """Return the speed at the first touch of a drop [m/s]."""
     if problem.speed is not None:
         return float(problem.speed)
+    if problem.air is not None:
+        return speed_of_fall(problem)
     return float(np.sqrt(2.0 * problem.gravity * (np.asarray(problem.height) - problem.sphere.contact_offset)))
+
+
+def return_speeds(problem: Problem, speeds: Floats) -> Floats:
+    """Return the speeds at which spheres come back that leave the plate with given ones [m/s], through the air of a drop that has it."""
+    if problem.air is None:
+        return speeds
+    return flights_of(problem, np.zeros(len(speeds)), speeds).touch(np.zeros(1))[1]
 
 
 def batched_law(laws: Sequence[ContactLaw], number: int) -> ContactLaw:

@@ -15,6 +15,7 @@ from vibroimpact.cases.pair import is_free_sphere
 from vibroimpact.cases.rigid import PLATE_FALLS, contact_laws_of, deforms, elastic_names, impact_limit, rigid_problem, run_duration
 from vibroimpact.contact.friction.law import CompliantFriction
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, is_conservative
+from vibroimpact.dynamics.air import check_thin
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.errors import InputError
 from vibroimpact.resolved_case import ResolvedCase
@@ -46,6 +47,10 @@ def check_case(case: CaseTable) -> None:
             raise InputError(f'"all" needs a law that loses energy, {words}; {remedy}, or drop.same_spot = false', "run.impacts")
     _check_oblique(case, law)
     _check_motion(case)
+    if case.drop.air is not None:
+        if deforms(case) or case.plate.motion is not None:
+            raise InputError("bodies that deform, or plates that move, are hit in a vacuum; leave this out", "drop.air")
+        check_thin(case.drop.air.density, case.sphere.material.density, "drop.air.density")
     if case.sensors and case.plate.model == "rigid":
         remedy = 'give it model = "elastic", or leave out the sensors' if case.plate.radius is None else "leave out the sensors"
         raise InputError(f"the plate is rigid, so that its points do not move; {remedy}", "sensors")

@@ -9,6 +9,7 @@ from typing import Any, get_args, get_origin
 
 from pydantic.fields import FieldInfo
 
+from vibroimpact.cases.fields.air import AirTable
 from vibroimpact.cases.fields.local import LocalSection
 from vibroimpact.cases.fields.material import InlineMaterial, material_table
 from vibroimpact.cases.fields.motion import MotionTable
@@ -81,7 +82,7 @@ def holds_keys(key: str) -> bool:
     (True, False)
     """
     section, _, field = key.partition(".")
-    return section in (*SECTIONS, "contact") and field in ("", "material", "motion", *_PLACES)
+    return section in (*SECTIONS, "contact") and field in ("", "material", "motion", "air", *_PLACES)
 
 
 def with_values(table: Mapping[str, Any], values: Mapping[str, Any], done: str = "swept") -> dict[str, Any]:
@@ -116,6 +117,8 @@ def with_values(table: Mapping[str, Any], values: Mapping[str, Any], done: str =
                 raise InputError(f"{shown(inside)} is not a table, so that it has no {part}", ".".join(way[:number]))
             missing: Any = [0.0] * _AT_REST[part] if part in _AT_REST and way[number:] == [part] else {}
             inside = inside.setdefault(part, missing)
+            if part == "air" and isinstance(inside, bool):
+                inside = holder[part] = {}
             if isinstance(inside, str) and part == "material":
                 named = material_table(find_material(inside))
                 if isinstance(named, str):
@@ -150,6 +153,8 @@ def _keys(table: Mapping[str, Any]) -> Iterator[tuple[str, Quantity | None]]:
             if field == "motion":
                 for number, inner in MotionTable.model_fields.items():
                     yield f"{key}.{number}", None if number == "direction" else quantity_of(inner)
+            if field == "air":
+                yield from ((f"{key}.{part}", quantity_of(inner)) for part, inner in AirTable.model_fields.items())
             if field == "material":
                 for number, inner in InlineMaterial.model_fields.items():
                     if number != "name":

@@ -14,6 +14,7 @@ from vibroimpact.cases.oblique import normal_motion_of, oblique_of
 from vibroimpact.cases.pair import contact_pair, is_free_sphere
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.contact.registry import find_contact_law
+from vibroimpact.dynamics.flight_in_air import speed_of_fall
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.errors import InputError
 
@@ -83,6 +84,7 @@ def rigid_problem(case: CaseTable) -> Problem:
         **normal_motion_of(case),
         oblique=oblique_of(case),
         motion=motion_of(case),
+        air=None if case.drop.air is None else case.drop.air.air(),
         impacts=impact_limit(case),
         duration=run_duration(case),
         rest_speed=case.run.rest_speed,
@@ -103,4 +105,6 @@ def touch_speed(case: CaseTable) -> float:
     motion = normal_motion_of(case)
     if "speed" in motion:
         return float(motion["speed"])
+    if case.drop.air is not None:
+        return speed_of_fall(rigid_problem(case))
     return float((motion["velocity"] ** 2 + 2.0 * motion["gravity"] * (motion["height"] - case.sphere.radius)) ** 0.5)

@@ -9,6 +9,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import BeforeValidator, Field, StrictBool, model_validator
 
 from vibroimpact.calibration.section import CalibrateSection
+from vibroimpact.cases.fields.air import AirField
 from vibroimpact.cases.fields.contact import ContactSection, read_contact
 from vibroimpact.cases.fields.damping import DampingField
 from vibroimpact.cases.fields.elastic_body import (
@@ -123,6 +124,7 @@ class DropSection(Section):
         (0.0, 0.0), description="x and y on the plate, from its centre [m]"
     )
     gravity: Annotated[float, Quantity("m/s^2", "acceleration of gravity", Range(at_least=0))] = STANDARD_GRAVITY
+    air: AirField = None
     same_spot: StrictBool = Field(
         True, description="does each impact fall where the last one did, into the dent that a law may leave, or on fresh surfaces?"
     )

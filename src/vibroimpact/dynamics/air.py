@@ -1,14 +1,20 @@
-r"""The drag of air on a sphere."""
+r"""Air, and its drag on a sphere."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass, fields
+from functools import cached_property
+from typing import Any, Self
+
 import numpy as np
 
-from vibroimpact.arrays import Array
+from vibroimpact.arrays import Array, Bools, Drops
+from vibroimpact.errors import InputError
 
 AIR_DENSITY, AIR_VISCOSITY = 1.2, 1.81e-5
 """Density [kg/m^3] and viscosity [Pa s] of air at 20 C and sea level."""
 
+_DENSEST = 0.02  # largest density, relative to the sphere's: buoyancy then takes as much of gravity, and is left out
 _STILL = 1e-30  # m/s, for a speed of zero, at which Stokes' drag is none
 
 
@@ -31,21 +37,87 @@ def drag_coefficient(reynolds: Array) -> Array:
     return 24.0 / reynolds * (1.0 + 0.15 * reynolds**0.687) + 0.42 / (1.0 + 42500.0 * reynolds**-1.16)
 
 
-def drag(speed: Array, radius: Array, density: Array) -> Array:
-    r"""Return by how much air slows a sphere down [m/s^2], :math:`\tfrac38 (\rho_a / \rho) C_d v^2 / R`.
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Air:
+    """Air at rest; each value is a number, or an array with one a drop.
 
     Parameters
     ----------
-    speed : float or array
-        Through air that is at rest [m/s], >= 0.
-    radius, density : float or array
-        Of the sphere [m], [kg/m^3].
+    density : float or array, default 1.2
+        Density [kg/m^3].
+    viscosity : float or array, default 1.81e-5
+        Viscosity [Pa s], from which the Reynolds number and so the drag coefficient follow (`drag_coefficient`).
+    drag_coefficient : float or array, optional
+        A constant drag coefficient [-] in place of that.
+
+    Raises
+    ------
+    InputError
+        If a value is not finite, or not greater than 0.
 
     Examples
     --------
-    >>> round(float(drag(8.8, 0.025, 1380.0)), 3)
+    >>> round(float(Air().drag(8.8, 0.025, 1380.0)), 3)
     0.478
     """
-    fast = np.maximum(speed, _STILL)
-    reynolds = AIR_DENSITY * fast * 2.0 * radius / AIR_VISCOSITY
-    return 0.375 * AIR_DENSITY / density * drag_coefficient(reynolds) * fast**2 / radius
+
+    density: Array = AIR_DENSITY
+    viscosity: Array = AIR_VISCOSITY
+    drag_coefficient: Array | None = None
+
+    def __post_init__(self) -> None:
+        for name, value in self._given():
+            found = np.asarray(value)
+            if not (found.dtype.kind in "iuf" and np.all(np.isfinite(found) & (found > 0.0))):
+                raise InputError(f"{name} of air must be a finite number greater than 0 in SI, not {value!r}")
+
+    def _given(self) -> list[tuple[str, Any]]:
+        return [(item.name, value) for item in fields(self) if (value := getattr(self, item.name)) is not None]
+
+    @property
+    def values(self) -> list[Array]:
+        """All values that may be arrays."""
+        return [value for _, value in self._given()]
+
+    @cached_property
+    def shape(self) -> tuple[int, ...]:
+        """() for one drop, (B,) for a batch."""
+        return np.broadcast_shapes(*(np.shape(value) for value in self.values))
+
+    def take(self, drops: int | slice | Drops | Bools) -> Self:
+        """Return the air of one drop of a batch, or of some."""
+        if self.shape == ():
+            return self
+        return type(self)(**{name: value if np.ndim(value) == 0 else np.asarray(value)[drops] for name, value in self._given()})
+
+    def drag(self, speed: Array, radius: Array, density: Array) -> Array:
+        r"""Return by how much air slows a sphere down [m/s^2], :math:`\tfrac38 (\rho_a / \rho) C_d v^2 / R`.
+
+        Parameters
+        ----------
+        speed : float or array
+            Through air that is at rest [m/s], >= 0.
+        radius, density : float or array
+            Of the sphere [m], [kg/m^3].
+        """
+        fast = np.maximum(speed, _STILL)
+        coefficient = self.drag_coefficient
+        if coefficient is None:
+            coefficient = drag_coefficient(self.density * fast * 2.0 * radius / self.viscosity)
+        return 0.375 * self.density / density * coefficient * fast**2 / radius
+
+
+def density_of(mass: Array, radius: Array) -> Array:
+    """Return the density of a solid sphere [kg/m^3]."""
+    return mass / (4.0 / 3.0 * np.pi * np.asarray(radius) ** 3)
+
+
+def check_thin(density: Array, of_sphere: Array, key: str = "") -> None:
+    """Raise InputError, with a key, unless air is so thin beside a sphere that drag is what matters of it; densities [kg/m^3]."""
+    part = float(np.max(density / of_sphere))
+    if part > _DENSEST:
+        raise InputError(
+            f"what the sphere falls through has {100.0 * part:.3g} % of its density, and {100.0 * _DENSEST:g} % are the most: drag alone "
+            "acts on it, and in what is denser buoyancy, the mass of fluid that moves along, and the film over the plate count too",
+            key,
+        )

@@ -168,8 +168,11 @@ OBLIQUE_IMPACT_COLUMNS: dict[str, Column] = {
 }
 """Further columns of the impact table, where motion is not along the normal alone."""
 
+AIR_IMPACT_COLUMNS: dict[str, Column] = {"air_lost_J": Column("J", "energy that air took in the flight before", "Lost to the air", "air")}
+"""A further column of the impact table, where the sphere flies through air."""
+
 VIBRATING_IMPACT_COLUMNS = {**IMPACT_COLUMNS, **VIBRATION_IMPACT_COLUMNS}
-ALL_IMPACT_COLUMNS = {**VIBRATING_IMPACT_COLUMNS, **SHAKEN_IMPACT_COLUMNS, **OBLIQUE_IMPACT_COLUMNS}
+ALL_IMPACT_COLUMNS = {**VIBRATING_IMPACT_COLUMNS, **SHAKEN_IMPACT_COLUMNS, **OBLIQUE_IMPACT_COLUMNS, **AIR_IMPACT_COLUMNS}
 OBLIQUE_HISTORY_COLUMNS: dict[str, Column] = {
     "position_x_m": Column("m", "place of the sphere's centre along x, from the centre of the plate"),
     "position_y_m": Column("m", "place of the sphere's centre along y, from the centre of the plate"),
@@ -189,7 +192,16 @@ OBLIQUE_HISTORY_COLUMNS: dict[str, Column] = {
 }
 """Further columns of a history, where motion is not along the normal alone."""
 
-ALL_HISTORY_COLUMNS = {**HISTORY_COLUMNS, **VIBRATION_HISTORY_COLUMNS, **SHAKEN_HISTORY_COLUMNS, **OBLIQUE_HISTORY_COLUMNS}
+AIR_HISTORY_COLUMNS: dict[str, Column] = {"air_J": _lost("energy lost so far to the drag of air", "Lost to the drag of air", "air")}
+"""A further column of a history, where the sphere flies through air."""
+
+ALL_HISTORY_COLUMNS = {
+    **HISTORY_COLUMNS,
+    **VIBRATION_HISTORY_COLUMNS,
+    **SHAKEN_HISTORY_COLUMNS,
+    **OBLIQUE_HISTORY_COLUMNS,
+    **AIR_HISTORY_COLUMNS,
+}
 
 MOTION_COLUMNS = (*tuple(HISTORY_COLUMNS)[:8], "plate_deflection_m")
 """Those of motion and force, from `time_s` to `potential_J`, which are found from the state without the losses so far."""
@@ -205,6 +217,9 @@ SHAKEN_LEDGER = tuple(name for name, column in SHAKEN_HISTORY_COLUMNS.items() if
 
 OBLIQUE_LEDGER = tuple(name for name, column in OBLIQUE_HISTORY_COLUMNS.items() if column.in_ledger)
 """The further columns that share it, where motion is not along the normal alone."""
+
+AIR_LEDGER = tuple(name for name, column in AIR_HISTORY_COLUMNS.items() if column.in_ledger)
+"""The further column that shares it, where the sphere flies through air."""
 
 
 def impact_columns(impacts: Iterable[str]) -> dict[str, Column]:

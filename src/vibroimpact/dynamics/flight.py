@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Drops, Floats
+from vibroimpact.dynamics.oblique.state import Sphere, State
 
 
 @dataclass(frozen=True)
@@ -21,6 +22,14 @@ class Flight:
     gap: Floats
     velocity: Floats
     gravity: Floats
+
+    def take(self, which: Drops) -> Flight:
+        """Return the flights of some of the drops."""
+        return Flight(self.start[which], self.gap[which], self.velocity[which], self.gravity[which])
+
+    def carry(self, sphere: Sphere, state: State, time: Floats) -> State:
+        """Return the state along the plate at times [s], from that at the start of the flight."""
+        return sphere.fly(state, time - self.start)
 
     def at(self, time: Floats) -> tuple[Floats, Floats]:
         """Return gap [m] and upward velocity [m/s] at times [s] (..., B)."""

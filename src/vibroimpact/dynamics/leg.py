@@ -45,8 +45,7 @@ class Leg:
         here = np.flatnonzero(self.drops == drop)
         if not here.size:
             return None
-        one, flight = np.zeros(1, dtype=np.intp), self.flight
-        alone = Flight(flight.start[here], flight.gap[here], flight.velocity[here], flight.gravity[here])
+        one, alone = np.zeros(1, dtype=np.intp), self.flight.take(here)
         contact_here = np.flatnonzero(self.contact_drops == drop)
         motions = self.motions[int(here[0]) : int(here[0]) + 1]
         oblique = None if self.oblique is None else (self.oblique[0].take(here), self.oblique[1].take(here))

@@ -15,6 +15,7 @@ from vibroimpact.bodies.body import Body
 from vibroimpact.contact.friction.law import CompliantFriction
 from vibroimpact.contact.law import ContactLaw, InstantaneousLaw
 from vibroimpact.contact.quasi_static import QuasiStatic
+from vibroimpact.dynamics.air import Air, check_thin, density_of
 from vibroimpact.dynamics.oblique.statement import Oblique
 from vibroimpact.dynamics.sensors.sensor import Sensor
 from vibroimpact.dynamics.shaken.statement import PlateMotion
@@ -57,6 +58,8 @@ class Problem:
     motion : PlateMotion, optional
         Prescribed motion of the plate's supports. Heights are then above the mean position of the plate's surface, and approach and
         separation speeds relative to it. By default the supports are at rest.
+    air : Air, optional
+        What the sphere falls through: its drag slows it down in flight. By default nothing.
     impacts : int, optional
         Stop after so many impacts, at the top of the last rebound. None: go on to rest.
     duration : float, optional
@@ -116,6 +119,7 @@ class Problem:
     gravity: Array = STANDARD_GRAVITY
     oblique: Oblique | None = None
     motion: PlateMotion | None = None
+    air: Air | None = None
     impacts: int | None = 5
     duration: float | None = None
     rest_speed: Array | None = None
@@ -180,6 +184,8 @@ class Problem:
         if self.oblique is not None and isinstance(self.oblique.friction, CompliantFriction) and isinstance(self.laws[0], InstantaneousLaw):
             words = f"{self.laws[0].name} gives no normal force for {self.oblique.friction.name} to follow"
             raise InputError(f"{words}; take another contact law, or friction by the impulse, as of coulomb or rigid")
+        if self.air is not None:
+            self._check_air(self.air)
         try:
             _ = self.shape
         except ValueError:
@@ -229,6 +235,18 @@ class Problem:
                 "the plate recedes from the sphere as fast as it comes down; give a higher speed, or another phase of the motion"
             )
 
+    def _check_air(self, air: Air) -> None:
+        """Raise InputError unless drag is what matters of the air, and the bodies are rigid."""
+        if not isinstance(air, Air):
+            raise InputError(f"air must be an Air, not {air!r}")
+        if self.vibrates or self.motion is not None:
+            raise InputError(
+                "only a rigid sphere above a rigid plate at rest flies through air; leave out the air, or what deforms or moves"
+            )
+        if not np.all(np.asarray(self.sphere.contact_offset) > 0.0):
+            raise InputError("a sphere that flies through air needs a radius: its contact_offset, greater than 0 m")
+        check_thin(air.density, density_of(self.sphere.mass, self.sphere.contact_offset))
+
     @property
     def vibrates(self) -> bool:
         """Whether anything but the contact of the law deforms, or anything but the sphere moves."""
@@ -257,6 +275,7 @@ class Problem:
         values = [self.sphere.mass, self.sphere.contact_offset, self.height, self.velocity, self.speed, self.gravity, self.rest_speed]
         values += [getattr(law, item.name) for law in self.laws for item in fields(law)]
         values += [] if self.oblique is None else self.oblique.values
+        values += [] if self.air is None else self.air.values
         return np.broadcast_shapes(*(np.shape(value) for value in values if value is not None))
 
     def law_of(self, impact: int) -> ContactLaw:
@@ -283,6 +302,7 @@ class Problem:
             gravity=one(self.gravity),
             rest_speed=one(self.rest_speed),
             oblique=None if self.oblique is None else self.oblique.take(drop),
+            air=None if self.air is None else self.air.take(drop),
         )
 
     def to_problem(self) -> Problem:

@@ -12,7 +12,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vibroimpact.arrays import Floats
+from vibroimpact.dynamics.air_history import air_history
 from vibroimpact.dynamics.columns import (
+    AIR_HISTORY_COLUMNS,
     HISTORY_COLUMNS,
     OBLIQUE_HISTORY_COLUMNS,
     SHAKEN_HISTORY_COLUMNS,
@@ -129,7 +131,7 @@ class Response:
         of_vibration = VIBRATION_HISTORY_COLUMNS if self.problem.vibrates else {}
         moving = {} if self.problem.motion is None else SHAKEN_HISTORY_COLUMNS
         along = {} if self.problem.oblique is None else OBLIQUE_HISTORY_COLUMNS
-        return meanings({**HISTORY_COLUMNS, **of_vibration, **moving, **along})
+        return meanings({**HISTORY_COLUMNS, **of_vibration, **moving, **along, **({} if self.problem.air is None else AIR_HISTORY_COLUMNS)})
 
     @property
     def status(self) -> str:
@@ -377,6 +379,8 @@ class Response:
             place, surface_velocity, _ = problem.surface(found["time_s"])
             drive = drive_before - (segment.drive_work(times) if isinstance(segment, RideSegment) else 0.0 * times)
             found |= {"surface_m": place, "surface_velocity_m_s": surface_velocity, "drive_J": drive}
+        if problem.air is not None:
+            found |= air_history(problem, self.impacts, segment, times)
         return found
 
     @cached_property

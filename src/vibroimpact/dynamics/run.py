@@ -10,12 +10,14 @@ import numpy as np
 from vibroimpact.arrays import Drops, Floats
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, InstantaneousLaw
 from vibroimpact.contact.static import static_indentation
+from vibroimpact.dynamics.air import density_of
 from vibroimpact.dynamics.bodies import Bodies
-from vibroimpact.dynamics.columns import OBLIQUE_IMPACT_COLUMNS, SHAKEN_IMPACT_COLUMNS
+from vibroimpact.dynamics.columns import AIR_IMPACT_COLUMNS, OBLIQUE_IMPACT_COLUMNS, SHAKEN_IMPACT_COLUMNS
 from vibroimpact.dynamics.contact import CAPTURED, FAILED, RIDING
 from vibroimpact.dynamics.encounter import Encounter, encounter_of
 from vibroimpact.dynamics.energy import CLOSURE_LIMIT, WRITE_OFF_LIMIT, close_ledger
 from vibroimpact.dynamics.flight import Flight
+from vibroimpact.dynamics.flight_in_air import AirFlight
 from vibroimpact.dynamics.impact_rows import ImpactRows
 from vibroimpact.dynamics.leg import Leg
 from vibroimpact.dynamics.lockstep import Coroutine
@@ -44,10 +46,11 @@ class Run:
             # at touch: apart by the rounding error of the place of a plate that is shaken
             self.gap = self.gap + problem.surface(0.0)[0] + 4e-15 * np.abs(problem.surface_phasors).sum()
         self.oblique = None if problem.oblique is None else ObliqueMotion(problem.oblique, self.mass, self.radius)
+        self.ahead: tuple[Drops, AirFlight] | None = None  # flights whose tops have been computed already
         self.energy_in = self.mechanical_energy()
         if self.oblique is not None:
             self.energy_in = sum(self.oblique.energies(), self.energy_in)
-        self.dissipated, self.plastic, self.deepest = np.zeros(self.size), np.zeros(self.size), np.zeros(self.size)
+        self.dissipated, self.plastic, self.deepest, self.to_air = (np.zeros(self.size) for _ in range(4))
         self.moving = np.ones(self.size, dtype=bool)
         self.outcomes = np.full(self.size, Outcome.FAILED.code)
         self.end_time, self.rest_time = np.full(self.size, np.nan), np.full(self.size, np.nan)
@@ -55,7 +58,11 @@ class Run:
         self.rest_speed = self.default_rest_speed() if problem.rest_speed is None else self.spread(problem.rest_speed)
         self.bodies = self.moving_bodies(solve_contact) if problem.vibrates or problem.shaken else RigidBodies(self.size, solve_contact)
         self.memories = {name: self.spread(value) for name, value in problem.laws[0].memories().items()}
-        further = (*(() if problem.motion is None else SHAKEN_IMPACT_COLUMNS), *(() if self.oblique is None else OBLIQUE_IMPACT_COLUMNS))
+        further = (
+            *(() if problem.motion is None else SHAKEN_IMPACT_COLUMNS),
+            *(() if self.oblique is None else OBLIQUE_IMPACT_COLUMNS),
+            *(() if problem.air is None else AIR_IMPACT_COLUMNS),
+        )
         self.rows = ImpactRows((*self.bodies.columns, *further), self.size)
 
     def moving_bodies(self, solve_contact: SolvesContact) -> Bodies:
@@ -80,7 +87,7 @@ class Run:
     def default_rest_speed(self) -> Floats:
         """Return the speed from which a drop would rise by its static indentation [m/s], at least 1e-6 of the first approach speed."""
         law = self.problem.law_of(0)
-        least = 1e-6 * Flight(self.time, self.gap, self.velocity, self.gravity).touch(np.zeros(1))[1]
+        least = 1e-6 * self.flights(np.arange(self.size)).touch(np.zeros(1))[1]
         if not isinstance(law, CompliantLaw):
             return np.asarray(least)
         sag = static_indentation(law, self.mass * self.gravity) - law.touch_level
@@ -109,11 +116,23 @@ class Run:
 
     # one flight and one contact --------------------------------------------------------------------
 
+    def flights(self, drops: Drops) -> Flight:
+        """Return the flights that drops are about to make."""
+        air, now = self.problem.air, (self.time[drops], self.gap[drops], self.velocity[drops], self.gravity[drops])
+        if air is None:
+            return Flight(*now)
+        if self.ahead is None or not np.array_equal(self.ahead[0], drops):
+            none = np.zeros((0, len(drops)))
+            along = (none, none) if self.oblique is None else self.oblique.pulled(drops)
+            sphere = self.radius[drops], density_of(self.mass[drops], self.radius[drops])
+            flights = AirFlight(*now, *sphere, air.take(drops), along)
+            self.ahead = drops, flights
+        return self.ahead[1]
+
     def advance(self) -> Coroutine[Leg]:
         """Advance all moving drops to their next touch and through one contact, and return both as a leg."""
         drops = np.flatnonzero(self.moving)
-        flight = Flight(self.time[drops], self.gap[drops], self.velocity[drops], self.gravity[drops])
-        law = self.law(drops)
+        flight, law = self.flights(drops), self.law(drops)
         touch, speed, motions = self.bodies.next_touch(drops, flight, law)
         end = np.inf if self.problem.duration is None else self.problem.duration
         last, outcome = np.full(len(drops), end), Outcome.IMPACTS
@@ -123,7 +142,7 @@ class Run:
         by_time = last == end
         last = np.maximum(last, flight.start)  # a contact under way at the end of the run is finished first
         gone = np.isinf(touch) & np.isinf(last)
-        fell = np.zeros_like(gone) if self.oblique is None else self.oblique.beside(drops, touch - flight.start) & (touch < last)
+        fell = np.zeros_like(gone) if self.oblique is None else self.oblique.beside(drops, flight, touch) & (touch < last)
         last = np.where(fell, touch, last)
         stops = (touch >= last) | gone
         self.stop(drops[stops], outcome, last[stops])
@@ -134,11 +153,16 @@ class Run:
         self.bodies.pass_flight(drops, motions, leg.flight_end - flight.start)
         if self.oblique is not None:
             leg = replace(leg, oblique=self.oblique.now(drops))
-            self.oblique.fly(drops, leg.flight_end - flight.start)
+            self.oblique.fly(drops, flight, leg.flight_end)
+        self.gap[drops], self.velocity[drops] = flight.at(leg.flight_end)
+        self.time[drops], self.ahead = leg.flight_end, None
         if not stops.all():
-            gap, velocity = flight.at(leg.flight_end)
-            self.gap[drops[~stops]], self.velocity[drops[~stops]] = gap[~stops], velocity[~stops]
             leg = yield from self.collide(leg, touch[~stops], speed[~stops])
+        if isinstance(flight, AirFlight):
+            taken = self.mass[drops] * flight.lost(leg.flight_end)
+            self.to_air[drops] += taken
+            if not stops.all():
+                self.rows.last["air_lost_J"][leg.contact_drops] = taken[~stops]
         growth = yield from self.bodies.growth(leg)
         if growth.size:
             self.rows.last["sensitivity"][leg.contact_drops] = growth
@@ -179,6 +203,8 @@ class Run:
         row["energy_lost_J"][drops] = lost
         with np.errstate(divide="ignore", invalid="ignore"):
             rise = np.where(self.gravity[drops] > 0.0, 0.5 * rising**2 / self.gravity[drops], np.nan)
+        if self.problem.air is not None:
+            rise = np.where(np.isnan(rise), rise, self.flights(drops).apex()[1] - self.gap[drops])
         row["rebound_height_m"][drops] = self.radius[drops] + self.gap[drops] + rise
         if self.oblique is not None:
             self.leave_dents(drops, row)
@@ -207,8 +233,10 @@ class Run:
     def leave_dents(self, drops: Drops, row: dict[str, Floats]) -> None:
         """Forget the dents of drops that move on by more than the radius of their contact before they touch again."""
         assert self.oblique is not None
-        flight = Flight(self.time[drops], self.gap[drops], self.velocity[drops], self.gravity[drops])
-        away = self.oblique.distance(drops, flight.touch(np.zeros(1))[0] - self.time[drops])
+        if not self.memories:
+            return
+        flight = self.flights(drops)
+        away = self.oblique.distance(drops, flight, flight.touch(np.zeros(1))[0])
         gone = drops[away > np.sqrt(self.radius[drops] * np.nan_to_num(row["max_indentation_m"][drops]))]
         fresh = self.problem.laws[0].memories()
         for name, values in self.memories.items():
@@ -313,6 +341,7 @@ class Run:
                 "written_off_at_rest_J": self.written_off,
                 **vibration,
                 **along,
+                **({} if self.problem.air is None else {"air_J": self.to_air}),
             },
         )
         closes = energy["closure_relative"] <= CLOSURE_LIMIT
@@ -337,9 +366,8 @@ class Run:
 
     def final_motion(self, at_rest: Drops) -> tuple[Floats, Floats]:
         """Return gap [m] and upward velocity [m/s] at the end of the run."""
-        elapsed = self.end_time - self.time
-        gap, velocity = Flight(np.zeros(self.size), self.gap, self.velocity, self.gravity).at(elapsed)
-        lain, parts = np.maximum(elapsed[at_rest], 0.0), (self.sag[at_rest], self.stored[at_rest])
+        gap, velocity = self.gap.copy(), self.velocity.copy()
+        lain, parts = np.maximum(self.end_time - self.time, 0.0)[at_rest], (self.sag[at_rest], self.stored[at_rest])
         gap[at_rest], velocity[at_rest], self.stored[at_rest] = self.bodies.follow(at_rest, lain, *parts)
         return gap, velocity
 

@@ -14,6 +14,7 @@ from vibroimpact.cases.case import Case
 from vibroimpact.cases.costs import describe_costs
 from vibroimpact.cases.doubts import doubts
 from vibroimpact.cases.expected import expected_of, expected_restitution
+from vibroimpact.cases.fields.air import air_words
 from vibroimpact.cases.motion import motion_length
 from vibroimpact.cases.oblique import friction_law_of, is_oblique
 from vibroimpact.cases.pair import contact_pair, is_free_sphere
@@ -56,6 +57,7 @@ def case_explained(case: Case, aside: Container[str] = ()) -> RenderableType:
         *_coupling_rows(case),
         ("effective modulus", f"{pair.effective_modulus:.6g} Pa"),
         ("first approach speed", f"{speed:.6g} m/s{' along the normal' if is_oblique(case) else ''}, gravity {gravity:g} m/s2"),
+        *([] if case.drop.air is None else [("air", air_words(case.drop.air.model_dump(exclude_none=True)))]),
         ("contact law", f"{case.contact.law}: {laws[0].equation}"),
     ]
     # a list in the case gives one law per impact: parameters that differ are shown for each

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from vibroimpact.cases.fields.air import air_words
 from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.marks import Arrow, Label, Line, Mark, Outline
@@ -160,6 +161,8 @@ def setup_rows(result: Result) -> list[tuple[str, str]]:
         rows.append(("Inclination", f"{np.degrees(float(inclination)):.4g}° about y"))
     if (motion := plate.get("motion")) is not None:
         rows.append(("Motion of the supports", _motion_words(motion)))
+    if (air := case["drop"].get("air")) is not None:
+        rows.append(("Air", air_words(air)))
     rows.append(("Contact law", _law_words({key: value for key, value in case["contact"].items() if key != "friction"})))
     if (friction := case["contact"].get("friction")) is not None:
         rows.append(("Friction", _law_words(friction)))

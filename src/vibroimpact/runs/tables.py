@@ -9,7 +9,15 @@ from typing import NamedTuple
 import numpy as np
 
 from vibroimpact.arrays import Floats, Indices
-from vibroimpact.dynamics.columns import ALL_HISTORY_COLUMNS, ALL_IMPACT_COLUMNS, LEDGER, OBLIQUE_LEDGER, SHAKEN_LEDGER, VIBRATION_LEDGER
+from vibroimpact.dynamics.columns import (
+    AIR_LEDGER,
+    ALL_HISTORY_COLUMNS,
+    ALL_IMPACT_COLUMNS,
+    LEDGER,
+    OBLIQUE_LEDGER,
+    SHAKEN_LEDGER,
+    VIBRATION_LEDGER,
+)
 from vibroimpact.results.result import Result
 from vibroimpact.units.display import ALL_FIGURES, certain, certain_figures, column_texts, digits, fixed, multiple
 
@@ -39,6 +47,7 @@ _SHOWN_COLUMNS = (
     "tangential_restitution",
     "rebound_angle_deg",
     "friction_lost_J",
+    "air_lost_J",
     "contacts",
     "sensitivity",
 )
@@ -106,7 +115,7 @@ def ledger_table(result: Result) -> tuple[str, list[LedgerRow]]:
     put_in, scale = result.energy["input_J"], multiple("J", result.energy["input_J"])
     values = {
         name: result.energy[name]
-        for name in (*LEDGER, *VIBRATION_LEDGER, *SHAKEN_LEDGER, *OBLIQUE_LEDGER)
+        for name in (*LEDGER, *VIBRATION_LEDGER, *SHAKEN_LEDGER, *OBLIQUE_LEDGER, *AIR_LEDGER)
         if abs(result.energy.get(name, 0.0)) > _ROUNDING * put_in
     }
     figures = {name: _certain_figures_of_energy(name, result) for name in values}

@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.cases.case import Case
+from vibroimpact.cases.fields.air import AirTable
+from vibroimpact.cases.fields.section import read_table
 from vibroimpact.cases.keys import with_values
 from vibroimpact.cases.reader import read_case
 from vibroimpact.studies.axes import Values
@@ -53,6 +55,9 @@ def with_arrays(case: Case, arrays: Mapping[str, Values]) -> Case:
         section, _, field = key.partition(".")
         if field.startswith("material."):
             materials[section][field.removeprefix("material.")] = values
+        elif field.startswith("air."):
+            air = fields[section].get("air", case.drop.air or read_table(AirTable, {}))
+            fields[section]["air"] = air.model_copy(update={field.removeprefix("air."): values})
         elif section == "drop" and "." in field:
             whole, _, part = field.partition(".")
             now = list(fields[section].get(whole, getattr(case.drop, whole) or (0.0, 0.0, 0.0)))

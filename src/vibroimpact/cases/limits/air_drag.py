@@ -41,7 +41,7 @@ def drag_loss(radius: Array, density: Array, fall: Array, gravity: Array) -> Arr
 
 def _number(drops: Conditions) -> Array:
     height = drops.case["drop"].get("height")
-    if height is None:
+    if height is None or drops.case["drop"].get("air") is not None:
         return math.nan
     return drag_loss(drops.radius, drops.materials["sphere"].density, height - drops.radius, drops.case["drop"]["gravity"])
 
@@ -51,7 +51,8 @@ def _sentence(drop: Conditions, lost: float) -> str:
     speed = math.sqrt(2.0 * drop.case["drop"]["gravity"] * fall)
     return (
         f"in air the first touch would be {percent_less(lost).removeprefix('-')} slower than in the vacuum that this drop falls through, "
-        f"and each rebound loses speed again; give drop.speed = {speed * (1.0 - lost):.4g} in place of the height to begin with that speed"
+        f"and each rebound loses speed again; give drop.air = true, where bodies are rigid, or drop.speed = {speed * (1.0 - lost):.4g} in "
+        "place of the height to begin with that speed"
     )
 
 

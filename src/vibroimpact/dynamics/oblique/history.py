@@ -60,7 +60,7 @@ def _of_leg(leg: Leg, lost: float, time: Floats) -> Moving:
     assert leg.oblique is not None
     sphere, start = leg.oblique
     touch = float(leg.flight_end[0])
-    state, friction, taken = sphere.fly(start, time - float(leg.flight.start[0])), np.zeros((2, len(time))), np.full(len(time), lost)
+    state, friction, taken = leg.flight.carry(sphere, start, np.minimum(time, touch)), np.zeros((2, len(time))), np.full(len(time), lost)
     state = State(state.position, state.velocity, start.spin + np.zeros(len(time)))
     after = time > touch
     if leg.oblique_contacts and after.any():

@@ -10,6 +10,7 @@ import numpy as np
 from vibroimpact.arrays import Bools, Drops, Floats
 from vibroimpact.contact.friction.law import FrictionLaw, ImpulsiveFriction
 from vibroimpact.dynamics.columns import OBLIQUE_IMPACT_COLUMNS
+from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.oblique.normal_motion import NormalMotion
 from vibroimpact.dynamics.oblique.rolling import ACROSS, edge_time, slide_and_roll
 from vibroimpact.dynamics.oblique.sliding import slide
@@ -40,9 +41,16 @@ class ObliqueMotion:
         self.start, self.half = self.state.position, None if oblique.size is None else 0.5 * np.array(oblique.size)[:, None]
         self.law, self.lost = oblique.friction, np.zeros(len(mass))
 
-    def fly(self, drops: Drops, elapsed: Floats) -> None:
-        """Advance drops through a time without contact [s]."""
-        self._put(drops, self.sphere.take(drops).fly(self.state.take(drops), elapsed))
+    def fly(self, drops: Drops, flight: Flight, time: Floats) -> None:
+        """Advance drops through their flights up to a time [s]."""
+        self._put(drops, self._flown(drops, flight, time))
+
+    def _flown(self, drops: Drops, flight: Flight, time: Floats) -> State:
+        return flight.carry(self.sphere.take(drops), self.state.take(drops), time)
+
+    def pulled(self, drops: Drops) -> tuple[Floats, Floats]:
+        """Return the velocities of drops along the plate [m/s], and the accelerations of gravity along it [m/s^2], (2, B)."""
+        return self.state.velocity[:, drops], self.sphere.gravity[:, drops]
 
     def now(self, drops: Drops) -> tuple[Sphere, State]:
         """Return spheres and state of drops."""
@@ -62,28 +70,25 @@ class ObliqueMotion:
         self._put(drops, after)
         return elapsed
 
-    def distance(self, drops: Drops, elapsed: Floats) -> Floats:
-        """Return how far drops move along the plate in a time without contact [m]."""
-        before = self.state.take(drops)
+    def distance(self, drops: Drops, flight: Flight, time: Floats) -> Floats:
+        """Return how far drops move along the plate in their flights up to a time [m]."""
         with np.errstate(invalid="ignore"):
-            moved = self.sphere.take(drops).fly(before, elapsed).position - before.position
+            moved = self._flown(drops, flight, time).position - self.state.take(drops).position
         return np.asarray(np.nan_to_num(np.hypot(*moved)))
 
-    def place(self, drops: Drops, elapsed: Floats) -> Floats:
-        """Return the places of drops over the plate after a time without contact [m] (2, b)."""
-        with np.errstate(invalid="ignore"):
-            return self.sphere.take(drops).fly(self.state.take(drops), elapsed).position
-
     def place_on_plate(self, drops: Drops, elapsed: Floats) -> Floats:
-        """Return the places of drops after a time without contact, or the nearest ones on the plate [m] (2, b)."""
-        place = np.nan_to_num(self.place(drops, elapsed))
+        """Return the places of drops after a time without contact in a vacuum, or the nearest ones on the plate [m] (2, b)."""
+        with np.errstate(invalid="ignore"):
+            place = np.nan_to_num(self.sphere.take(drops).fly(self.state.take(drops), elapsed).position)
         return place if self.half is None else np.clip(place, -self.half, self.half)
 
-    def beside(self, drops: Drops, elapsed: Floats) -> Bools:
-        """Return which drops will be beside the plate after a time without contact [s]."""
+    def beside(self, drops: Drops, flight: Flight, time: Floats) -> Bools:
+        """Return which drops will be beside the plate at a time of their flights [s]."""
         if self.half is None:
             return np.zeros(len(drops), dtype=bool)
-        return np.asarray(np.isfinite(elapsed) & (np.abs(self.place(drops, elapsed)) > self.half).any(axis=0))
+        with np.errstate(invalid="ignore"):
+            place = self._flown(drops, flight, time).position
+        return np.asarray(np.isfinite(time) & (np.abs(place) > self.half).any(axis=0))
 
     def collide(self, drops: Drops, motions: Sequence[tuple[Drops, NormalMotion]], row: dict[str, Floats]) -> ObliqueContacts:
         """Advance drops through a contact, write its columns, and return the motion in it.
