@@ -183,10 +183,12 @@ def test_intervals_of_microslip_hold_the_truth_as_often_as_is_stated(known: bool
     check_coverage(inside("mdr", ALL, {"coefficient": 0.15}, 80, tmp_path, known=known, contact=contact))
 
 
-def test_a_bootstrap_agrees_with_the_profile(tmp_path: Path) -> None:
+@pytest.mark.parametrize("known", [True, False])
+def test_a_bootstrap_agrees_with_the_profile(known: bool, tmp_path: Path) -> None:
     x = (1.0 + RESTITUTION) / np.tan(np.radians(STEEP))
     measured = 1.0 - 0.2 * x + np.array([0.004, -0.006, 0.003, 0.005, -0.002])
-    file = table(tmp_path, STEEP, tangential_restitution=measured, tangential_restitution_standard_deviation=0.005)
+    deviations = {"tangential_restitution_standard_deviation": 0.005} if known else {}
+    file = table(tmp_path, STEEP, tangential_restitution=measured, **deviations)
     profile, drawn = (calibrated(file, {"law": "coulomb"}, bootstrap=draws) for draws in (0, 2000))
     assert drawn.bootstrap == 2000
     assert np.diff(drawn.intervals) == pytest.approx(np.diff(profile.intervals), rel=0.1)

@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from vibroimpact.arrays import Bools, Floats, Indices
 from vibroimpact.calibration.fitting import half_width, misfits
+from vibroimpact.calibration.friction.doubts import friction_doubts
 from vibroimpact.calibration.friction.intervals import bootstrap_intervals, profile_intervals
 from vibroimpact.calibration.friction.least_squares import Bounds, Minimum, Residuals, minimize
 from vibroimpact.calibration.friction.measured import ObliqueImpacts
 from vibroimpact.calibration.friction.parameters import FrictionParameters, ImpactModel, friction_parameters, impact_model
-from vibroimpact.calibration.observations import Observations
+from vibroimpact.calibration.observations import Observations, with_noise_scale
 from vibroimpact.calibration.section import FRICTION
 from vibroimpact.dynamics.problem import Problem, StatesProblem
 from vibroimpact.errors import ComputationError, InputError
-from vibroimpact.units.display import digits, text
 
 _NEARLY = 0.999  # gravity acts too
 _ALIKE = 1e-6  # relative difference of sums of squares
@@ -150,21 +150,18 @@ def calibrate_friction(
         name: np.linalg.norm(seen.noise[name], axis=1) / (1.0 if seen.deviations_known else np.sqrt(weight))
         for name, weight in counted.items()
     }
-    drawn = _samples(impacts, bootstrap, seed)
 
-    def residuals(values: Floats, chains: Indices) -> Floats:
+    def off(values: Floats, wanted: Mapping[str, Floats]) -> Floats:
         found = model(values)
-        return np.concatenate([(found[name] - drawn[name][chains]) / size for name, size in sizes.items()], axis=1)
+        return np.concatenate([(found[name] - wanted[name]) / size for name, size in sizes.items()], axis=1)
+
+    def measured(values: Floats, _: Indices) -> Floats:
+        return off(values, seen.wanted)
 
     begin = parameters.starts()
-    first = np.zeros(len(begin), dtype=np.intp)
-    costs = (residuals(begin, first) ** 2).sum(axis=1)
+    costs = (off(begin, seen.wanted) ** 2).sum(axis=1)
     best = begin[np.argsort(np.where(np.isnan(costs), np.inf, costs), kind="stable")[:_STARTS]]
     tell(0.1)
-
-    def measured(values: Floats, chains: Indices) -> Floats:
-        return residuals(values, np.zeros_like(chains))
-
     found = minimize(measured, best, bounds)
     at = int(np.argmin(found.cost))
     if not np.isfinite(found.cost[at]):
@@ -176,13 +173,22 @@ def calibrate_friction(
     known = seen.deviations_known and not (freedom > 0 and misfits(scatter, int(freedom)))
     intervals = None
     if known or freedom > 0:
-        width = half_width(confidence, np.inf if known else freedom) * (1.0 if known else scatter)
-        intervals = profile_intervals(residuals, least, bounds, width)
+        width = half_width(confidence, np.inf if known else freedom)
+        intervals = profile_intervals(measured, least, bounds, width * (1.0 if known else scatter))
         open_ends = np.stack([intervals[:, 0] <= bounds.least, intervals[:, 1] >= bounds.most], axis=1)
         tell(0.5)
         if bootstrap:
-            sample = bootstrap_intervals(residuals, least, bounds, bootstrap, confidence, lambda done: tell(0.5 + 0.4 * done))
-            intervals = np.where(open_ends, intervals, sample)
+            noisy = seen if known else with_noise_scale(seen, scatter, {} if seen.deviations_known else counted)
+            drawn = _samples(noisy, bootstrap, seed)
+
+            def sampled(values: Floats, chains: Indices) -> Floats:
+                return off(values, {name: rows[chains] for name, rows in drawn.items()})
+
+            ends = bootstrap_intervals(sampled, least, bounds, bootstrap, confidence, lambda done: tell(0.5 + 0.4 * done))
+            # the samples assume a known noise; widen the intervals where it is only estimated
+            best_values = least.values[0][:, None]
+            ends = best_values + width / half_width(confidence, np.inf) * (ends - best_values)
+            intervals = np.where(open_ends, intervals, ends)
         intervals = np.where(open_ends, parameters.allowed, intervals)
         idle = np.atleast_2d(open_ends.all(axis=1))
         if idle.any():  # what the measurement does not determine stays as it is
@@ -204,53 +210,8 @@ def calibrate_friction(
         scatter=scatter,
         confidence=confidence,
         bootstrap=bootstrap,
-        doubts=tuple(_doubts(parameters, values, intervals, seen, confidence, freedom, scatter, known=known)),
+        doubts=tuple(friction_doubts(parameters, values, intervals, seen, confidence, freedom, scatter, known=known)),
     )
-
-
-_WIDE = 1.0  # width of an interval, over its value or half its range, above which a value counts as undetermined
-_WOULD_TELL = {
-    "coefficient": "; impacts at larger angles from the normal, which slip throughout, would tell it",
-    "slip_restitution": "; impacts at smaller angles from the normal, which do not slip throughout, would tell it",
-    "effective_shear_modulus": "; impacts at smaller angles from the normal, which do not slip throughout, would tell it",
-}
-
-
-def _doubts(
-    parameters: FrictionParameters,
-    values: Floats,
-    intervals: Floats | None,
-    seen: Observations,
-    confidence: float,
-    freedom: float,
-    scatter: float,
-    *,
-    known: bool,
-) -> Iterator[str]:
-    """Yield warnings about parameters that the measurement does not determine, and about a law that does not follow it."""
-    if intervals is None:
-        yield "there are no more measured values than parameters, and no standard deviations: nothing tells how well these are known"
-        return
-    at = f"at {100.0 * confidence:g} %"
-    for name, unit, value, interval, ends in zip(parameters.names, parameters.units, values, intervals, parameters.allowed, strict=True):
-        low, high, shown = *(text(float(end), unit) for end in interval), text(float(value), unit)
-        below, above = interval == ends
-        full, more = f"{FRICTION}{name}", _WOULD_TELL.get(name, "")
-        wide = interval[1] - interval[0] > _WIDE * (0.5 * np.ptp(ends) if np.isfinite(ends).all() else abs(value))
-        if below and above:
-            yield f"these impacts do not determine {full}, which stays {shown}: they are met as well, {at}, with any value{more}"
-        elif above:
-            stick = " (with more friction they stick)" if name == "coefficient" else ""
-            yield f"these impacts tell that {full} is at least {low} {at}, and not how large it is{stick}{more}"
-        elif below and wide:
-            yield f"these impacts tell that {full} is at most {high} {at}, and not how small it is{more}"
-        elif wide:
-            yield f"these impacts do not determine {full}: {shown}, but {low} to {high} {at}"
-    if seen.deviations_known and freedom > 0 and not known:
-        yield (
-            f"residuals are {digits(scatter, 3)} times as large as their standard deviations: {parameters.law.name} does not follow the "
-            "measurement, or its noise is larger; the intervals are widened by that"
-        )
 
 
 def _as_given(residuals: Residuals, best: Minimum, given: Floats, bounds: Bounds) -> Minimum:
@@ -266,11 +227,11 @@ def _as_given(residuals: Residuals, best: Minimum, given: Floats, bounds: Bounds
     return best
 
 
-def _samples(impacts: ObliqueImpacts, number: int, seed: int) -> dict[str, Floats]:
-    """Return the measured quantities, (1 + number, n), and realizations of their noise about them after the first row."""
+def _samples(seen: Observations, number: int, seed: int) -> dict[str, Floats]:
+    """Return measured quantities with realizations of their noise, (number, n)."""
     random = np.random.default_rng(seed)
-    rows = [dict(impacts.seen.wanted), *(impacts.seen.redrawn(random)[1] for _ in range(number))]
-    return {name: np.stack([row[name] for row in rows]) for name in impacts.seen.wanted}
+    rows = [seen.redrawn(random)[1] for _ in range(number)]
+    return {name: np.stack([row[name] for row in rows]) for name in seen.wanted}
 
 
 def _one(model: ImpactModel, values: Floats) -> dict[str, Floats]:

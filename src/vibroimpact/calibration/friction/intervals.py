@@ -25,7 +25,7 @@ def profile_intervals(residuals: Residuals, best: Minimum, bounds: Bounds, rise:
     Parameters
     ----------
     residuals : callable
-        The residuals.
+        The residuals, the same for all chains.
     best : Minimum
         The minimum, of one chain.
     bounds : Bounds
@@ -54,7 +54,7 @@ def profile_intervals(residuals: Residuals, best: Minimum, bounds: Bounds, rise:
         start[rows, which[ends]] = places
         fixed = np.zeros(start.shape, dtype=bool)
         fixed[rows, which[ends]] = True
-        found = minimize(lambda values, chains: residuals(values, np.zeros_like(chains)), start, bounds, fixed)
+        found = minimize(residuals, start, bounds, fixed)
         return np.asarray(np.sqrt(np.maximum(found.cost - best.cost[0], 0.0)) - rise)
 
     half = _half_widths(residuals, best, bounds, rise)[which]
@@ -88,12 +88,12 @@ def _half_widths(residuals: Residuals, best: Minimum, bounds: Bounds, rise: floa
 def bootstrap_intervals(
     residuals: Residuals, best: Minimum, bounds: Bounds, draws: int, confidence: float, progress: Callable[[float], None]
 ) -> Floats:
-    """Return the ends of the intervals (K, 2) from fits to samples, which are the chains of the residuals from 1 on.
+    """Return the ends of the intervals (K, 2) from fits to samples, a chain each.
 
     Parameters
     ----------
     residuals : callable
-        The residuals; chain 0 is the measurement.
+        The residuals from the sample of each chain.
     best : Minimum
         The fit to the measurement.
     bounds : Bounds
@@ -106,10 +106,10 @@ def bootstrap_intervals(
         Called with the fraction done.
     """
     found = []
-    for begin in range(1, draws + 1, _AT_ONCE):
-        some = np.arange(begin, min(begin + _AT_ONCE, draws + 1))
+    for begin in range(0, draws, _AT_ONCE):
+        some = np.arange(begin, min(begin + _AT_ONCE, draws))
         start = np.repeat(best.values, len(some), axis=0)
         found.append(minimize(lambda values, chains, some=some: residuals(values, some[chains]), start, bounds).values)  # type: ignore[misc]
-        progress(float(some[-1]) / draws)
+        progress(float(some[-1] + 1) / draws)
     tails = 50.0 * (1.0 - confidence)
     return np.asarray(np.percentile(np.concatenate(found), [tails, 100.0 - tails], axis=0).T)

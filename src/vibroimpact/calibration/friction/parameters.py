@@ -49,11 +49,6 @@ class FrictionParameters:
         return tuple(self._told(name)["unit"] for name in self.names)
 
     @property
-    def words(self) -> tuple[str, ...]:
-        """Their meanings."""
-        return tuple(self._told(name)["meaning"] for name in self.names)
-
-    @property
     def given(self) -> Floats:
         """The values of the law as given, (K,)."""
         return np.array([float(getattr(self.law, name)) for name in self.names])
