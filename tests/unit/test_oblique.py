@@ -303,6 +303,15 @@ def test_sliding_is_bounded_also_where_gravity_turns_it() -> None:
         assert abs(found["friction_lost_J"][0]) < 1e-14
 
 
+def test_a_normal_force_that_pulls_gives_no_slip_back() -> None:
+    """Where all slips Coulomb's friction and Mindlin's contact are one law, also at the end of a contact that is drawn out."""
+    found = {}
+    for friction in ("mdr", "coulomb"):
+        oblique = vi.Oblique(velocity=(30.0, 0.0), friction=FRICTION[friction])
+        found[friction] = vi.simulate(problem("tsuji", oblique=oblique, impacts=1)).impacts["separation_velocity_x_m_s"][0]
+    assert found["coulomb"] == pytest.approx(found["mdr"], abs=1e-4)
+
+
 def test_a_dent_is_left_behind() -> None:
     moved = vi.tabulate(problem("thornton", oblique=vi.Oblique(velocity=(1.0, 0.0)))).impacts["restitution_achieved"]
     fresh = vi.tabulate(problem("thornton", same_spot=False)).impacts["restitution_achieved"]
