@@ -53,7 +53,7 @@ def table(folder: Path, angles: np.ndarray, **columns: Any) -> str:
 
 
 def calibrated(file: str, friction: dict[str, Any], parameter: Any = "friction.coefficient", **more: Any) -> vi.FrictionCalibration:
-    changes = {key: more.pop(key) for key in ("contact", "drop") if key in more}
+    changes = {key: more.pop(key) for key in ("contact", "drop", "plate") if key in more}
     found = vi.calibrate_case(
         vi.read_calibration({**case(friction, **changes), "calibrate": {"target": file, "parameter": parameter, **more}})
     )
@@ -300,6 +300,10 @@ def test_faults_of_the_case(tmp_path: Path) -> None:
     contact = {"law": "hunt-crossley", "restitution": 0.7, "local_compliance": "identified", "local_stiffness": 1e9, "local_damping": 10.0}
     with pytest.raises(vi.InputError, match="friction is fitted to single impacts of rigid bodies"):
         calibrated(section["target"], {"law": "mdr"}, contact=contact)
+    force = {"law": "hunt-crossley", "restitution": 0.7}
+    shaken = {**case({})["plate"], "motion": {"amplitude": "1 mm", "frequency": "25 Hz"}}
+    with pytest.raises(vi.InputError, match="the rebound from a plate at rest, and this one moves"):
+        calibrated(section["target"], {"law": "mdr"}, plate=shaken, drop={"speed": SPEED, "angle": 0.5}, contact=force)
     file = table(tmp_path, STEEP, tangential_restitution=0.8, restitution=0.8)
     with pytest.raises(vi.InputError, match="hertz has no parameter to meet it with"):
         calibrated(file, {"law": "coulomb"}, contact={"law": "hertz"})

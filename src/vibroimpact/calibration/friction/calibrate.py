@@ -132,15 +132,14 @@ def calibrate_friction(
     Raises
     ------
     InputError
-        If the friction law has no such parameter, or bodies deform.
+        If the friction law has no such parameter, or bodies deform, or the plate is moved.
     """
     tell, stated = progress or (lambda done: None), problem.to_problem()
     if stated.shape != ():
         raise InputError("one drop is calibrated at a time; take one of the batch")
-    if stated.vibrates:
-        raise InputError(
-            'friction is fitted to single impacts of rigid bodies; leave out what deforms, such as model = "elastic"', "parameter"
-        )
+    if stated.vibrates or stated.motion is not None:
+        words = "friction is fitted to single impacts of rigid bodies on a plate that lies still"
+        raise InputError(f'{words}; leave out what deforms or moves, such as model = "elastic"', "parameter")
     if bootstrap != 0 and not bootstrap >= 20:
         raise InputError(f"{bootstrap} draws tell no interval; it must be 0, or at least 20", "bootstrap")
     parameters = friction_parameters(stated, names)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -83,18 +84,18 @@ def _slip_charts(found: FrictionCalibration, curves: list[Curve]) -> list[Chart]
         return []
     whole = 1.0 + 1.0 / SOLID_SPHERE  # of the change of the centre's velocity is that of the contact point
 
-    def psi(one: ImpactModel, velocity: Floats) -> tuple[Floats, Floats]:
-        """Return dimensionless slips before and after impacts, with velocities along the plate after them [m/s]."""
+    def psi(one: ImpactModel, outcomes: Mapping[str, Floats], more: Floats | float = 0.0) -> tuple[Floats, Floats]:
+        """Return dimensionless slips before and after impacts that leave so much more velocity along the plate than computed [m/s]."""
         before = one.velocity - radius * one.spin
-        return before / (scale * one.speeds), (before + whole * (velocity - one.velocity)) / (scale * one.speeds)
+        after = outcomes["separation_velocity_x"] - radius * outcomes["spin_y_after"] + whole * more
+        return before / (scale * one.speeds), after / (scale * one.speeds)
 
-    marks: list[Mark] = [
-        Line(*psi(one, outcomes["separation_velocity_x"]), words, role) for _, one, outcomes, words, role in curves if role == "fit"
-    ]
-    before, computed = psi(model, found.outcomes["separation_velocity_x"])
+    marks: list[Mark] = [Line(*psi(one, outcomes), words, role) for _, one, outcomes, words, role in curves if role == "fit"]
+    before, computed = psi(model, found.outcomes)
     if not marks:
         marks.append(Points(before, computed, "computed", "other mark", impacts.seen.labels))
-    marks.append(Points(*psi(model, _measured_velocity(found, radius)), "measured", "matched", impacts.seen.labels))
+    more = _measured_velocity(found, radius) - found.outcomes["separation_velocity_x"]
+    marks.append(Points(*psi(model, found.outcomes, more), "measured", "matched", impacts.seen.labels))
     restitution = found.outcomes["separation_speed"] / impacts.seen.speeds
     return [slip_map(marks, before, restitution, np.full(len(before), ratio), "Single impacts, measured and computed with what was found.")]
 
@@ -108,7 +109,8 @@ def _measured_velocity(found: FrictionCalibration, radius: float) -> Floats:
         return matched["separation_velocity_x"]
     if "rebound_angle" in matched:
         return np.asarray(found.outcomes["separation_speed"] * np.tan(np.radians(matched["rebound_angle"])))
-    return np.asarray(impacts.velocity - SOLID_SPHERE * radius * (matched["spin_y_after"] - impacts.spin))
+    turned = matched["spin_y_after"] - found.outcomes["spin_y_after"]
+    return np.asarray(found.outcomes["separation_velocity_x"] - SOLID_SPHERE * radius * turned)
 
 
 def _curves(found: FrictionCalibration) -> list[Curve]:

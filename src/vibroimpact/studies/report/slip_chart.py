@@ -25,8 +25,11 @@ _OF_THE_CONTACT = ("sphere.radius", "sphere.material", "plate.radius", "plate.ma
 
 
 def slip_chart(study: Study) -> Chart | None:
-    """Return the dimensionless map of the first impacts; None if the study did not keep oblique impacts, or they have no friction."""
-    if any(name not in study.shapes or not study.shapes[name][-1] for name in _COLUMNS):
+    """Return the dimensionless map of the first impacts; None if the study did not keep oblique impacts, or they have no friction.
+
+    Nor is there one where the plate is moved, as the velocities of the impact table are not relative to it.
+    """
+    if study.table["plate"].get("motion") or any(name not in study.shapes or not study.shapes[name][-1] for name in _COLUMNS):
         return None
     numbers = drop_numbers(study, *sampled_places(study, MOST_DROPS))
     impacts = {name: sampled_output(study, name, MOST_DROPS).reshape(len(numbers), -1)[:, 0] for name in _COLUMNS}
