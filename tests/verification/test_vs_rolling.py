@@ -279,3 +279,15 @@ def test_gravity_across_the_slip_turns_the_friction_of_an_impact(friction: str, 
     found = solve_ivp(rates, (0.0, duration), start, method="Radau", rtol=1e-9, atol=1e-13, max_step=duration / 200.0).y[:, -1]
     across = np.array([impacts["separation_velocity_y_m_s"][0], RADIUS * impacts["spin_x_after_rad_s"][0]])
     np.testing.assert_allclose(across / (gravity[1] * duration), found[[3, 5]] / (gravity[1] * duration), atol=tolerance)
+
+
+def test_a_slip_of_rounding_is_none() -> None:
+    """A sphere that impacts have left rolling, up to rounding, across a slope goes on rolling: with 5/7 of gravity, and at once."""
+    one = np.ones(1)
+    ball = Sphere(one, 0.02 * one, 0.4 * 0.02**2 * one, np.array([[1.0], [0.0]]))
+    velocity = np.array([[1.3], [0.7]])
+    spin = np.array([[-0.7 / 0.02], [1.3 / 0.02], [0.0]]) * (1.0 + 1e-15)
+    state, _ = slide_and_roll(
+        ball, State(np.zeros((2, 1)), velocity, spin), vi.find_friction_law("coulomb")(coefficient=0.3), 9.81 * one, 2.0 * one
+    )
+    assert state.velocity[:, 0] == pytest.approx([1.3 + 2.0 * 5.0 / 7.0, 0.7], rel=1e-12)

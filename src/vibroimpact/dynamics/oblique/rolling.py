@@ -85,7 +85,7 @@ def slide_and_roll(sphere: Sphere, start: State, law: FrictionLaw | None, pressi
     gravity = np.broadcast_to(sphere.gravity, start.velocity.shape)
     lying = _Lying(gravity, sliding * pressing / share + none, rolling * pressing * (1.0 - share) / share + none, share + none)
     slip, turning = sphere.slip(start), sphere.turning(start)
-    rounding = (lying.resistance > 0.0) & (np.hypot(*slip) <= ACROSS * np.hypot(*turning))
+    rounding = np.hypot(*slip) <= ACROSS * np.hypot(*turning)  # of a sphere that rolls: its direction says nothing
     begin = np.where(rounding, 0.0, slip)
     found = _straight(begin, turning, lying, elapsed)
     for drop in np.flatnonzero(_turns(begin, turning, lying)):
