@@ -18,6 +18,7 @@ from studies import study_table
 from support import one_in, plain_case
 from told import told_case
 from vibroimpact.calibration.calibrate import calibrate
+from vibroimpact.calibration.reported import report_of
 from vibroimpact.calibration.text import calibration_summary
 from vibroimpact.cases.elastic.modes import compute_modes
 from vibroimpact.cli import main
@@ -84,7 +85,7 @@ def commands(tmp_path_factory: pytest.TempPathFactory, variable: vi.Response) ->
         "check": lambda _: case_explained(elastic),
         "check, study": lambda _: explain_sweep(sweep),
         "compare": lambda _: comparison_summary(compared),
-        "calibrate": lambda _: calibration_summary(case, calibrated),
+        "calibrate": lambda _: calibration_summary(case, report_of(case, calibrated)),
         "modes": lambda _: modes_summary(elastic, modes),
         "sweep": lambda width: study_summary(study, width),
         "export": lambda _: format_table(),

