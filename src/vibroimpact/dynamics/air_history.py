@@ -1,22 +1,24 @@
-"""Columns of the history of one drop that flies through air."""
+"""What air has taken in the history of one drop."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Sequence
 
 import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.flight_in_air import AirFlight
-from vibroimpact.dynamics.problem import Problem
-from vibroimpact.dynamics.rigid.segments import FlightSegment, Segment
+from vibroimpact.dynamics.leg import Leg
 
 
-def air_history(problem: Problem, impacts: Mapping[str, Floats], segment: Segment, times: Floats) -> dict[str, Floats]:
-    """Return the energy that air has taken by times since the start of a segment [J], and the acceleration if it is a flight."""
-    before = int(np.searchsorted(impacts["time_s"], segment.start, side="right"))
-    taken = np.full_like(times, impacts["air_lost_J"][:before].sum())
-    if not (isinstance(segment, FlightSegment) and isinstance(segment.flight, AirFlight)):
-        return {"air_J": taken}
-    flight, time = segment.flight, segment.flight.start + times
-    return {"air_J": taken + float(problem.sphere.mass) * flight.lost(time), "acceleration_m_s2": flight.acceleration(time)}
+def air_lost(legs: Sequence[Leg], mass: float, time: Floats) -> Floats:
+    """Return the energy that air has taken by times since the start of a run [J] (T,), from the flights of one drop of a mass [kg]."""
+    begin = np.maximum(np.searchsorted([float(leg.flight.start[0]) for leg in legs], time, side="right") - 1, 0)
+    found, before = np.zeros(len(time)), 0.0
+    for number, leg in enumerate(legs):
+        if isinstance(leg.flight, AirFlight):
+            here = begin == number
+            if here.any():
+                found[here] = before + mass * leg.flight.lost(np.minimum(time[here], leg.flight_end[0])[:, None])[:, 0]
+            before += mass * float(leg.flight.lost(leg.flight_end)[0])
+    return found

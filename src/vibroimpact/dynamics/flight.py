@@ -36,6 +36,10 @@ class Flight:
         elapsed = time - self.start
         return self.gap + elapsed * (self.velocity - 0.5 * self.gravity * elapsed), self.velocity - self.gravity * elapsed
 
+    def acceleration(self, time: Floats) -> Floats:
+        """Return the upward acceleration at times [s] (..., B) [m/s^2]."""
+        return np.asarray(0.0 * time - self.gravity)
+
     def touch(self, level: Floats) -> tuple[Floats, Floats]:
         r"""Return time [s] and approach speed [m/s] of the next touch; the time is infinite if there is none.
 

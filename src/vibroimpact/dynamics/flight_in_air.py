@@ -191,7 +191,7 @@ class AirFlight(Flight):
 
     def acceleration(self, time: Floats) -> Floats:
         """Return the upward acceleration at times [s] (..., B) [m/s^2]."""
-        return np.asarray(self._falling.acceleration(self._moving(time).velocity)[0][-1])
+        return np.asarray(self._falling.acceleration(np.moveaxis(self._moving(time).velocity, 0, -2))[0][..., -1, :])
 
     def carry(self, sphere: Sphere, state: State, time: Floats) -> State:
         """Return the state along the plate at times [s] (..., B), from that at the start of the flight."""

@@ -236,13 +236,11 @@ class Problem:
             )
 
     def _check_air(self, air: Air) -> None:
-        """Raise InputError unless drag is what matters of the air, and the bodies are rigid."""
+        """Raise InputError unless drag is what matters of the air, and the plate is at rest."""
         if not isinstance(air, Air):
             raise InputError(f"air must be an Air, not {air!r}")
-        if self.vibrates or self.motion is not None:
-            raise InputError(
-                "only a rigid sphere above a rigid plate at rest flies through air; leave out the air, or what deforms or moves"
-            )
+        if self.motion is not None:
+            raise InputError("a sphere above a plate that moves flies in a vacuum; leave out the air, or the motion")
         if not np.all(np.asarray(self.sphere.contact_offset) > 0.0):
             raise InputError("a sphere that flies through air needs a radius: its contact_offset, greater than 0 m")
         check_thin(air.density, density_of(self.sphere.mass, self.sphere.contact_offset))

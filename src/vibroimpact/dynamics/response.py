@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.air_history import air_history
+from vibroimpact.dynamics.air_history import air_lost
 from vibroimpact.dynamics.columns import (
     AIR_HISTORY_COLUMNS,
     HISTORY_COLUMNS,
@@ -346,12 +346,14 @@ class Response:
             from vibroimpact.dynamics.vibrating.history import vibrating_history
             from vibroimpact.dynamics.vibrating.rest_motion import RestMotion
 
-            of_bodies = [name for name in columns if name not in OBLIQUE_HISTORY_COLUMNS]
+            of_bodies = [name for name in columns if name not in OBLIQUE_HISTORY_COLUMNS and name not in AIR_HISTORY_COLUMNS]
             found, resting = vibrating_history(problem, segments[number], times, of_bodies), isinstance(segments[number].motion, RestMotion)
         if self.legs is not None and problem.oblique is not None:
             start = segments[number].start
             along = oblique_history(problem, self.legs, self.impacts["friction_lost_J"], start + times, start if resting else np.inf)
             found |= {name: values + found[name] if name in found else values for name, values in along.items()}
+        if self.legs is not None and problem.air is not None:
+            found["air_J"] = air_lost(self.legs, float(problem.sphere.mass), segments[number].start + times)
         return {name: found[name] for name in columns}
 
     def _rigid_history(self, segments: Timeline, number: int, times: Floats) -> dict[str, Floats]:
@@ -379,8 +381,8 @@ class Response:
             place, surface_velocity, _ = problem.surface(found["time_s"])
             drive = drive_before - (segment.drive_work(times) if isinstance(segment, RideSegment) else 0.0 * times)
             found |= {"surface_m": place, "surface_velocity_m_s": surface_velocity, "drive_J": drive}
-        if problem.air is not None:
-            found |= air_history(problem, self.impacts, segment, times)
+        if isinstance(segment, FlightSegment):
+            found["acceleration_m_s2"] = segment.flight.acceleration(segment.flight.start + times)
         return found
 
     @cached_property

@@ -38,6 +38,8 @@ class Drop:
         Acceleration of gravity [m/s^2]; with an inclined plate its part along the normal.
     oblique : Oblique, optional
         Motion along the plate, spin, friction and gravity along the plate; none by default.
+    in_air : bool, default False
+        Does air slow the sphere down in flight?
     laws : tuple of ContactLaw
         The contact law of the first impact, the second, ...; the last one holds for all further impacts.
     function : tuple of str and SpeedFunction, optional
@@ -78,6 +80,7 @@ class Drop:
     speed: float = 0.0
     gravity: float
     oblique: Oblique | None = None
+    in_air: bool = False
     laws: tuple[ContactLaw, ...]
     function: tuple[str, SpeedFunction] | None = None
     elastic: tuple[str, ...] = ()

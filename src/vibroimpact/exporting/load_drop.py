@@ -77,6 +77,7 @@ def drop_of_result(result: Result, case: Case, function: tuple[str, SpeedFunctio
         speed=float(motion.get("speed", 0.0 - motion.get("velocity", 0.0))),
         gravity=float(motion["gravity"]),
         oblique=oblique_of(case),
+        in_air=case.drop.air is not None,
         laws=contact_laws_of(case),
         function=function,
         elastic=tuple(elastic_names(case)),
@@ -92,13 +93,11 @@ def drop_of_result(result: Result, case: Case, function: tuple[str, SpeedFunctio
 
 
 def _check_flat(case: Case) -> None:
-    """Raise if the sphere falls on another sphere, on a plate that moves, or through air, which no export format supports."""
+    """Raise if the sphere falls on another sphere, or on a plate that moves, which no export format supports."""
     if case.plate.radius is not None:
         raise InputError("what is exported falls on a flat plate, and this sphere falls on another", "plate.radius")
     if case.plate.motion is not None:
         raise InputError("what is exported falls on a plate at rest, and this one moves", "plate.motion")
-    if case.drop.air is not None:
-        raise InputError("what is exported falls through a vacuum", "drop.air")
 
 
 def _of_calibration(folder: Path) -> Drop:

@@ -11,6 +11,7 @@ from vibroimpact.calibration.speed_function import SpeedFunction
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.simulate import simulate
+from vibroimpact.errors import InputError
 from vibroimpact.exporting.contact_parameters import law_at
 from vibroimpact.exporting.drop import Drop
 
@@ -24,7 +25,14 @@ def as_rigid(drop: Drop) -> Drop:
     The contact laws keep the order of the impacts: the first law is that of the first impact of the rigid bodies, and so on, though
     the approach speeds differ from those of elastic bodies, which absorb energy. A drop of rigid bodies is returned unchanged, unless
     a parameter is a function of the approach speed; then it is simulated with that function.
+
+    Raises
+    ------
+    InputError
+        If the sphere flies through air.
     """
+    if drop.in_air:
+        raise InputError("programs get drops in a vacuum; formats of data hold one in air", "drop.air")
     if drop.rigid is None:
         return drop
     response = simulate(drop.rigid) if drop.function is None else _by_function(drop.rigid, *drop.function)

@@ -207,9 +207,6 @@
     }
     const deforms = vibrates(table), rubs = table.contact.friction;
     if (deforms && rubs && IMPULSIVE.includes(rubs.law)) table.contact.friction = { law: "mdr", coefficient: rubs.coefficient };
-    // bodies that deform fall through a vacuum
-    if (deforms && "air" in table.drop) { controls.kept.air = table.drop.air; delete table.drop.air; }
-    if (!deforms && "air" in controls.kept && !("air" in table.drop)) { table.drop.air = controls.kept.air; delete controls.kept.air; }
     const local = ["local_compliance", "finite_sphere", "local_stiffness", "local_damping", "measured"];
     controls.kept.contact = controls.kept.contact || {};
     for (const key of local) {
@@ -347,11 +344,11 @@
       choose: (table, value) => { for (const key of ["speed", "height", "angle", "velocity"]) delete table.drop[key]; table.drop[value] = value === "speed" ? 5 : 2; },
     });
     const gravity = slider(controls, { path: ["drop", "gravity"], label: "Gravity", unit: "m/s²", low: 0.5, high: 25 });
-    const air = isFlat(controls.resolved) ? [choice(controls, {
+    const air = choice(controls, {
       path: ["drop", "air"], label: "Air", options: [["none", "none"], ["air", "at 20 °C and sea level"]],
       chosen: (table) => (!table.drop.air ? "none" : table.drop.air === true ? "air" : "given"),
       choose: (table, value) => { if (value === "none") delete table.drop.air; else if (value === "air") table.drop.air = true; },
-    })] : [];
+    });
     const size = at(controls.resolved, ["plate", "size"]);
     const place = size && controls.resolved.plate.radius === undefined
       ? [["x", 0], ["y", 1]].map(([label, side]) => slider(controls, { path: ["drop", "position", side], label, unit: "mm", size: 1e-3, low: -500 * size[side], high: 500 * size[side] }))
@@ -359,13 +356,13 @@
     // a velocity takes the place of speed and angle
     if (at(controls.resolved, ["drop", "velocity"]) !== undefined) {
       const ends = [[-20, 20], [-20, 20], [-20, "height" in controls.resolved.drop ? 20 : -0.05]];
-      return [how, ...ends.map(([low, high], axis) => slider(controls, { path: ["drop", "velocity", axis], label: `Velocity ${"xyz"[axis]}`, unit: "m/s", low, high })), ...place, gravity, ...air];
+      return [how, ...ends.map(([low, high], axis) => slider(controls, { path: ["drop", "velocity", axis], label: `Velocity ${"xyz"[axis]}`, unit: "m/s", low, high })), ...place, gravity, air];
     }
     const angle = bySpeed && isFlat(controls.resolved) ? [slider(controls, { path: ["drop", "angle"], label: "Angle", unit: "deg", size: Math.PI / 180, low: -85, high: 85, otherwise: 0 })] : [];
     return [how, bySpeed
       ? slider(controls, { path: ["drop", "speed"], label: "Speed", unit: "m/s", low: 0.05, high: 20, log: true })
       : slider(controls, { path: ["drop", "height"], label: "Height", unit: "m", low: 0.06, high: 10, log: true }),
-    ...angle, ...place, gravity, ...air];
+    ...angle, ...place, gravity, air];
   };
 
   // The controls of the table of a case; `changed` is called after every change of it, with whether the control is let go.

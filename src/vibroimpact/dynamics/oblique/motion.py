@@ -76,10 +76,10 @@ class ObliqueMotion:
             moved = self._flown(drops, flight, time).position - self.state.take(drops).position
         return np.asarray(np.nan_to_num(np.hypot(*moved)))
 
-    def place_on_plate(self, drops: Drops, elapsed: Floats) -> Floats:
-        """Return the places of drops after a time without contact in a vacuum, or the nearest ones on the plate [m] (2, b)."""
+    def place_on_plate(self, drops: Drops, flight: Flight, time: Floats) -> Floats:
+        """Return the places of drops at times of their flights [s], or the nearest ones on the plate [m] (2, b)."""
         with np.errstate(invalid="ignore"):
-            place = np.nan_to_num(self.sphere.take(drops).fly(self.state.take(drops), elapsed).position)
+            place = np.nan_to_num(self._flown(drops, flight, time).position)
         return place if self.half is None else np.clip(place, -self.half, self.half)
 
     def beside(self, drops: Drops, flight: Flight, time: Floats) -> Bools:

@@ -15,11 +15,13 @@ from vibroimpact.dynamics.columns import VIBRATING_IMPACT_COLUMNS
 from vibroimpact.dynamics.contact import CAPTURED, RIDING, SETTLED, Contact, Piece
 from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.flight import Flight
+from vibroimpact.dynamics.flight_in_air import AirFlight
 from vibroimpact.dynamics.leg import Leg
 from vibroimpact.dynamics.lockstep import Coroutine, run_in_lockstep
 from vibroimpact.dynamics.oblique.motion import ObliqueMotion
 from vibroimpact.dynamics.oblique.state import ObliqueContacts
 from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.vibrating.air_motion import AirMotion
 from vibroimpact.dynamics.vibrating.carried_motion import carry
 from vibroimpact.dynamics.vibrating.contact_equilibrium import ContactEquilibrium
 from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
@@ -129,7 +131,7 @@ class VibratingBodies:
 
     def __init__(self, problem: Problem, mass: Floats, gravity: Floats, oblique: ObliqueMotion | None) -> None:
         self.problem, self.mass, self.gravity, self.oblique, size = problem, mass, gravity, oblique, len(mass)
-        sensitive = problem.sensitivity and oblique is None
+        sensitive = problem.sensitivity and oblique is None and problem.air is None
         self.columns = tuple(name for name in VIBRATING_IMPACT_COLUMNS if sensitive or name != "sensitivity")
         pairs = list(zip(mass.tolist(), gravity.tolist(), strict=True))
         self.system = system_of(problem, *pairs[0])
@@ -163,25 +165,32 @@ class VibratingBodies:
         """Return the times of the next touch [s], the approach speeds of the rigid bodies then [m/s], and the free motions of the drops."""
         assert isinstance(law, CompliantLaw)  # the problem has seen to it
         levels, guess = law.touch_level + np.zeros(len(drops)), flight.touch(np.zeros(1))[0] - flight.start
-        states = [self.state(drop, *sphere) for drop, *sphere in zip(drops, flight.gap, flight.velocity, strict=True)]
-        found = [self._touch(*one) for one in zip(drops.tolist(), states, levels.tolist(), guess.tolist(), strict=True)]
+        flights = [flight.take(np.array([number])) for number in range(len(drops))]
+        found = [self._touch(*one) for one in zip(drops.tolist(), flights, levels.tolist(), guess.tolist(), strict=True)]
         motions, elapsed = tuple(motion for motion, _ in found), np.array([time for _, time in found])
         touch = flight.start + elapsed
         when = np.where(np.isfinite(elapsed), touch, flight.start)
         return touch, -self._rigid_speed(drops, flight.at(when)[1] - self.problem.surface(when)[1]), motions
 
-    def _touch(self, drop: int, state: State, level: float, guess: float) -> tuple[FreeMotion, float]:
+    def _free(self, drop: int, flight: Flight) -> FreeMotion:
+        """Return the free motion of a drop whose sphere is on a flight."""
+        state = self.state(drop, float(flight.gap[0]), float(flight.velocity[0]))
+        if isinstance(flight, AirFlight):
+            return AirMotion(self.systems[drop], state, flight)
+        return FreeMotion(self.systems[drop], state)
+
+    def _touch(self, drop: int, flight: Flight, level: float, guess: float) -> tuple[FreeMotion, float]:
         """Return the free motion of a drop and the time until it touches [s], where it then is over the plate; `guess`: about that time."""
         if self.oblique is None or self.problem.at_place is None:
-            motion = FreeMotion(self.systems[drop], state)
+            motion = self._free(drop, flight)
             return motion, next_touch(motion, level, np.inf)
         one, place = np.array([drop]), None
         for _ in range(_MOST_PLACES):  # the deflection of the plate where it falls changes the time a little, and that the place
-            before, place = place, self.oblique.place_on_plate(one, np.array([guess]))[:, 0]
+            before, place = place, self.oblique.place_on_plate(one, flight, flight.start + guess)[:, 0]
             if before is not None and np.abs(place - before).max() <= _SAME_PLACE:
                 break
             self.move_to(drop, (float(place[0]), float(place[1])))
-            motion = FreeMotion(self.systems[drop], state)
+            motion = self._free(drop, flight)
             time = next_touch(motion, level, np.inf)
             if not np.isfinite(time):
                 break

@@ -12,6 +12,7 @@ from vibroimpact.dynamics.columns import MOTION_COLUMNS
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.shaken.statement import PlateMotion
 from vibroimpact.dynamics.shaken.steady import steady_phasors
+from vibroimpact.dynamics.vibrating.air_motion import AirMotion
 from vibroimpact.dynamics.vibrating.bodies import bases_of_plate, centre_of, slices_of
 from vibroimpact.dynamics.vibrating.free_motion import FreePhase
 from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State
@@ -52,7 +53,9 @@ def _motion_columns(problem: Problem, segment: VibratingSegment, time: Floats, s
         "time_s": segment.start + time,
         "position_m": float(problem.sphere.contact_offset) - depth,
         "velocity_m_s": -fall_speed,
-        "acceleration_m_s2": force / mass - gravity,
+        "acceleration_m_s2": motion.flight.acceleration(segment.start + time[:, None])[:, 0]
+        if isinstance(motion, AirMotion)
+        else force / mass - gravity,
         "force_N": force,
         "indentation_m": indentation,
         "kinetic_J": 0.5 * mass * fall_speed**2,

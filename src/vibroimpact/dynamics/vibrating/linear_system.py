@@ -263,6 +263,10 @@ class FreeMotion:
         massless = system.local_energy(self.start) - system.local_energy(state)
         return np.concatenate([coordinates, massless[..., None]], axis=-1)
 
+    def pull(self, time: float) -> Floats:
+        """Return a bound of the acceleration of the approach by what acts on the sphere [m/s^2] (contacts,), from a time on [s]."""
+        return self.system.gravity
+
     def motion(self, time: Floats) -> tuple[Floats, Floats]:
         """Return the approach of the surfaces [m] and its rate [m/s] at times since the start [s], (..., contacts)."""
         state = self.state(time)

@@ -32,13 +32,13 @@ def next_touch(motion: FreeMotion, level: float, until: float, contact: int = 0)
     contact : int, default 0
         Number of the contact in the system.
     """
-    system, gravity = motion.system, float(motion.system.gravity[contact])
+    system = motion.system
     omega, size, local = system.angular_frequency, np.abs(system.shape[contact]), system.local_incidence[contact]
     time = time_to_separation(motion, level, contact)
     if not time < until:
         return np.inf
     for _ in range(_MOST_STEPS):
-        state = motion.state(np.array(time))
+        state, gravity = motion.state(np.array(time)), float(motion.pull(time)[contact])
         gap, opening = level - float(system.approach(state)[contact]), -float(system.rates(state)[contact])
         # the gap is closed to the rounding error of the time
         if time > 0.0 and opening <= 0.0 and gap <= -4e-16 * opening * time:

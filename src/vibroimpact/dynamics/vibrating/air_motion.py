@@ -1,0 +1,37 @@
+"""Free motion of bodies that vibrate, while the sphere flies through air."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.dynamics.flight_in_air import AirFlight
+from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, State
+
+
+@dataclass(frozen=True)
+class AirMotion(FreeMotion):
+    """Motion without contact force in which the sphere, the first coordinate, flies through air; `flight`: its flight alone."""
+
+    flight: AirFlight
+
+    def state(self, time: Floats) -> State:
+        """Return the state at times since the start [s] (...)."""
+        vibrating, root = super().state(time), 1.0 / self.system.shape[0, 0]
+        gap, velocity = (part[..., 0] for part in self.flight.at(self._when(time)))
+        displacement, speed = vibrating.displacement.copy(), vibrating.velocity.copy()
+        displacement[..., 0], speed[..., 0] = -root * gap, -root * velocity
+        return replace(vibrating, displacement=displacement, velocity=speed)
+
+    def pull(self, time: float) -> Floats:
+        """Return a bound of the acceleration of the approach by what acts on the sphere [m/s^2] (contacts,), from a time on [s].
+
+        A rising sphere is slowed less and less, at last by gravity, and a falling one is accelerated by less than that.
+        """
+        now = abs(float(self.flight.acceleration(self._when(np.array(time)))[0]))
+        return np.maximum(self.system.gravity, now)
+
+    def _when(self, time: Floats) -> Floats:
+        return np.asarray(self.flight.start + np.asarray(time, dtype=float)[..., None])
