@@ -116,6 +116,8 @@ def test_every_choice(case: str, page: Page, server: Server) -> None:
                 )
             elif key.endswith("damping"):
                 assert (value_at(case_shown, key) == "adams-default") == (value == "adams-default")
+            elif key == "drop.air":
+                assert ("air" in case_shown["drop"]) == (value == "air")
             elif key == "contact.friction.law":
                 assert case_shown["contact"].get("friction", {}).get("law", "none") == value
             elif key.endswith("material"):
