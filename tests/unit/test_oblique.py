@@ -166,17 +166,17 @@ def test_a_batch_is_its_drops() -> None:
 def energies_of_random_impacts(number: int, seed: int, rolling: float = 0.0) -> tuple[Floats, Floats]:
     """Return the energies along the plate before and after random impacts [J]; `rolling`: coefficient of rolling friction."""
     random = np.random.default_rng(seed)
-    before, after = [], []
-    for _ in range(0, number, 2000):
-        pair = {"effective_modulus": 10 ** random.uniform(7, 11, 2000), "effective_shear_modulus": 10 ** random.uniform(7, 11, 2000)}
+    before, after, size = [], [], min(number, 8000)
+    for _ in range(0, number, size):
+        pair = {"effective_modulus": 10 ** random.uniform(7, 11, size), "effective_shear_modulus": 10 ** random.uniform(7, 11, size)}
         friction = vi.find_friction_law("mdr")(
-            coefficient=10 ** random.uniform(-3, 1, 2000), rolling_coefficient=rolling, effective_radius=RADIUS, **pair
+            coefficient=10 ** random.uniform(-3, 1, size), rolling_coefficient=rolling, effective_radius=RADIUS, **pair
         )
         law = vi.find_contact_law("hunt-crossley")(
-            stiffness=4.0 / 3.0 * pair["effective_modulus"] * 0.1, restitution=random.uniform(0.0, 1.0, 2000)
+            stiffness=4.0 / 3.0 * pair["effective_modulus"] * 0.1, restitution=random.uniform(0.0, 1.0, size)
         )
-        speed, angle = 10 ** random.uniform(-1, 1, 2000), random.uniform(0.0, 0.5 * np.pi, 2000)
-        spin = tuple(random.normal(0.0, 1.0, 2000) * speed / RADIUS for _ in range(3))
+        speed, angle = 10 ** random.uniform(-1, 1, size), random.uniform(0.0, 0.5 * np.pi, size)
+        spin = tuple(random.normal(0.0, 1.0, size) * speed / RADIUS for _ in range(3))
         oblique = vi.Oblique(velocity=(speed * np.sin(angle), 0.0), spin=spin, friction=friction)
         ball = vi.Body(mass=MASS, contact_offset=RADIUS)
         drops = vi.Problem(

@@ -16,7 +16,7 @@ from vibroimpact.dynamics.rest import Rest
 from vibroimpact.dynamics.run import Run
 from vibroimpact.errors import InputError
 
-_BLOCK = 2000  # drops run together: many enough for array operations, few enough for the cache
+_BLOCK, _OBLIQUE_BLOCK = 2000, 8000  # drops run together: many enough for array operations, few enough for the cache
 
 
 def tabulate(problem: StatesProblem, progress: Callable[[float], None] | None = None) -> Response:
@@ -58,12 +58,12 @@ def tabulate(problem: StatesProblem, progress: Callable[[float], None] | None = 
     if not hasattr(problem, "to_problem"):
         raise InputError(f"tabulate takes a Problem, or a case as vi.load_case(...) reads it, not {problem!r}")
     stated = problem.to_problem()
-    size = math.prod(stated.shape)
+    size, block = math.prod(stated.shape), _BLOCK if stated.oblique is None else _OBLIQUE_BLOCK
     parts = []
-    for begin in range(0, size, _BLOCK):
-        parts.append(_table_of(stated if size <= _BLOCK else stated.take(slice(begin, begin + _BLOCK))))
+    for begin in range(0, size, block):
+        parts.append(_table_of(stated if size <= block else stated.take(slice(begin, begin + block))))
         if progress is not None:
-            progress(min((begin + _BLOCK) / size, 1.0))
+            progress(min((begin + block) / size, 1.0))
     found = parts[0] if len(parts) == 1 else _joined(stated, parts)
     return found.squeezed() if stated.shape == () else found
 

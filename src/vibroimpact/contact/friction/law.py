@@ -11,7 +11,7 @@ A law is a frozen dataclass in a file of its own under `vibroimpact.contact.fric
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Protocol
+from typing import ClassVar, NamedTuple, Protocol
 
 import numpy as np
 
@@ -91,8 +91,8 @@ class CompliantFriction(FrictionLaw):
         radius = np.cbrt(0.75 * force * self.effective_radius / self.effective_modulus)
         return np.asarray(_TWISTING * self.coefficient * force * radius)
 
-    def memory(self, size: int, steps: int) -> Memory:
-        """Return the memory of `size` contacts before first touch, for at most `steps` advances."""
+    def memory(self, size: int) -> Memory:
+        """Return the memory of `size` contacts before first touch."""
         raise NotImplementedError
 
     def history(self, largest_force: float) -> TangentialHistory:
@@ -100,27 +100,44 @@ class CompliantFriction(FrictionLaw):
         raise NotImplementedError
 
 
-Pair = tuple[Floats, Floats]
-"""Two arrays (b,)."""
+class Step(NamedTuple):
+    r"""A step of b contacts; its parameter goes from 0 to 1.
+
+    `depth`, `displacement`: value and rate at its start and at its end, in this order (4, b): of the depth D under the normal force [m],
+    and of s over kappa [m]. `integral`: I at its start, its rate there, and :math:`\int \sqrt D^{\,p} ds` over the step (3, b), p as the
+    memory says.
+    """
+
+    depth: Floats
+    displacement: Floats
+    integral: Floats
 
 
 class Memory(Protocol):
-    """Tangential displacements of a contact under way, of B contacts, and the force that follows from them."""
+    r"""Tangential displacements of a contact under way, of B contacts, and the force that follows from them.
 
-    def advance(self, drops: Drops, depth: Floats, displacement: Floats, sticking: Floats, rates: Pair) -> Pair:
-        """Go on to another depth and displacement; return the integral I [m^1.5] and its rate.
+    `power`: p of the integrals :math:`\int \sqrt D^{\,p} ds` that it needs.
+    """
 
-        Parameters
-        ----------
-        drops : array of int, shape (b,)
-            Which of the contacts.
-        depth, displacement : array, shape (b,)
-            Depth D under the normal force [m], and s over kappa [m].
-        sticking : array, shape (b,)
-            The integral if no point of the contact slips on the way.
-        rates : tuple of two arrays, shape (b,)
-            Rates of depth and displacement at the end of the way.
+    power: ClassVar[int]
+
+    def turns(self, drops: Drops | slice, step: Step) -> tuple[Drops, Floats, Floats]:
+        """Return which of b contacts change within a step, at which places in it, and how near these are to where the force is not smooth.
+
+        What changes is whether they stick, slip or slide; nothing at the place 1, the end of the step. The last is the distance over that
+        at the start of the step, and 1 if it does not matter.
         """
+        ...
+
+    def turn(self, drops: Drops, depth: Floats, force: Floats) -> Floats:
+        """Let contacts change as `turns` told for where they are now; return the force from there on.
+
+        `depth`: with its rate (2, b); `force`: as `advance` returns it.
+        """
+        ...
+
+    def advance(self, drops: Drops | slice, step: Step) -> Floats:
+        """Take a step with contacts; return the integral I [m^1.5], and its derivatives by displacement and by depth (3, b)."""
         ...
 
 

@@ -11,98 +11,190 @@ displacement S(c) at which it would be free of force. In the coordinates
 .. math:: q = c - S,\qquad p = c + S
 
 the curve rises in both, and ends at the present :math:`(D - s, D + s)`. When that moves on, every spring slips whose q or p is larger than
-that of the end: the curve is cut there, and closed by a straight line. What is kept of it are its corners, the turning points of the
-history.
+that of the end: the curve is cut there, and closed by a straight line. What is kept of it are points with slopes, between which it is a
+cubic, and the straight lines that slip has left. On these the parameter rises with x, so that they are cubics too, as is the integral.
 """
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 import numpy as np
 
 from vibroimpact.arrays import Drops, Floats
-from vibroimpact.contact.friction.law import Pair
+from vibroimpact.contact.friction.cubics import place_of_turn, place_of_value
+from vibroimpact.contact.friction.law import Step
 
-_FIRST = 2  # rows below the first corner: one that nothing passes, and the middle of the contact
+_VALUES, _FIRST, _LAST = slice(0, 3), slice(3, 6), slice(6, 9)
+"""Rows of a point: depth, displacement and integral there, and their slopes at both ends of the piece of the curve that leads to it."""
+
+_ROUNDING = 1e-9
+"""Part of the depth that is none."""
+
+_FAR, _CLOSE = 0.1, 0.25
+"""Where the front of the slip comes to the middle of the contact within a step, from farther than the first part of the depth, the second
+part of the way is left to a further step, since the force is not smooth at its end."""
 
 
 class TurningPoints:
-    """Curves of B contacts, each a stack of corners; see the module.
+    """Curves of contacts, each a chain of points from the middle of the contact to its rim; see the module.
 
     Parameters
     ----------
     size : int
         Number of contacts.
-    steps : int
-        Number of times that they will be advanced.
 
     Examples
     --------
     A contact is pressed to the depth 1, then displaced by 0.19: the force is Cattaneo's, :math:`1 - (1 - s)^{3/2}` of that of sliding.
 
-    >>> memory, first = TurningPoints(1, 2), np.array([0])
-    >>> for depth, displacement in ((1.0, 0.0), (1.0, 0.19)):
-    ...     there = np.array([depth]), np.array([displacement])
-    ...     integral, _ = memory.advance(first, *there, there[1], (np.zeros(1), np.ones(1)))
+    >>> memory, first = TurningPoints(1), np.array([0])
+    >>> for depth, displacement in (([0.0, 1.0], [0.0, 0.0]), ([1.0, 1.0], [0.0, 0.19])):
+    ...     ends = [np.array([[start], [end - start], [end], [end - start]]) for start, end in (depth, displacement)]
+    ...     integral, _, _ = memory.advance(first, Step(*ends, np.zeros((3, 1))))
     >>> (1.5 * integral).round(6).tolist(), round(1 - (1 - 0.19) ** 1.5, 6)
     ([0.271], 0.271)
     """
 
-    def __init__(self, size: int, steps: int) -> None:
-        self.size = size
-        # one row after the other in a flat array: the corner below another one is `size` before it
-        self.q, self.p, self.integral = (np.zeros((steps + _FIRST + 1) * size) for _ in range(3))
-        self.q[:size] = self.p[:size] = -np.inf
-        self.top = np.arange(size) + size
+    power: ClassVar[int] = 1
 
-    def advance(self, drops: Drops, depth: Floats, displacement: Floats, sticking: Floats, rates: Pair) -> Pair:
-        """Go on to another depth and displacement; return the integral of the displacements, and its rate. See `Memory`."""
-        q, p, top = depth - displacement, depth + displacement, self.top[drops]
-        rim = np.sqrt(depth)
-        integral, front, direction = sticking.copy(), rim.copy(), np.zeros(len(q))
-        slips = np.flatnonzero((q < self.q[top]) | (p < self.p[top]))
-        if slips.size:
-            below = self._below(top[slips] - self.size, q[slips], p[slips])
-            top[slips] = below + self.size
-            integral[slips], front[slips], direction[slips] = self._cut(below, q[slips], p[slips], rim[slips])
-        top += self.size
-        self.q[top], self.p[top], self.integral[top], self.top[drops] = q, p, integral, top
-        of_depth, of_displacement = rates
-        return integral, front * of_displacement + direction * (rim - front) * of_depth
+    def __init__(self, size: int) -> None:
+        self.every = np.arange(size)
+        # points in the order in which they come; those of the middle of the contacts are the first
+        self.points, self.below, self.used = np.empty((9, 64 * size)), np.empty(64 * size, dtype=np.intp), size
+        self.points[:, :size], self.below[:size], self.top = 0.0, self.every, self.every.copy()
+        self.fresh = True
+        self.rises = np.zeros((2, size), dtype=bool)  # do depth less displacement and depth plus displacement rise?
+        self.slides = np.zeros(size, dtype=bool)  # does the middle of the contact slide?
+        self.next = np.zeros(size, dtype=np.intp)  # which of these three changes next; 3 if none does
 
-    def _below(self, at: Drops, q: Floats, p: Floats) -> Drops:
-        """Return the places of the last corners, at or before those given, that the ends (q, p) do not cut off."""
-        left = np.flatnonzero((self.q[at] > q) | (self.p[at] > p))
+    def turns(self, drops: Drops | slice, step: Step) -> tuple[Drops, Floats, Floats]:
+        """Return which contacts begin or cease to slip at the rim, or begin to slide in the middle, and where; see `Memory`."""
+        (before, _, depth, deepening), (start, _, displacement, rate) = step.depth, step.displacement
+        every = self.every[drops]
+        middle = self.points[1, every]
+        left, left_before = depth - np.abs(displacement - middle), before - np.abs(start - middle)
+        changes = np.stack([deepening > rate, deepening > -rate])
+        if self.fresh:
+            self.rises, self.slides, self.fresh = changes.copy(), left < 0.0, False
+        changes ^= self.rises[:, every]
+        changes &= depth > _ROUNDING * before  # not in the step that ends the contact
+        comes = left * before < 0.5 * left_before * depth
+        comes &= (left_before > _ROUNDING * before) & ~self.slides[every]
+        some = np.flatnonzero(changes[0] | changes[1] | comes)
+        if not some.size:
+            return some, np.empty(0), np.empty(0)
+        changes, ends, moved, who = changes[:, some], step.depth[:, some], step.displacement[:, some], every[some]
+        places, near = np.full((3, len(some)), np.inf), np.ones(len(some))
+        for row, sign in enumerate((-1.0, 1.0)):
+            here = np.flatnonzero(changes[row])
+            if here.size:
+                found = places[row, here] = place_of_turn(ends[:, here] + sign * moved[:, here])
+                self.rises[row, who[here[found == 0.0]]] ^= True  # it changed before
+        which = places.argmin(axis=0)
+        here = np.flatnonzero(comes[some])
+        if here.size:
+            left, left_before, sign = left[some[here]], left_before[some[here]], np.sign(moved[2, here] - middle[some[here]])
+            _, slope, _, slope_there = sign * moved[:, here] - ends[:, here]
+            far = (left < _FAR * left_before) & (left_before > _FAR * ends[0, here])
+            rest = np.where(far, _CLOSE * left_before, 0.0)
+            found = np.where(far | (left < 0.0), place_of_value(left_before - left, slope, slope_there, rest - left), 1.0)
+            first = found < places[:2, here].min(axis=0)
+            places[2, here] = found
+            near[here] = np.where(first, np.clip(np.where(far, _CLOSE, left / left_before), 0.0, 1.0), 1.0)
+            which[here] = np.where(first, np.where(far, 3, 2), which[here])
+        self.next[who] = which
+        places = places.min(axis=0)
+        kept = np.flatnonzero((places > 0.0) | (which > 1))
+        return some[kept], places[kept], near[kept]
+
+    def turn(self, drops: Drops, depth: Floats, force: Floats) -> Floats:
+        """Let contacts begin or cease to slip, where both forces change steadily; see `Memory`."""
+        which = self.next[drops]
+        rim = which < 2
+        self.rises[which[rim], drops[rim]] ^= True
+        self.slides[drops[which == 2]] = True
+        return force
+
+    def advance(self, drops: Drops | slice, step: Step) -> Floats:
+        """Take a step; return the integral and its derivatives. See `Memory`."""
+        (before, deepening_before, depth, deepening), (start, rate_before, displacement, rate) = step.depth, step.displacement
+        every, found = self.every[drops], np.zeros((3, len(depth)))
+        integral, rim = found[:2]
+        np.add(step.integral[0], step.integral[2], out=integral)
+        np.sqrt(depth, out=rim)
+        new = self._more(len(depth))
+        values = (depth, displacement, integral, deepening_before, rate_before, step.integral[1], deepening, rate, rim * rate)
+        for row, value in zip(self.points, values, strict=True):
+            row[new] = value
+        self.below[new] = self.top[every]
+        self.top[every] = np.arange(new.start, new.stop)
+        offset = displacement - self.points[1, every]
+        slides = self.slides[every] = np.abs(offset) > depth
+        whole, part = np.flatnonzero(slides), np.flatnonzero((np.abs(displacement - start) > depth - before) & ~slides)
+        if whole.size:
+            middle, moved = every[whole], np.sign(offset[whole]) * depth[whole]
+            self.points[1, middle] = displacement[whole] - moved
+            found[:, whole] = self._close(new.start + whole, middle, np.zeros((3, len(whole))), moved, rim[whole], np.sign(moved))
+        if part.size:
+            found[:, part] = self._slip(new.start + part, depth[part], displacement[part], rim[part])
+        return found
+
+    def _more(self, number: int) -> slice:
+        """Return the places of further points."""
+        new = slice(self.used, self.used + number)
+        self.used = new.stop
+        if new.stop > len(self.below):
+            self.points = np.concatenate([self.points, np.empty_like(self.points)], axis=1)
+            self.below = np.concatenate([self.below, np.empty_like(self.below)])
+        return new
+
+    def _slip(self, new: Drops, depth: Floats, displacement: Floats, rim: Floats) -> Floats:
+        """Cut the curves below new points at the rim, close them by lines, and return integrals and derivatives."""
+        q, p = depth - displacement, depth + displacement
+        above = self._above(self.below[new], q, p)
+        below = self.below[above]
+        low, piece = self.points[_VALUES].take(below, axis=1), self.points.take(above, axis=1)
+        high, first, last = piece[_VALUES], piece[_FIRST], piece[_LAST]
+        change = high - low
+        # of the two coordinates, the one that cuts lower
+        left_q, left_p = high[0] - high[1] - q, high[0] + high[1] - p
+        forward = left_q * (change[0] + change[1]) >= left_p * (change[0] - change[1])
+        sign = np.where(forward, 1.0, -1.0)
+        rise, slope, slope_there = (one[0] - sign * one[1] for one in (change, first, last))
+        place = place_of_value(rise, slope, slope_there, np.where(forward, left_q, left_p))
+        bend, twist = 3.0 * change - 2.0 * first - last, first + last - 2.0 * change
+        there = self._more(len(new))
+        cut = self.points[:, there]
+        cut[_VALUES] = low + place * (first + place * (bend + place * twist))
+        cut[_FIRST] = first * place
+        cut[_LAST] = (first + place * (2.0 * bend + 3.0 * place * twist)) * place
+        self.below[there] = below
+        return self._close(new, np.arange(there.start, there.stop), cut[_VALUES], displacement - cut[1], rim, sign)
+
+    def _close(self, new: Drops, below: Drops, low: Floats, moved: Floats, rim: Floats, sign: Floats) -> Floats:
+        """Close the curves by lines from points to the rim, and return integrals and derivatives.
+
+        `low`: values at these points (3, b); `moved`: change of the displacement along the lines; `sign`: the direction of slip.
+        """
+        front = np.sqrt(np.maximum(low[0], 0.0))
+        width, total = rim - front, rim + front
+        integral = low[2] + moved * (2.0 / 3.0) * (total - front * rim / (total + 1e-300))
+        self.below[new] = below
+        self.points[2, new] = integral
+        for rows, radius in ((_FIRST, front), (_LAST, rim)):
+            rise = 2.0 * radius * width
+            for row, value in zip(self.points[rows], (rise, sign * rise, radius * sign * rise), strict=True):
+                row[new] = value
+        return np.stack([integral, front, sign * width])
+
+    def _above(self, at: Drops, q: Floats, p: Floats) -> Drops:
+        """Return the points, at or below those given, above which nothing is left of the curves."""
+        left = np.arange(len(at))
         while left.size:
-            at[left] -= self.size
-            here = at[left]
-            left = left[(self.q[here] > q[left]) | (self.p[here] > p[left])]
+            below = self.below[at[left]]
+            depth, displacement = self.points[0].take(below), self.points[1].take(below)
+            off = np.flatnonzero(((depth - displacement > q[left]) | (depth + displacement > p[left])) & (below >= len(self.every)))
+            left = left[off]
+            at[left] = below[off]
         return at
-
-    def _cut(self, below: Drops, q: Floats, p: Floats, rim: Floats) -> tuple[Floats, Floats, Floats]:
-        """Cut the curves between corners and the next ones, put a corner there, and return integrals, fronts and directions of slip."""
-        above = below + self.size
-        q0, p0 = self.q[below], self.p[below]
-        rise_q, rise_p = self.q[above] - q0, self.p[above] - p0
-        with np.errstate(all="ignore"):
-            part_q, part_p = np.where(rise_q > 0.0, (q - q0) / rise_q, np.inf), np.where(rise_p > 0.0, (p - p0) / rise_p, np.inf)
-            part = np.minimum(np.minimum(part_q, part_p), 1.0)
-            q_cut, p_cut = q0 + part * rise_q, p0 + part * rise_p
-        forward = part_q <= part_p
-        sliding = np.flatnonzero(below < self.size)  # no spring sticks: the middle of the contact itself moves on
-        if sliding.size:
-            forward[sliding] = q[sliding] < self.q[above[sliding]]
-            middle = np.where(forward[sliding], q[sliding], -p[sliding])
-            q_cut[sliding] = q0[sliding] = middle
-            p_cut[sliding] = p0[sliding] = -middle
-        inner, front = (np.sqrt(np.maximum(0.5 * (one + other), 0.0)) for one, other in ((q0, p0), (q_cut, p_cut)))
-        kept = self.integral[below] + integral_of_line(0.5 * ((p_cut - p0) - (q_cut - q0)), inner, front)
-        kept[sliding] = 0.0
-        self.q[above], self.p[above], self.integral[above] = q_cut, p_cut, kept
-        integral = kept + integral_of_line(0.5 * ((p - p_cut) - (q - q_cut)), front, rim)
-        return integral, front, np.where(forward, 1.0, -1.0)
-
-
-def integral_of_line(change: Floats, inner: Floats, outer: Floats) -> Floats:
-    r"""Return :math:`\int x\, dS` where S changes linearly with the square of x, from one x to another."""
-    total = inner + outer
-    return np.asarray(change * (2.0 / 3.0) * (total - inner * outer / (total + 1e-300)))

@@ -5,25 +5,42 @@ With the displacement s over kappa and the integral I of the law's memory (`cont
 .. math:: \ddot s = -\frac{2 G^* \sqrt R}{m_t}\, I + \frac{g_t}{\kappa}
 
 for the effective mass :math:`m_t` of the tangential motion, 2/7 of that of a solid sphere. It is integrated over the parameter of the
-normal motion by a two-step predictor of order four and the trapezoidal rule with end derivatives, with one evaluation of the force a
-step. Where the rim stops slipping within a step, the way leads over that point.
+normal motion with one evaluation of the force a step: the acceleration is the cubic with its values and slopes at both ends, for which the
+step is first taken with one that changes evenly (`step_weights`). A contact that begins or ceases to stick, to slip or to slide within a
+step takes it in parts, so that the method keeps its order of four.
 """
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
-from vibroimpact.arrays import Floats
-from vibroimpact.contact.friction.law import CompliantFriction, Memory
-from vibroimpact.contact.friction.turning_points import integral_of_line
+from vibroimpact.arrays import Bools, Drops, Floats
+from vibroimpact.contact.friction.law import CompliantFriction, Memory, Step
 from vibroimpact.contact.pair import hertz_stiffness
 from vibroimpact.dynamics.oblique.normal_motion import NormalMotion
+from vibroimpact.dynamics.oblique.step_weights import before_and_after, cubic_at, slowed, step_weights
 
 _LEAST, _MOST = 1e-9, 1e6
 """Bounds of kappa in slip per depth: contacts with less friction slide freely, and those with more stick."""
 
 _ROUNDING = 1e-5
 """Error of the rate of the depth at release, as a part of the largest."""
+
+_PRESSED = 1e-9
+"""Part of the largest normal force below which it is rounding."""
+
+_MOST_TURNING, _MOST_PARTS = 1.0, 16
+"""Angle by which the free oscillation of a contact that sticks turns in a step at most [rad], and parts of a step for that at most."""
+
+_MOST_TURNS = 4
+"""Parts of a step at most, beside the last one."""
+
+_CORRECTIONS = 2
+"""How often the end of a step is mended by the force there."""
+
+_ALL = slice(None)
 
 _SAME = 1e-6
 """Relative difference below which what two parts of a contact have where they meet is the same."""
@@ -52,7 +69,8 @@ def slide_compliant(
     hertz = hertz_stiffness(modulus, radius)
     depth = np.cbrt(normal.force / hertz) ** 2
     with np.errstate(divide="ignore", invalid="ignore"):
-        depth_slope = np.where(normal.force > 0.0, (2.0 / 3.0) * depth * normal.force_slope / normal.force, 0.0)
+        pressed = normal.force > _PRESSED * normal.force.max(axis=0)
+        depth_slope = np.where(pressed, (2.0 / 3.0) * depth * normal.force_slope / normal.force, 0.0)
     scale = (np.abs(slip) + np.abs(pull) * normal.time[-1]) * normal.time[-1] / depth.max(axis=0)
     asked = law.coefficient * modulus / shear
     kappa = np.clip(asked, _LEAST * scale, _MOST * scale)
@@ -60,12 +78,23 @@ def slide_compliant(
     stiffness = np.where(asked < kappa, 0.0, 2.0 * shear * np.sqrt(radius))  # of the integral: none where friction is below the least
     path = _slide_throughout(normal, hertz, slip / kappa, stiffness / mass, pull / kappa)
     least = np.where(depth_slope > 0.0, depth_slope, law.sliding_bound * depth_slope)
-    sticks = np.flatnonzero((path[0] * normal.pace < least - _ROUNDING * depth_slope.max(axis=0)).any(axis=0))
-    if sticks.size:
-        memory, rest = law.memory(len(sticks), 2 * len(normal.time)), normal.take(sticks)
-        arrays = (slip / kappa, stiffness / mass, pull / kappa)
-        path[:, :, sticks] = _integrate(memory, rest, depth[:, sticks], depth_slope[:, sticks], *(values[sticks] for values in arrays))
+    sticks = np.flatnonzero((stiffness > 0.0) & (path[0] * normal.pace < least - _ROUNDING * depth_slope.max(axis=0)).any(axis=0))
+    arrays = (slip / kappa, stiffness / mass, pull / kappa)
+    turning = np.sqrt((arrays[1] * np.sqrt(depth) * normal.pace**2).max(axis=0))[sticks]
+    parts = 2 ** np.ceil(np.log2(np.clip(turning / _MOST_TURNING, 1.0, _MOST_PARTS))).astype(int)
+    for number in np.unique(parts).tolist():
+        here = sticks[parts == number]
+        steps, pace, deep = normal.steps, (normal.pace[:, here], normal.pace_slope[:, here]), (depth[:, here], depth_slope[:, here])
+        if number > 1:
+            pace, deep = _refined(steps, pace, number), _refined(steps, deep, number)
+            steps, pace = np.repeat(steps, number), (pace[0] / number, pace[1] / number)
+        found = _integrate(law.memory(len(here)), steps, pace, deep, *(values[here] for values in arrays))
+        path[:, :, here] = found[:, ::number]
     return path[0] * kappa, path[1] * kappa, stiffness * kappa * path[2]
+
+
+Pair = tuple[Floats, Floats]
+"""Values and slopes on a grid (G, B)."""
 
 
 def _slide_throughout(normal: NormalMotion, hertz: Floats, slip: Floats, stiffness: Floats, pull: Floats) -> Floats:
@@ -85,91 +114,122 @@ def _slide_throughout(normal: NormalMotion, hertz: Floats, slip: Floats, stiffne
     return found
 
 
-def _integrate(
-    memory: Memory, normal: NormalMotion, depth: Floats, depth_slope: Floats, slip: Floats, stiffness: Floats, pull: Floats
-) -> Floats:
-    """Return slip velocity, displacement and integral (3, G, B), of which the first two are over kappa."""
-    every, pace, pace_slope = np.arange(len(slip)), normal.pace, normal.pace_slope
-    radius = np.sqrt(depth)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        radius_slope = np.where(radius > 0.0, 0.5 * depth_slope / radius, 0.0)
-    found = np.zeros((3, *depth.shape))
-    found[0, 0], nothing = slip, np.zeros(len(slip))
-    if depth[0].any():  # the force begins with a jump
-        memory.advance(every, depth[0], nothing, nothing, (nothing, nothing))
-    # of the velocity by the parameter: the first two derivatives, at the last point and at the one before
-    gain = pace[0] * pull
-    gains, turns, before = gain, pace_slope[0] * pull, (gain, pace_slope[0] * pull)
-    velocity, displacement, integral = slip, nothing, nothing
-    for point, step in enumerate(normal.steps, start=1):
-        last, square = point - 1, step * step / 12.0
-        if step == 0.0 and np.allclose(depth[point], depth[last], rtol=_SAME, atol=0.0):  # parts that join without a jump
-            found[:, point] = found[:, last]
-            if not np.allclose(pace[point], pace[last], rtol=_SAME, atol=0.0):  # whose parameters run differently
-                faster = pace[point] / pace[last]
-                force = pull - stiffness * integral
-                turns = pace_slope[point] * force + (turns - pace_slope[last] * force) * faster**2
-                gains = gains * faster
-                before = gains - normal.steps[point] * turns, turns
-            continue
-        rate, bend = pace[last] * velocity, pace_slope[last] * velocity + pace[last] * gains
-        ahead = velocity + step * (1.5 * before[0] - 0.5 * gains) + square * (17.0 * turns + 7.0 * before[1])
-        gains_ahead = gains + step * (1.5 * turns - 0.5 * before[1])
-        rate_ahead, bend_ahead = pace[point] * ahead, pace_slope[point] * ahead + pace[point] * gains_ahead
-        there = displacement + 0.5 * step * (rate + rate_ahead) + square * (bend - bend_ahead)
-        flow, flow_ahead = radius[last] * rate, radius[point] * rate_ahead
-        curve = radius_slope[last] * rate + radius[last] * bend
-        curve -= radius_slope[point] * rate_ahead + radius[point] * bend_ahead
-        sticking = integral + 0.5 * step * (flow + flow_ahead) + square * curve
-        ends = (
-            (depth[last], displacement, rate * step, depth_slope[last] * step),
-            (depth[point], there, rate_ahead * step, depth_slope[point] * step),
-        )
-        _stop_slipping(memory, ends, integral, sticking)
-        integral, swell = memory.advance(every, depth[point], there, sticking, (depth_slope[point], rate_ahead))
-        gains_there = pace[point] * (pull - stiffness * integral)
-        turns_there = pace_slope[point] * (pull - stiffness * integral) - pace[point] * stiffness * swell
-        velocity = velocity + 0.5 * step * (gains + gains_there) + square * (turns - turns_there)
-        if step > 0.0:
-            before = gains, turns
-        gains, turns, displacement = gains_there, turns_there, there
-        found[:, point] = velocity, displacement, integral
+def _refined(steps: Floats, known: Pair, number: int) -> Pair:
+    """Return values and slopes on a grid with `number` steps for each one, from the cubics between them; its parameter counts these."""
+    values, slopes = known
+    inside = steps[:, None]  # without slopes between parts
+    ends = np.stack([values[:-1], slopes[:-1] * inside, values[1:], slopes[1:] * inside])
+    fine, fine_slopes = np.empty((2, number * len(steps) + 1, values.shape[1]))
+    for part in range(number):
+        fine[part:-1:number], fine_slopes[part:-1:number] = cubic_at(ends, part / number)
+    fine[-1], fine_slopes[-1] = values[-1], slopes[-1]
+    return fine, fine_slopes / number
+
+
+def _integrate(memory: Memory, steps: Floats, pace: Pair, depth: Pair, slip: Floats, stiffness: Floats, pull: Floats) -> Floats:
+    """Return slip velocity, displacement and integral (3, G, B), of which the first two are over kappa.
+
+    `pace`, `depth`: values and slopes of dt by the parameter and of the depth (G, B); `steps`: of the parameter.
+    """
+    way = _Way(memory, slip, stiffness, pull)
+    deep = depth[0]
+    if deep[0].any():  # the force begins with a jump
+        way.jump(np.zeros_like(slip), deep[0])
+    found = np.empty((3, *deep.shape))
+    found[:, 0] = way.state[[1, 0, 2]]
+    paces, depths = np.stack(pace, axis=1), np.stack(depth, axis=1)
+    for point, length in enumerate(steps, start=1):
+        if length > 0.0:
+            way.go(np.concatenate(paces[point - 1 : point + 1]), np.concatenate(depths[point - 1 : point + 1]))
+        elif not np.allclose(deep[point - 1], deep[point], rtol=_SAME, atol=0.0):
+            way.jump(deep[point - 1], deep[point])
+        found[:, point] = way.state[[1, 0, 2]]
     return found
 
 
-Ends = tuple[Floats, Floats, Floats, Floats]
-"""Depth and displacement at an end of a step, and what they would change by in the step at the rates of displacement and depth there."""
+class _Ahead(NamedTuple):
+    """A step as it is with an acceleration that changes evenly.
+
+    `velocity`: at its end (b,). `acceleration`: at its end, and its change over the step (2, b).
+    """
+
+    step: Step
+    velocity: Floats
+    acceleration: Floats
 
 
-def _stop_slipping(memory: Memory, ends: tuple[Ends, Ends], integral: Floats, sticking: Floats) -> None:
-    """Take contacts whose rim stops slipping within a step over the point where it does; `sticking` then counts from there."""
-    (depth, displacement, rate, deepening), (depth_there, there, rate_there, deepening_there) = ends
-    for direction in (1.0, -1.0):
-        # the distance to slip, depth less displacement, has its minimum in the step
-        slope, slope_there = deepening - direction * rate, deepening_there - direction * rate_there
-        inside = np.flatnonzero((slope < 0.0) & (slope_there > 0.0))
-        if not inside.size:
-            continue
-        start, finish = (depth - direction * displacement)[inside], (depth_there - direction * there)[inside]
-        place = _place_of_minimum(start, finish, slope[inside], slope_there[inside])
-        deep = _between(depth[inside], depth_there[inside], deepening[inside], deepening_there[inside], place)
-        moved = _between(displacement[inside], there[inside], rate[inside], rate_there[inside], place)
-        rims = np.sqrt(depth[inside]), np.sqrt(np.maximum(deep, 0.0)), np.sqrt(depth_there[inside])
-        stuck = integral[inside] + integral_of_line(moved - displacement[inside], rims[0], rims[1])
-        nothing = np.zeros(len(inside))
-        so_far, _ = memory.advance(inside, rims[1] ** 2, moved, stuck, (nothing, nothing))
-        sticking[inside] = so_far + integral_of_line(there[inside] - moved, rims[1], rims[2])
+class _Way:
+    """The motion of B contacts along the plate, under way.
 
+    `state`: displacement and velocity, over kappa; integral, and its derivatives by displacement and by depth (5, B).
+    """
 
-def _place_of_minimum(start: Floats, finish: Floats, slope: Floats, slope_there: Floats) -> Floats:
-    """Return where between 0 and 1 a cubic with these values and slopes, falling first, is lowest, by one step of Newton's method."""
-    excess, turn = finish - start - 0.5 * (slope + slope_there), slope_there - slope
-    place = -slope / turn
-    place = place - 6.0 * excess * place * (1.0 - place) / (turn + 6.0 * excess * (1.0 - 2.0 * place))
-    return np.clip(place, 0.0, 1.0)
+    def __init__(self, memory: Memory, slip: Floats, stiffness: Floats, pull: Floats) -> None:
+        self.memory, self.stiffness, self.pull = memory, stiffness, pull
+        self.state = np.zeros((5, len(slip)))
+        self.state[1] = slip
 
+    def jump(self, depth: Floats, depth_there: Floats) -> None:
+        """Change the depth at once."""
+        nothing, displacement, integral = np.zeros_like(depth), self.state[0], self.state[2]
+        ends = (depth, nothing, depth_there, nothing), (displacement, nothing, displacement, nothing), (integral, nothing, nothing)
+        self.state[2:] = self.memory.advance(_ALL, Step(*(np.stack(one) for one in ends)))
 
-def _between(start: Floats, finish: Floats, slope: Floats, slope_there: Floats, place: Floats) -> Floats:
-    """Return the value of a cubic with these values and slopes at 0 and 1."""
-    excess = finish - start - 0.5 * (slope + slope_there)
-    return np.asarray(start + place * (slope + 0.5 * (slope_there - slope) * place + excess * place * (3.0 - 2.0 * place)))
+    def go(self, pace: Floats, depth: Floats) -> None:
+        """Take a step, from place to place with contacts that change within it; its pace and depth are changed to the last part."""
+        weights, corrections = step_weights(pace, depth, self.memory.power)
+        ahead = self._ahead(_ALL, pace, depth, weights)
+        drops, places, near = self.memory.turns(_ALL, ahead.step)
+        for _ in range(_MOST_TURNS):
+            if not drops.size:
+                break
+            turned, paces, depths = self._go_to(drops, pace[:, drops], depth[:, drops], places, near)
+            pace[:, drops], depth[:, drops] = paces, depths
+            weights, corrections[..., drops] = step_weights(paces, depths, self.memory.power)
+            left = self._ahead(drops, paces, depths, weights)
+            for whole, part in zip(
+                (*ahead.step, ahead.velocity, ahead.acceleration), (*left.step, left.velocity, left.acceleration), strict=True
+            ):
+                whole[..., drops] = part
+            some, places, near = self.memory.turns(drops, left.step)
+            again = turned[some]
+            drops, places, near = drops[some[again]], places[again], near[again]
+        self._arrive(_ALL, ahead, pace, corrections)
+
+    def _go_to(self, drops: Drops, pace: Floats, depth: Floats, places: Floats, near: Floats) -> tuple[Bools, Floats, Floats]:
+        """Take contacts to places within a step; return where there is something left of it, and pace and depth in what is left."""
+        (pace_to, pace_left), (depth_to, depth_left) = before_and_after(pace, places), before_and_after(depth, places)
+        pace_to, pace_left = places * pace_to, (1.0 - places) * pace_left
+        depth_to[2] = depth_left[0] = np.maximum(depth_left[0], 0.0)
+        pace_to, depth_to = slowed(pace_to, depth_to, near)
+        turned = places < 1.0
+        moves = np.flatnonzero(turned & (places > 0.0))
+        pace_moved, depth_moved = pace_to[:, moves], depth_to[:, moves]
+        weights, corrections = step_weights(pace_moved, depth_moved, self.memory.power)
+        self._arrive(drops[moves], self._ahead(drops[moves], pace_moved, depth_moved, weights), pace_moved, corrections)
+        self.state[2:, drops[turned]] = self.memory.turn(drops[turned], depth_left[:2, turned], self.state[2:, drops[turned]])
+        return turned, np.where(turned, pace_left, pace_to), np.where(turned, depth_left, depth_to)
+
+    def _ahead(self, drops: Drops | slice, pace: Floats, depth: Floats, weights: Floats) -> _Ahead:
+        """Return a step with the acceleration that begins as it does now."""
+        displacement, velocity, integral, by_displacement, by_depth = self.state[:, drops]
+        stiffness, flow = self.stiffness[drops], pace[0] * velocity
+        rate = by_displacement * flow + by_depth * depth[1]
+        known = np.stack([velocity, self.pull[drops] - stiffness * integral, -stiffness * rate])
+        moved, swept, later = np.einsum("oib,ib->ob", weights, known)
+        known[1] += known[2]
+        step = Step(depth, np.stack([displacement, flow, displacement + moved, pace[2] * later]), np.stack([integral, rate, swept]))
+        return _Ahead(step, later, known[1:])
+
+    def _arrive(self, drops: Drops | slice, ahead: _Ahead, pace: Floats, corrections: Floats) -> None:
+        """End a step with the force that acts there, and with that which acts where it so leads to."""
+        step, velocity, expected = ahead
+        stiffness, pull = self.stiffness[drops], self.pull[drops]
+        integral, by_displacement, by_depth = self.memory.advance(drops, step)
+        moved, faster = np.zeros((2, len(velocity)))
+        for _ in range(_CORRECTIONS):
+            rate = by_displacement * pace[2] * (velocity + faster) + by_depth * step.depth[3]
+            more = np.stack([pull - stiffness * (integral + by_displacement * moved), -stiffness * rate]) - expected
+            moved, faster = np.einsum("oib,ib->ob", corrections, more)
+        integral = integral + by_displacement * moved
+        self.state[:, drops] = step.displacement[2] + moved, velocity + faster, integral, by_displacement, by_depth

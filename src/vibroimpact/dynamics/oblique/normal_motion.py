@@ -1,6 +1,7 @@
 """The normal motion of contacts on a grid, which drives their friction: time and force as functions of a parameter.
 
-The parameter rises evenly through each part of a contact, slowly at its ends, so that the depth of the contact grows with its square.
+The parameter rises evenly through each part of a contact, slowly at its ends, so that the depth of the contact grows with its square. It
+counts the steps of the grid.
 """
 
 from __future__ import annotations
@@ -17,15 +18,18 @@ from vibroimpact.dynamics.phase_plane.collocation import PlaneRule
 from vibroimpact.dynamics.phase_plane.motion import PlaneMotion
 from vibroimpact.dynamics.rigid.timeline import segments_of
 
-_ROUNDING = 1e-12
+_ROUNDING = 1e-9
 _HALVINGS = 30
+_MORE = 3  # times as many steps where the force is steep
+_NONE, _STEEP = 1e-6, 1e-2
+"""Parts of the largest force: one that is zero, and a slope that is not."""
 
 
 @dataclass(frozen=True)
 class NormalMotion:
     """The normal motion of B contacts at G points of a parameter; arrays are (G, B).
 
-    `steps`: of the parameter (G - 1,); a step of zero joins two parts, between which the others may jump. `time`: since first touch [s].
+    `steps`: of the parameter (G - 1,), 1; a step of zero joins two parts, between which the others may jump. `time`: since first touch [s].
     `pace`, `pace_slope`: derivatives of the time by the parameter [s]. `force`: >= 0 [N], `force_slope`: its derivative. `impulse`: of the
     force so far [N s].
     """
@@ -38,17 +42,11 @@ class NormalMotion:
     force_slope: Floats
     impulse: Floats
 
-    def take(self, drops: Drops) -> NormalMotion:
-        """Return the normal motion of some of the contacts."""
-        if len(drops) == self.time.shape[1]:
-            return self
-        return NormalMotion(self.steps, *(getattr(self, name)[:, drops] for name in _ARRAYS))
-
 
 def normal_motions(leg: Leg, contact: Contact, encounter: Encounter, steps: int) -> list[tuple[Drops, NormalMotion]]:
     """Return the normal motion of the contacts of a leg in groups that consist of the same parts, with the places of their drops.
 
-    `steps`: of each segment of a phase.
+    `steps`: of each segment of a phase; three times as many where the force is steep.
     """
     pieces, size = contact.pieces, len(encounter.mass)
     member = np.zeros((len(pieces), size), dtype=bool)
@@ -80,26 +78,38 @@ def _of_phase(piece: Piece, encounter: Encounter, places: Drops, steps: int) -> 
     rule, compressing = motion.rule, motion.name == "compression"
     static, dissipative = motion.forces(encounter)
     forces = static + dissipative
+    steps *= _MORE if _is_steep(rule, forces) else 1
     if encounter.law.tension == "cut":
         forces = np.maximum(forces, 0.0)
     grid, left, found = np.linspace(0.0, 1.0, steps + 1), motion.duration, []
     for pace, force in zip(rule.split(motion.pace), rule.split(forces), strict=True):
         ends = _reach(rule, pace, left)
+        nodes = (pace, rule.derivatives[0] @ pace, force, rule.derivatives[0] @ force)
         if (ends == 1.0).all():
             values, sums = rule.weights_at(grid).T, rule.weights_to_end(grid).T
-            series = [values @ one for one in (pace, rule.derivatives[0] @ pace, force, rule.derivatives[0] @ force)]
+            series = [values @ one for one in nodes]
             time, impulse = sums @ (rule.integral @ pace), sums @ (rule.integral @ (force * pace))
         else:  # released within the segment, each drop at a place of its own
             at = grid[:, None] * ends
             values, sums = (weights(at.ravel()).reshape(-1, *at.shape) for weights in (rule.weights_at, rule.weights_to_end))
-            nodes = (pace, rule.derivatives[0] @ pace, force, rule.derivatives[0] @ force)
-            series = [np.einsum("ngb,nb->gb", values, one) * ends**power for one, power in zip(nodes, (1, 2, 0, 1), strict=True)]
+            series = [np.einsum("ngb,nb->gb", values, one) for one in nodes]
             time, impulse = (np.einsum("ngb,nb->gb", sums, rule.integral @ one) for one in (pace, force * pace))
         time[0] = impulse[0] = 0.0
-        speeds, strengths = series[:2], (np.maximum(series[2], 0.0), series[3])
-        found.append(NormalMotion(np.full(steps, 1.0 / steps), time, speeds[0], speeds[1], *strengths, impulse))
+        length = ends / steps
+        speed, change, strength, growth = (one * length**power for one, power in zip(series, (1, 2, 0, 1), strict=True))
+        found.append(NormalMotion(np.ones(steps), time, speed, change, np.maximum(strength, 0.0), growth, impulse))
         left = left - time[-1]
     return [_reversed(one) for one in reversed(found)] if compressing else found
+
+
+def _is_steep(rule: PlaneRule, forces: Floats) -> bool:
+    """Return whether the force of some drop pulls at the end of a phase, or begins or ends there with a slope.
+
+    Where it becomes zero with a slope, the radius of the contact has an infinite one.
+    """
+    at_end, slope = rule.end @ rule.split(forces)[-1], rule.end @ (rule.derivatives[0] @ rule.split(forces)[-1])
+    most = forces.max(axis=0)
+    return bool(((at_end < -_NONE * most) | (np.abs(at_end) <= _NONE * most) & (np.abs(slope) > _STEEP * most)).any())
 
 
 def _reach(rule: PlaneRule, pace: Floats, left: Floats) -> Floats:
@@ -148,6 +158,7 @@ def _read(leg: Leg | None, steps: int) -> NormalMotion:
         time, pace = half * (1.0 - np.cos(angle)), half * np.sin(angle)
         force = np.maximum(segment.at(time)[2], 0.0)
         impulse = CubicSpline(angle, force * pace).antiderivative()(angle)
-        arrays = (time, pace, half * np.cos(angle), force, CubicSpline(angle, force)(angle, 1), impulse)
-        parts.append(NormalMotion(np.diff(angle), *(values[:, None] for values in arrays)))
+        step = angle[1]
+        arrays = (time, step * pace, step**2 * half * np.cos(angle), force, step * CubicSpline(angle, force)(angle, 1), impulse)
+        parts.append(NormalMotion(np.ones(len(angle) - 1), *(values[:, None] for values in arrays)))
     return _joined(parts)

@@ -191,7 +191,7 @@ class ObliqueContact:
 
     def at(self, time: Floats) -> tuple[State, Floats, Floats]:
         """Return states of one drop, friction on it [N] (2, T) and energy taken [J] (T,), at times since first touch [s]."""
-        from scipy.interpolate import CubicHermiteSpline  # a drop along the normal does not load it
+        from scipy.interpolate import CubicHermiteSpline, PchipInterpolator  # a drop along the normal does not load it
 
         sliding = self.sliding
         times = sliding.time[:, 0]
@@ -202,7 +202,7 @@ class ObliqueContact:
         path = CubicHermiteSpline(times, displacement, slip)
         now = np.minimum(time, times[-1])
         state = self.after(now, path(now, 1), path(now), now / times[-1])
-        return state, -self.direction * np.interp(now, times, force), energy_taken(self.sphere, self.before, state)
+        return state, -self.direction * PchipInterpolator(times, force)(now), energy_taken(self.sphere, self.before, state)
 
 
 class ContactAlong(Protocol):

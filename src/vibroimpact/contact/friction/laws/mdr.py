@@ -39,9 +39,9 @@ class Mdr(CompliantFriction):
     equation = "Q = G* int u dx, |u| <= mu E*/G* (D - x^2/R)"
     source = "Popov & Hess 2015, Method of Dimensionality Reduction, ch. 5"
 
-    def memory(self, size: int, steps: int) -> TurningPoints:
+    def memory(self, size: int) -> TurningPoints:
         """Return contacts without displacement; see `CompliantFriction`."""
-        return TurningPoints(size, steps)
+        return TurningPoints(size)
 
     def history(self, largest_force: float) -> ContactSprings:
         """Return springs without displacement; see `CompliantFriction`."""

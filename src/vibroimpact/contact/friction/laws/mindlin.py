@@ -8,7 +8,8 @@ from typing import ClassVar
 import numpy as np
 
 from vibroimpact.arrays import Drops, Floats
-from vibroimpact.contact.friction.law import CompliantFriction, Memory, Pair, TangentialHistory
+from vibroimpact.contact.friction.cubics import place_of_turn, place_of_value
+from vibroimpact.contact.friction.law import CompliantFriction, Memory, Step, TangentialHistory
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,9 +43,9 @@ class Mindlin(CompliantFriction):
     rescales: ClassVar[bool] = False
     """Does the displacement shrink with the radius of the contact?"""
 
-    def memory(self, size: int, steps: int) -> Memory:
+    def memory(self, size: int) -> Memory:
         """Return springs without displacement; see `CompliantFriction`."""
-        return Spring(size, rescales=self.rescales)
+        return RescaledSpring(size) if self.rescales else Spring(size)
 
     def history(self, largest_force: float) -> TangentialHistory:
         """Return a spring without displacement; see `CompliantFriction`."""
@@ -108,7 +109,7 @@ class MindlinForce(Mindlin):
     source = "Mindlin & Deresiewicz 1953, J. Appl. Mech. 20:327; LAMMPS, granular: mindlin/force"
     sliding_bound = 1.0
 
-    def memory(self, size: int, steps: int) -> Memory:
+    def memory(self, size: int) -> Memory:
         """Return contacts without a force; see `CompliantFriction`."""
         return KeptForce(size)
 
@@ -118,41 +119,125 @@ class MindlinForce(Mindlin):
 
 
 class Spring:
-    """Displacements of B springs; see `Memory`."""
+    """Single springs of B contacts, whose displacement is kept; see `Memory`.
 
-    def __init__(self, size: int, *, rescales: bool) -> None:
-        self.rescales = rescales
-        self.stretch, self.before, self.radius = np.zeros(size), np.zeros(size), np.zeros(size)
+    The integral I is the radius of the contact times the displacement of the spring.
+    """
 
-    def advance(self, drops: Drops, depth: Floats, displacement: Floats, sticking: Floats, rates: Pair) -> Pair:
-        """Stretch the springs, at most to sliding; return force and rate as integrals. See `Memory`."""
-        radius, stretch = np.sqrt(depth), self.stretch[drops]
-        with np.errstate(divide="ignore", invalid="ignore"):
-            shrinks = self.rescales & (radius < self.radius[drops])
-            shrink = np.where(shrinks, radius / self.radius[drops], 1.0)
-            mean = 0.5 * (1.0 + shrink)  # what is added on the way shrinks too
-            stretch = stretch * shrink + mean * displacement - mean * self.before[drops]
-            widens = np.where(radius > 0.0, 0.5 * rates[0] / radius, 0.0)
-        most = (2.0 / 3.0) * depth
-        slides = np.abs(stretch) > most
-        stretch = np.clip(stretch, -most, most)
-        self.stretch[drops], self.before[drops], self.radius[drops] = stretch, displacement, radius
-        shrinking = np.where(self.rescales & (widens < 0.0), 2.0, 1.0) * stretch * widens
-        return radius * stretch, np.where(slides, np.sign(stretch) * radius * rates[0], radius * rates[1] + shrinking)
-
-
-class KeptForce:
-    """Forces of B contacts; see `Memory`."""
+    power: ClassVar[int] = 0
 
     def __init__(self, size: int) -> None:
-        self.integral, self.start = np.zeros(size), np.zeros(size)
+        self.every, self.fresh = np.arange(size), True
+        self.slides, self.next = np.zeros(size), np.zeros(size)  # 1 or -1 in the direction of sliding, or 0; now, and after the next turn
 
-    def advance(self, drops: Drops, depth: Floats, displacement: Floats, sticking: Floats, rates: Pair) -> Pair:
-        """Change the forces as without slip, at most to sliding; return them and their rates as integrals. See `Memory`."""
-        radius = np.sqrt(depth)
-        most = (2.0 / 3.0) * radius * depth
-        integral = np.clip(sticking, -most, most)
-        return integral, np.where(np.abs(sticking) > most, np.sign(integral) * radius * rates[0], radius * rates[1])
+    def stuck(self, step: Step) -> Floats:
+        """Return the integral at the end of a step without sliding."""
+        return np.asarray(np.sqrt(step.depth[2]) * (_over(step.integral[0], np.sqrt(step.depth[0])) + step.integral[2]))
+
+    def growth(self, deepening: Floats) -> Floats | float:
+        """Return the power of the depth with which the integral changes while the displacement is kept."""
+        return 0.5
+
+    def least_rate(self, deepening: Floats) -> Floats:
+        """Return the rate of the displacement above which springs slide on, from that of the depth."""
+        return (2.0 / 3.0) * deepening
+
+    def turns(self, drops: Drops | slice, step: Step) -> tuple[Drops, Floats, Floats]:
+        """Return which springs begin or cease to slide, and where; see `Memory`."""
+        integral = self.stuck(step)
+        (start, deepening_before, depth, deepening), sign = step.depth, np.sign(integral)
+        over = sign * integral - (2.0 / 3.0) * depth**1.5
+        if self.fresh:
+            self.slides[drops], self.fresh = np.where(over > 0.0, sign, 0.0), False
+        slides = self.slides[drops]
+        ends = [slides * step.displacement[end] - self.least_rate(step.depth[end]) for end in (1, 3)]
+        some = np.flatnonzero(np.where(slides == 0.0, over > 0.0, ends[1] < 0.0))
+        before, after = ends[0][some], ends[1][some]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ceasing = np.clip(before / (before - after), 0.0, 1.0)
+        change = over - sign * step.integral[0] + (2.0 / 3.0) * start**1.5
+        slope = sign * step.integral[1] - np.sqrt(start) * deepening_before
+        slope_there = (
+            sign * (np.sqrt(depth) * step.displacement[3] + self.growth(deepening) * _over(integral, depth) * deepening)
+            - np.sqrt(depth) * deepening
+        )
+        beginning = place_of_value(*(one[some] for one in (change, slope, slope_there, over)))
+        self.next[self.every[drops][some]] = np.where(slides == 0.0, sign, 0.0)[some]
+        return some, np.where(slides[some] == 0.0, beginning, ceasing), np.ones(len(some))
+
+    def turn(self, drops: Drops, depth: Floats, force: Floats) -> Floats:
+        """Let springs begin or cease to slide; see `Memory`."""
+        slides = self.slides[drops] = self.next[drops]
+        return self._with_derivatives(force[0], slides, *depth)
+
+    def _with_derivatives(self, integral: Floats, slides: Floats, depth: Floats, deepening: Floats) -> Floats:
+        """Return integrals with their derivatives by displacement and by depth (3, b)."""
+        radius, sticks = np.sqrt(depth), slides == 0.0
+        by_depth = np.where(sticks, self.growth(deepening) * _over(integral, depth), slides * radius)
+        return np.stack([integral, np.where(sticks, radius, 0.0), by_depth])
+
+    def advance(self, drops: Drops | slice, step: Step) -> Floats:
+        """Stretch the springs, or slide; return the integral and its derivatives. See `Memory`."""
+        slides, most = self.slides[drops], (2.0 / 3.0) * step.depth[2] ** 1.5
+        integral = np.where(slides == 0.0, np.clip(self.stuck(step), -most, most), slides * most)
+        return self._with_derivatives(integral, slides, *step.depth[2:])
+
+
+class RescaledSpring(Spring):
+    """The same, with a displacement that shrinks with the contact."""
+
+    power: ClassVar[int] = -1
+
+    def turns(self, drops: Drops | slice, step: Step) -> tuple[Drops, Floats, Floats]:
+        """Return which springs begin or cease to slide or to shrink, and where; see `Memory`."""
+        some, found, _ = super().turns(drops, step)
+        places, every = np.full(step.depth.shape[1], np.inf), self.every[drops]
+        places[some] = found
+        shrinks = np.flatnonzero((step.depth[1] > 1e-9 * step.depth[0]) & (step.depth[3] < 0.0))
+        peaks = place_of_turn(step.depth[:, shrinks])
+        earlier = peaks < places[shrinks]
+        first = shrinks[earlier]
+        places[first] = peaks[earlier]
+        self.next[every[first]] = self.slides[every[first]]
+        some = np.flatnonzero(places < np.inf)
+        return some, places[some], np.ones(len(some))
+
+    def stuck(self, step: Step) -> Floats:
+        """Return the integral at the end of a step without sliding."""
+        (before, _, depth, _), moved = step.depth, step.displacement[2] - step.displacement[0]
+        shrunk = depth * (_over(step.integral[0], before) + step.integral[2])
+        return np.asarray(np.where(depth > before, np.sqrt(depth) * (_over(step.integral[0], np.sqrt(before)) + moved), shrunk))
+
+    def growth(self, deepening: Floats) -> Floats:
+        """Return the power of the depth with which the integral changes while the displacement is kept."""
+        return np.where(deepening > 0.0, 0.5, 1.0)
+
+    def least_rate(self, deepening: Floats) -> Floats:
+        """Return the rate of the displacement above which springs slide on, from that of the depth."""
+        return np.where(deepening > 0.0, 2.0 / 3.0, 1.0 / 3.0) * deepening
+
+
+class KeptForce(Spring):
+    """The same, whose force is kept."""
+
+    power: ClassVar[int] = 1
+
+    def stuck(self, step: Step) -> Floats:
+        """Return the integral at the end of a step without sliding."""
+        return np.asarray(step.integral[0] + step.integral[2])
+
+    def growth(self, deepening: Floats) -> float:
+        """Return the power of the depth with which the integral changes while the displacement is kept."""
+        return 0.0
+
+    def least_rate(self, deepening: Floats) -> Floats:
+        """Return the rate of the displacement above which springs slide on, from that of the depth."""
+        return deepening
+
+
+def _over(one: Floats, other: Floats) -> Floats:
+    """Return a quotient, and 0 where it is by 0."""
+    return np.divide(one, other, out=np.zeros_like(one), where=other > 0.0)
 
 
 @dataclass(frozen=True)
