@@ -280,7 +280,7 @@ FAULTS: list[tuple[dict[str, Any], str]] = [
     (with_friction(law="coulomb", mu=0.1), 'contact.friction.mu: unknown key "mu"; coulomb takes coefficient, rolling_coefficient.'),
     (
         {"plate": ELASTIC_PLATE, **with_friction(law="coulomb", coefficient=0.1)},
-        'contact.friction.law: coulomb has no tangential compliance, which friction on bodies that deform needs; take "mdr" or',
+        "contact.friction.law: coulomb has no tangential compliance, which friction needs on bodies that deform or",
     ),
     ({"plate": {**CASE["plate"], "inclination": "90 deg"}}, 'plate.inclination: "90 deg" is not allowed; it must be greater than'),
 ]

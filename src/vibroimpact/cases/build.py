@@ -90,8 +90,8 @@ def _check_oblique(case: CaseTable, law: ContactLaw) -> None:
         words = "a mesh that is brought along does not say where the plate ends, over whose edge a sphere may fall"
         raise InputError(f"{words}; give size and leave out mesh, or leave this out", keys[0])
     friction = friction_law_of(case)
-    if deforms(case) and friction is not None and not isinstance(friction, CompliantFriction):
-        words = f"{friction.name} has no tangential compliance, which friction on bodies that deform needs"
+    if (deforms(case) or case.plate.motion is not None) and friction is not None and not isinstance(friction, CompliantFriction):
+        words = f"{friction.name} has no tangential compliance, which friction needs on bodies that deform or are shaken"
         raise InputError(f'{words}; take "mdr" or one of the "mindlin" laws', "contact.friction.law")
     if isinstance(friction, CompliantFriction) and not isinstance(law, CompliantLaw):
         words = f"{law.name} gives no normal force, which {friction.name} follows"

@@ -253,9 +253,7 @@ class OneSpring:
         law, radius = self.law, self.law.radius_under(force)
         kept = radius / self.radius if law.rescales and radius < self.radius else 1.0
         stretch, stiffness = self.stretch * kept + moved * (0.5 * (1.0 + kept)), 2.0 * float(law.effective_shear_modulus) * radius
-        most, pulled = float(law.coefficient) * max(force, 0.0), stiffness * float(np.hypot(*stretch))
-        if pulled > most:
-            stretch = stretch * (most / pulled)
+        stretch = stretch * _kept(stiffness * stretch, float(law.coefficient) * force)
         return OneSpring(law, radius, stretch), stiffness * stretch
 
 
@@ -271,7 +269,11 @@ class OneForce:
         """Change the force as without slip, by the mean stiffness on the way, at most to sliding."""
         law, radius = self.law, self.law.radius_under(force)
         pulled = self.force + float(law.effective_shear_modulus) * (self.radius + radius) * moved
-        most, strength = float(law.coefficient) * max(force, 0.0), float(np.hypot(*pulled))
-        if strength > most:
-            pulled = pulled * (most / strength)
+        pulled = pulled * _kept(pulled, float(law.coefficient) * force)
         return OneForce(law, radius, pulled), pulled
+
+
+def _kept(pulled: Floats, most: float) -> float:
+    """Return the part of a force that is left where its magnitude may be no more than `most` [N]."""
+    strength = float(np.hypot(*pulled))
+    return max(most, 0.0) / strength if strength > max(most, 0.0) else 1.0
