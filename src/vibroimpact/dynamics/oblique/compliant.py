@@ -103,14 +103,11 @@ def _slide_throughout(normal: NormalMotion, hertz: Floats, slip: Floats, stiffne
     So it is where nowhere the displacement grows more slowly than the depth, or shrinks faster than a part of it. `hertz`: Hertz's
     stiffness [N/m^1.5].
     """
-    found, step = np.empty((3, *normal.force.shape)), normal.steps[:, None]
+    found = np.empty((3, *normal.force.shape))
     per_force = (2.0 / 3.0) / hertz  # 2/3 of the depth to the power 3/2 is the integral
     found[2] = per_force * normal.force
     found[0] = slip + pull * normal.time - stiffness * per_force * normal.impulse
-    rate = normal.pace * found[0]
-    bend = normal.pace_slope * found[0] + normal.pace**2 * (pull - stiffness * found[2])
-    found[1, 0] = 0.0
-    np.cumsum(0.5 * step * (rate[1:] + rate[:-1]) + step**2 / 12.0 * (bend[:-1] - bend[1:]), axis=0, out=found[1, 1:])
+    found[1] = normal.integrals(found[0], normal.pace * (pull - stiffness * found[2]))
     return found
 
 

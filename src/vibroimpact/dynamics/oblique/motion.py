@@ -188,10 +188,7 @@ def _twist(law: FrictionLaw | None, normal: NormalMotion, sphere: Sphere, before
     moment = law.twisting_moment(normal.force)
     with np.errstate(divide="ignore", invalid="ignore"):
         growth = np.where(normal.force > 0.0, (4.0 / 3.0) * moment * normal.force_slope / normal.force, 0.0)
-    # over the parameter, by the trapezoidal rule with the slopes at both ends
-    rate, bend, step = moment * normal.pace, growth * normal.pace + moment * normal.pace_slope, normal.steps[:, None]
-    impulse = 0.5 * step * (rate[1:] + rate[:-1]) + step**2 / 12.0 * (bend[:-1] - bend[1:])
-    return sphere.twist(before, impulse.sum(axis=0))
+    return sphere.twist(before, normal.integrals(moment, growth)[-1])
 
 
 def _rolling(law: FrictionLaw | None, sphere: Sphere, after: State, impulse: Floats, rubbed: Floats) -> State | None:

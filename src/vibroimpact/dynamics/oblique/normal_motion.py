@@ -42,6 +42,13 @@ class NormalMotion:
     force_slope: Floats
     impulse: Floats
 
+    def integrals(self, values: Floats, slopes: Floats) -> Floats:
+        """Return the integrals over time so far (G, B) of a quantity with these values, and slopes by the parameter."""
+        rate, bend, step = self.pace * values, self.pace_slope * values + self.pace * slopes, self.steps[:, None]
+        found = np.zeros_like(rate)
+        np.cumsum(step * (0.5 * (rate[1:] + rate[:-1]) + (bend[:-1] - bend[1:]) / 12.0), axis=0, out=found[1:])
+        return found
+
 
 def normal_motions(leg: Leg, contact: Contact, encounter: Encounter, steps: int) -> list[tuple[Drops, NormalMotion]]:
     """Return the normal motion of the contacts of a leg in groups that consist of the same parts, with the places of their drops.
@@ -152,7 +159,7 @@ def _read(leg: Leg | None, steps: int) -> NormalMotion:
     from scipy.interpolate import CubicSpline  # a drop along the normal does not load it
 
     assert leg is not None
-    parts, angle = [], np.linspace(0.0, np.pi, 2 * steps + 1)
+    parts, angle = [], np.linspace(0.0, np.pi, 6 * steps + 1)
     for segment in segments_of(leg)[1:]:
         half = 0.5 * (segment.end - segment.start)
         time, pace = half * (1.0 - np.cos(angle)), half * np.sin(angle)

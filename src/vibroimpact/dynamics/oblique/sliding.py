@@ -34,6 +34,5 @@ def slide(law: FrictionLaw | None, normal: NormalMotion, slip: Floats, mass: Flo
         return Sliding(normal.time, free, slip * normal.time + 0.5 * pull * normal.time**2, np.zeros_like(free))
     pressed = np.maximum.accumulate(normal.impulse, axis=0)  # a force that pulls, as some laws have at the end, gives no slip back
     left = law.slip_after(free, pressed, pressed[-1], mass)
-    moved = np.zeros_like(left)
-    moved[1:] = np.cumsum(0.5 * (left[1:] + left[:-1]) * np.diff(normal.time, axis=0), axis=0)
-    return Sliding(normal.time, left, moved, law.force(left, normal.force))
+    force = law.force(left, normal.force)
+    return Sliding(normal.time, left, normal.integrals(left, normal.pace * (pull - force / mass)), force)

@@ -153,8 +153,7 @@ class Spring:
         ends = [slides * step.displacement[end] - self.least_rate(step.depth[end]) for end in (1, 3)]
         some = np.flatnonzero(np.where(slides == 0.0, over > 0.0, ends[1] < 0.0))
         before, after = ends[0][some], ends[1][some]
-        with np.errstate(divide="ignore", invalid="ignore"):
-            ceasing = np.clip(before / (before - after), 0.0, 1.0)
+        ceasing = np.clip(_over(before, before - after), 0.0, 1.0)
         change = over - sign * step.integral[0] + (2.0 / 3.0) * start**1.5
         slope = sign * step.integral[1] - np.sqrt(start) * deepening_before
         slope_there = (
