@@ -103,6 +103,13 @@ if TYPE_CHECKING:
     from vibroimpact.runs.notebook import plot_result as plot_result
     from vibroimpact.runs.notebook import result_html as result_html
     from vibroimpact.runs.save import save_result as save_result
+    from vibroimpact.signals.feature_table import FeatureTable as FeatureTable
+    from vibroimpact.signals.feature_table import feature_table as feature_table
+    from vibroimpact.signals.packets import Packets as Packets
+    from vibroimpact.signals.packets import find_packets as find_packets
+    from vibroimpact.signals.record import Record as Record
+    from vibroimpact.signals.registry import features as features
+    from vibroimpact.signals.registry import find_feature as find_feature
     from vibroimpact.structures.mesh import Mesh as Mesh
     from vibroimpact.structures.modal_model import ModalBasis as ModalBasis
     from vibroimpact.studies.report.notebook import plot_study as plot_study
@@ -127,6 +134,7 @@ _HOME = {
     "Comparison": "comparison.comparison",
     "ComputationError": "errors",
     "ContactLaw": "contact.law",
+    "FeatureTable": "signals.feature_table",
     "FrictionCalibration": "calibration.friction.calibrate",
     "InputError": "errors",
     "Material": "materials",
@@ -138,9 +146,11 @@ _HOME = {
     "PointContact": "dynamics.system",
     "Oblique": "dynamics.oblique.statement",
     "ObliqueImpacts": "calibration.friction.measured",
+    "Packets": "signals.packets",
     "PlateMotion": "dynamics.shaken.statement",
     "Problem": "dynamics.problem",
     "QuasiStatic": "contact.quasi_static",
+    "Record": "signals.record",
     "Response": "dynamics.response",
     "Result": "results.result",
     "Sensor": "dynamics.sensors.sensor",
@@ -166,10 +176,14 @@ _HOME = {
     "convert_units": "units.reading",
     "export_formats": "exporting.export_format",
     "export_result": "exporting.export_result",
+    "feature_table": "signals.feature_table",
+    "features": "signals.registry",
     "find_contact_law": "contact.registry",
+    "find_feature": "signals.registry",
     "find_friction_law": "contact.registry",
     "friction_laws": "contact.registry",
     "find_material": "materials",
+    "find_packets": "signals.packets",
     "identify_local_element": "dynamics.local_element",
     "impacts_in_force": "calibration.force_record",
     "impacts_in_position": "calibration.position_record",
