@@ -7,6 +7,7 @@ Surf. Process. Landforms 32:1362) count impulses; Wyss and others (2016, Water R
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -79,6 +80,32 @@ def find_packets(record: Record, threshold: float | None = None, dead_time: floa
     envelope = hilbert_envelope(value)
     level = THRESHOLD * float(envelope.max()) if threshold is None else threshold
     return packets_in(value, envelope, np.array([level]), record.rate, dead_time)
+
+
+def packet_records(record: Record, threshold: float | None = None, dead_time: float = DEAD_TIME) -> list[Record]:
+    """Return the packets of a record as records of their own, each from its first sample to its last.
+
+    Parameters
+    ----------
+    record, threshold, dead_time
+        As those of `find_packets`.
+
+    Raises
+    ------
+    InputError
+        As `find_packets`.
+
+    Examples
+    --------
+    >>> taps = Record("geophone", [0.0, 9.0, -9.0] + 200 * [0.0] + [0.0, 4.0, -4.0], 10e3, "V", start=1.0)
+    >>> [round(one.start, 6) for one in packet_records(taps, threshold=2.0)]
+    [1.0, 1.0203]
+    """
+    found = find_packets(record, threshold, dead_time)
+    return [
+        replace(record, value=record.value[first : last + 1], start=record.start + first / record.rate)
+        for first, last in zip(found.first.tolist(), found.last.tolist(), strict=True)
+    ]
 
 
 def check_settings(threshold: float | None, dead_time: float) -> None:
