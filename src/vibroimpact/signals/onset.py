@@ -13,7 +13,7 @@ from vibroimpact.signals.record import Record
 
 
 def from_onset(record: Record, duration: float, before: float = 0.0, threshold: float | None = None) -> Record:
-    """Return a window of a record around its first touch: where its envelope first reaches a threshold.
+    """Return a window of a record around its first touch: where its magnitude first reaches a threshold.
 
     Windows of equal duration and rate have equal numbers of samples. Before the record and after it, they are filled with zeros.
 
@@ -51,7 +51,7 @@ def from_onset(record: Record, duration: float, before: float = 0.0, threshold: 
     if not 0.0 <= before <= duration:
         raise InputError(f"{before:g} s before the onset do not lie in a window of {duration:g} s")
     packets = find_packets(record, threshold)
-    onset = int(packets.first[0]) if len(packets.first) else 0
+    onset = int(packets.onset[0]) if len(packets.onset) else 0
     first = onset - round(before * record.rate)
     value = record.value[max(first, 0) : max(first + samples, 0)]
     lead = max(-first, 0)
@@ -59,7 +59,9 @@ def from_onset(record: Record, duration: float, before: float = 0.0, threshold: 
 
 
 def onset_time(record: Record, threshold: float | None = None) -> float:
-    """Return when the envelope of a record first reaches a threshold [s].
+    """Return when the magnitude of a record first reaches a threshold [s].
+
+    That is within the first of its `Packets`: the envelope tells that there is one, the signal when it begins.
 
     Parameters
     ----------
@@ -79,6 +81,6 @@ def onset_time(record: Record, threshold: float | None = None) -> float:
     0.0003
     """
     packets = find_packets(record, threshold)
-    if not len(packets.first):
+    if not len(packets.onset):
         raise InputError(f"the envelope of {shown(record.name)} stays below the threshold; it has no onset")
-    return record.start + float(packets.first[0]) / record.rate
+    return record.start + float(packets.onset[0]) / record.rate

@@ -11,6 +11,8 @@ from vibroimpact.signals.feature import Family, Feature
 
 _MODES, _SIFTINGS = 4, 6
 _LEAST = 16
+_LEVEL = 1e-10
+"""Difference of neighbours, beside the largest magnitude of the signal, that counts as none: differences of cubics have rounding errors."""
 
 
 def intrinsic_modes(value: Floats, modes: int = _MODES, siftings: int = _SIFTINGS) -> Floats:
@@ -34,27 +36,27 @@ def intrinsic_modes(value: Floats, modes: int = _MODES, siftings: int = _SIFTING
     array, shape (modes, n, samples)
         The modes; zero where there is none.
     """
-    found, rest = np.zeros((modes, *value.shape)), value.copy()
+    found, rest, least = np.zeros((modes, *value.shape)), value.copy(), _LEVEL * np.abs(value).max(axis=1)
     for mode in found:
         going = np.arange(len(value))
         mode[:] = rest
         for _ in range(siftings):
-            tops, bottoms = _extrema(mode[going])
+            tops, bottoms = _extrema(mode[going], least[going])
             more = tops.any(axis=1) & bottoms.any(axis=1)
             if not more.all():
                 going, tops, bottoms = going[more], tops[more], bottoms[more]
             sifted = mode[going]
             mode[going] = sifted - 0.5 * (cubic_through(sifted, tops) + cubic_through(sifted, bottoms))
-        tops, bottoms = _extrema(rest)
+        tops, bottoms = _extrema(rest, least)
         mode[~(tops.any(axis=1) & bottoms.any(axis=1))] = 0.0
         rest -= mode
     return found
 
 
-def _extrema(value: Floats) -> tuple[Bools, Bools]:
-    """Return which samples are maxima and which are minima; of equal neighbours the first."""
+def _extrema(value: Floats, least: Floats) -> tuple[Bools, Bools]:
+    """Return which samples are maxima and which are minima, by differences above the least (n,); of equal neighbours the first."""
     step = np.diff(value, axis=1)
-    rising, falling = step > 0.0, step < 0.0
+    rising, falling = step > least[:, None], step < -least[:, None]
     level = ~(rising | falling)
     if level.any():  # a level part ends as the part before it went on, unless the next one turns
         number = np.arange(step.shape[1])
