@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.arrays import Bools, Floats
+from vibroimpact.arrays import Floats, Indices
 
 
-def cubic_through(value: Floats, knots: Bools) -> Floats:
+def cubic_through(value: Floats, knots: Indices) -> Floats:
     """Return piecewise cubics through samples of signals, at all samples.
 
     Between two knots the cubic does not leave their heights (Fritsch and Butland 1984, SIAM J. Sci. Stat. Comput. 5:300); before the first
@@ -17,8 +17,8 @@ def cubic_through(value: Floats, knots: Bools) -> Floats:
     ----------
     value : array, shape (n, samples)
         The signals.
-    knots : array of bool, shape (n, samples)
-        The samples that the cubics go through: one in each signal at least.
+    knots : array of int
+        The samples that the cubics go through, as places in the flattened signals, rising: one in each signal at least.
 
     Returns
     -------
@@ -26,15 +26,14 @@ def cubic_through(value: Floats, knots: Bools) -> Floats:
         The cubics.
     """
     count, samples = value.shape
-    at = np.flatnonzero(knots)
-    number = np.count_nonzero(knots, axis=1)
+    number = np.diff(np.searchsorted(knots, samples * np.arange(count + 1)))
+    row = np.repeat(np.arange(count), number)
     # of each signal: one before it, its knots, one after it; the two have the heights of their neighbours
     last = np.cumsum(number + 2) - 1
     first = last - number - 1
-    row = np.repeat(np.arange(count), number)
-    inner = np.arange(len(at)) + 2 * row + 1
-    place, height = np.empty((2, len(at) + 2 * count))
-    place[inner], height[inner] = at - samples * row, value.ravel()[at]
+    inner = np.arange(len(knots)) + 2 * row + 1
+    place, height = np.empty((2, len(knots) + 2 * count))
+    place[inner], height[inner] = knots - samples * row, value.ravel()[knots]
     place[first], height[first] = -1.0, height[first + 1]
     place[last], height[last] = samples, height[last - 1]
     step, slope = np.diff(place), np.diff(height)
@@ -50,7 +49,7 @@ def cubic_through(value: Floats, knots: Bools) -> Floats:
     # the samples of each interval between knots
     bound = np.empty(len(place), dtype=np.int64)
     begin = samples * np.arange(count)
-    bound[first], bound[inner], bound[last] = begin, at, begin + samples
+    bound[first], bound[inner], bound[last] = begin, knots, begin + samples
     length = np.diff(bound)
     far, height, linear, square, found = (
         np.repeat(one, length).reshape(count, samples) for one in (-place[:-1], height[:-1], bent[:-1], square, cubic)

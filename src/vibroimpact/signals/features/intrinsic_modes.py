@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.arrays import Bools, Floats
+from vibroimpact.arrays import Floats, Indices
 from vibroimpact.signals.block import Block
 from vibroimpact.signals.cubic_through import cubic_through
 from vibroimpact.signals.feature import Family, Feature
@@ -37,41 +37,41 @@ def intrinsic_modes(value: Floats, modes: int = _MODES, siftings: int = _SIFTING
         The modes; zero where there is none.
     """
     found, rest, least = np.zeros((modes, *value.shape)), value.copy(), _LEVEL * np.abs(value).max(axis=1)
+    left = np.arange(len(value))  # signals whose rest has a mode
     for mode in found:
-        going = np.arange(len(value))
-        mode[:] = rest
-        for _ in range(siftings):
-            tops, bottoms = _extrema(mode[going], least[going])
-            more = tops.any(axis=1) & bottoms.any(axis=1)
-            if not more.all():
-                going, tops, bottoms = going[more], tops[more], bottoms[more]
-            sifted = mode[going]
-            mode[going] = sifted - 0.5 * (cubic_through(sifted, tops) + cubic_through(sifted, bottoms))
-        tops, bottoms = _extrema(rest, least)
-        mode[~(tops.any(axis=1) & bottoms.any(axis=1))] = 0.0
+        going, sifted = left, rest[left]
+        for number in range(siftings):
+            tops, bottoms = _extrema(sifted, least[going])
+            both = np.minimum(_count(tops, sifted), _count(bottoms, sifted)) > 0
+            if not both.all():
+                if number:  # a mode without a maximum or a minimum stays as it is
+                    mode[going] = sifted
+                going, sifted = going[both], sifted[both]
+                left = left if number else going
+                tops, bottoms = _extrema(sifted, least[going])
+            sifted -= 0.5 * (cubic_through(sifted, tops) + cubic_through(sifted, bottoms))
+        mode[going] = sifted
         rest -= mode
     return found
 
 
-def _extrema(value: Floats, least: Floats) -> tuple[Bools, Bools]:
-    """Return which samples are maxima and which are minima, by differences above the least (n,); of equal neighbours the first."""
-    step = np.diff(value, axis=1)
-    rising, falling = step > least[:, None], step < -least[:, None]
-    level = ~(rising | falling)
-    if level.any():  # a level part ends as the part before it went on, unless the next one turns
-        number = np.arange(step.shape[1])
-        back = np.maximum.accumulate(np.where(level, 0, number), axis=1)
-        ahead = np.minimum.accumulate(np.where(level, step.shape[1] - 1, number)[:, ::-1], axis=1)[:, ::-1]
-        row = np.arange(len(value))[:, None]
-        rising_before, falling_before = rising[row, back], falling[row, back]
-        rising_after, falling_after = rising[row, ahead], falling[row, ahead]
-    else:
-        rising_before, falling_before, rising_after, falling_after = rising, falling, rising, falling
-    tops, bottoms = np.zeros((2, *value.shape), dtype=bool)
-    moved = ~level[:, :-1]
-    tops[:, 1:-1] = moved & rising_before[:, :-1] & falling_after[:, 1:]
-    bottoms[:, 1:-1] = moved & falling_before[:, :-1] & rising_after[:, 1:]
-    return tops, bottoms
+def _extrema(value: Floats, least: Floats) -> tuple[Indices, Indices]:
+    """Return places of maxima and minima in flattened signals, by steps above the least (n,); of equal neighbours the first."""
+    step = np.zeros_like(value)  # the last one of a signal is none
+    np.subtract(value[:, 1:], value[:, :-1], out=step[:, :-1])
+    moving = np.flatnonzero(np.abs(step) > least[:, None])
+    up = step.ravel()[moving] > 0.0
+    turns = np.zeros(len(moving), dtype=bool)
+    turns[:-1] = up[1:] != up[:-1]
+    ends = np.searchsorted(moving, value.shape[1] * np.arange(1, len(value))) - 1
+    turns[ends[ends >= 0]] = False  # from one signal to the next
+    place, top = moving[turns] + 1, up[turns]
+    return place[top], place[~top]
+
+
+def _count(places: Indices, value: Floats) -> Indices:
+    """Return how many of some places, in rising order, lie in each signal."""
+    return np.asarray(np.diff(np.searchsorted(places, value.shape[1] * np.arange(len(value) + 1))))
 
 
 def _of(block: Block) -> Floats:
