@@ -115,9 +115,15 @@ if TYPE_CHECKING:
     from vibroimpact.runs.save import save_result as save_result
     from vibroimpact.signals.feature_table import FeatureTable as FeatureTable
     from vibroimpact.signals.feature_table import feature_table as feature_table
+    from vibroimpact.signals.onset import from_onset as from_onset
+    from vibroimpact.signals.onset import onset_time as onset_time
     from vibroimpact.signals.packets import Packets as Packets
     from vibroimpact.signals.packets import find_packets as find_packets
+    from vibroimpact.signals.packets import packet_records as packet_records
+    from vibroimpact.signals.read_records import read_records as read_records
     from vibroimpact.signals.record import Record as Record
+    from vibroimpact.signals.record_table import RecordTable as RecordTable
+    from vibroimpact.signals.record_table import record_table as record_table
     from vibroimpact.signals.registry import features as features
     from vibroimpact.signals.registry import find_feature as find_feature
     from vibroimpact.structures.mesh import Mesh as Mesh
@@ -165,6 +171,7 @@ _HOME = {
     "Recogniser": "recognition.recogniser",
     "Recognised": "recognition.apply",
     "Recognition": "recognition.recognise",
+    "RecordTable": "signals.record_table",
     "Response": "dynamics.response",
     "Result": "results.result",
     "Sensor": "dynamics.sensors.sensor",
@@ -199,6 +206,7 @@ _HOME = {
     "friction_laws": "contact.registry",
     "find_material": "materials",
     "find_packets": "signals.packets",
+    "from_onset": "signals.onset",
     "identify_local_element": "dynamics.local_element",
     "impacts_in_force": "calibration.force_record",
     "impacts_in_position": "calibration.position_record",
@@ -214,6 +222,8 @@ _HOME = {
     "material_library": "materials",
     "modal_damping": "calibration.tunables",
     "mode_charts": "modes.charts",
+    "onset_time": "signals.onset",
+    "packet_records": "signals.packets",
     "plotly_figure": "charts.notebook",
     "plot_study": "studies.report.notebook",
     "read_calibration": "calibration.calibrate_case",
@@ -221,10 +231,12 @@ _HOME = {
     "read_case": "cases.reader",
     "read_labelled_signals": "recognition.read_dataset",
     "read_mesh": "meshes.mesh_file",
+    "read_records": "signals.read_records",
     "read_result": "results.folder",
     "read_study": "studies.study",
     "read_sweep": "studies.sweep",
     "recognise": "recognition.recognise",
+    "record_table": "signals.record_table",
     "remake_report": "remake",
     "reproduce_paper": "paper.report.folder",
     "result_html": "runs.notebook",

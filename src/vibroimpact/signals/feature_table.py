@@ -19,7 +19,7 @@ from vibroimpact.signals.reasons import Reason
 from vibroimpact.signals.record import as_floats, checked_rate
 from vibroimpact.signals.registry import families, features, find_feature
 
-_AT_ONCE = 2**17
+_AT_ONCE = 2**15
 """Samples of a block of signals: its arrays stay in the cache of a processor."""
 
 

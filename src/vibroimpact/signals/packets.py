@@ -1,12 +1,14 @@
 """Packets: the parts of a record that stand above a threshold, as those who measure bedload with plate geophones count them.
 
 A packet begins at the first sample at which the envelope reaches the threshold, and ends with the last one before the envelope stays
-below for a dead time. Its impulses are the upward crossings of the threshold by the signal itself. Rickenmann and McArdell (2007, Earth
+below for a dead time. An envelope rises before the signal does, by a part of its period; the onset is where the signal itself reaches the
+threshold, and its impulses are the upward crossings of the signal. Rickenmann and McArdell (2007, Earth
 Surf. Process. Landforms 32:1362) count impulses; Wyss and others (2016, Water Resour. Res. 52:7744) take packets by the Hilbert envelope.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -31,7 +33,9 @@ class Packets(NamedTuple):
     signal : array of int
         Number of the signal, from 0.
     first, last : array of int
-        First and last sample of the packet.
+        First and last sample at which the envelope reaches the threshold.
+    onset : array of int
+        First sample at which the magnitude of the signal does; that of the envelope if the samples miss it.
     peak : array
         Largest magnitude of the signal within it, in the unit of the signal.
     impulses : array of int
@@ -41,6 +45,7 @@ class Packets(NamedTuple):
     signal: Integers
     first: Integers
     last: Integers
+    onset: Integers
     peak: Floats
     impulses: Integers
 
@@ -81,6 +86,32 @@ def find_packets(record: Record, threshold: float | None = None, dead_time: floa
     return packets_in(value, envelope, np.array([level]), record.rate, dead_time)
 
 
+def packet_records(record: Record, threshold: float | None = None, dead_time: float = DEAD_TIME) -> list[Record]:
+    """Return the packets of a record as records of their own, each from its first sample to its last.
+
+    Parameters
+    ----------
+    record, threshold, dead_time
+        As those of `find_packets`.
+
+    Raises
+    ------
+    InputError
+        As `find_packets`.
+
+    Examples
+    --------
+    >>> taps = Record("geophone", [0.0, 9.0, -9.0] + 200 * [0.0] + [0.0, 4.0, -4.0], 10e3, "V", start=1.0)
+    >>> [round(one.start, 6) for one in packet_records(taps, threshold=2.0)]
+    [1.0, 1.0203]
+    """
+    found = find_packets(record, threshold, dead_time)
+    return [
+        replace(record, value=record.value[first : last + 1], start=record.start + first / record.rate)
+        for first, last in zip(found.first.tolist(), found.last.tolist(), strict=True)
+    ]
+
+
 def check_settings(threshold: float | None, dead_time: float) -> None:
     """Raise InputError unless a threshold is above 0 (or None), and a dead time 0 or more."""
     if threshold is not None and not 0.0 < threshold < np.inf:
@@ -91,7 +122,7 @@ def check_settings(threshold: float | None, dead_time: float) -> None:
 
 def packets_in(value: Floats, envelope: Floats, threshold: Floats, rate: float, dead_time: float) -> Packets:
     """Return the packets of signals (n, samples) with their envelopes, by a threshold of each (n,)."""
-    level, samples = threshold[:, None], value.shape[1]
+    level, samples, magnitude = threshold[:, None], value.shape[1], np.abs(value)
     # a threshold of zero, of a signal that is zero throughout, is reached by nothing
     row, column = np.nonzero((envelope >= level) & (level > 0.0))
     gap = np.diff(column) > max(1.0, round(min(dead_time * rate, samples)))
@@ -105,5 +136,8 @@ def packets_in(value: Floats, envelope: Floats, threshold: Floats, rate: float, 
     counted = np.append(0, np.cumsum(rising))
     begin, end = samples * signal + first, samples * signal + last + 1
     edges = np.stack([begin, end], axis=1).ravel()
-    within = np.maximum.reduceat(np.append(np.abs(value), 0.0), edges)[::2] if len(edges) else np.empty(0)
-    return Packets(signal, first, last, within, counted[end] - counted[begin])
+    reached = np.flatnonzero(magnitude >= level)
+    after = np.append(reached, value.size)[np.searchsorted(reached, begin)]
+    onset = np.where(after < end, after - begin, 0) + first
+    within = np.maximum.reduceat(np.append(magnitude, 0.0), edges)[::2] if len(edges) else np.empty(0)
+    return Packets(signal, first, last, onset, within, counted[end] - counted[begin])

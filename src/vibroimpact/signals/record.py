@@ -27,6 +27,8 @@ class Record:
         Unit of the samples, in SI: "V", "m/s^2", "Pa", "N".
     start : float, default 0
         Time of the first sample [s].
+    source : str, default ""
+        The file that it was read from.
 
     Raises
     ------
@@ -44,6 +46,7 @@ class Record:
     rate: float
     unit: str
     start: float = 0.0
+    source: str = ""
 
     def __post_init__(self) -> None:
         value = as_floats(self.value)

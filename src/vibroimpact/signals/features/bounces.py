@@ -11,14 +11,14 @@ from vibroimpact.signals.reasons import Reason
 
 
 def _of(block: Block) -> Floats:
-    signal, first, _, peak, impulses = block.packets
+    signal, onset, peak, impulses = block.packets.signal, block.packets.onset, block.packets.peak, block.packets.impulses
     count = len(block.value)
     number = np.bincount(signal, minlength=count)
-    # first sample and peak of the first three packets of each signal
+    # onset and peak of the first three packets of each signal
     order = np.arange(len(signal)) - np.repeat(np.cumsum(number) - number, number)
     times, peaks = np.full((2, count, 3), np.nan)
     early = order < 3
-    times[signal[early], order[early]], peaks[signal[early], order[early]] = first[early], peak[early]
+    times[signal[early], order[early]], peaks[signal[early], order[early]] = onset[early], peak[early]
     interval = np.diff(times, axis=1) / block.rate
     columns = (
         number,

@@ -15,7 +15,7 @@ _TINY = 1e-30
 
 
 def _of(block: Block) -> Floats:
-    frequency = block.frequency
+    frequency = block.frequency / block.rate  # whose squares stay in range
     part = block.power / block.power.sum(axis=1, keepdims=True)
     amplitude = np.abs(block.transform)
     centroid = part @ frequency
@@ -26,17 +26,9 @@ def _of(block: Block) -> Floats:
     logarithm = np.log(part + _TINY)
     flatness = np.exp(logarithm.mean(axis=1)) * len(frequency)
     entropy = np.maximum(-np.einsum("ij,ij->i", part, logarithm), 0.0) / np.log(len(frequency))
-    columns = (
-        centroid,
-        amplitude @ frequency / amplitude.sum(axis=1),
-        bandwidth,
-        roll_off,
-        peak,
-        flatness,
-        entropy,
-        _cut_off(amplitude, frequency),
-    )
-    return np.stack(columns, axis=1)
+    amplitude_centroid = amplitude @ frequency / amplitude.sum(axis=1)
+    in_hertz = np.stack([centroid, amplitude_centroid, bandwidth, roll_off, peak, _cut_off(amplitude, frequency)], axis=1)
+    return np.concatenate([in_hertz * block.rate, np.stack([flatness, entropy], axis=1)], axis=1)
 
 
 def _cut_off(amplitude: Floats, frequency: Floats) -> Floats:
@@ -77,6 +69,14 @@ FAMILY = Family(
         ),
         Feature(name="peak_frequency", meaning="frequency of the largest amplitude", equation="argmax |X|", source=_PEETERS, unit="Hz"),
         Feature(
+            name="cut_off_10_dB",
+            meaning="highest frequency at which the amplitude is 10 dB below its maximum: 1.16 over the contact time, of Hertz's force",
+            equation="largest f with |X| = max|X| / sqrt(10)",
+            source="ISO 7626-5, of hammers",
+            unit="Hz",
+            lacking=Reason.BROAD_BAND,
+        ),
+        Feature(
             name="spectral_flatness",
             meaning="geometric over arithmetic mean of the energy: 0 of tones, 0.56 of white noise",
             equation="exp(mean(ln P)) / mean(P)",
@@ -88,14 +88,6 @@ FAMILY = Family(
             equation="-sum(p ln p) / ln(number), p = P / sum(P)",
             source="Misra et al. 2004, Proc. ICASSP 1:193",
             least=2,
-        ),
-        Feature(
-            name="cut_off_10_dB",
-            meaning="highest frequency at which the amplitude is 10 dB below its maximum: 1.16 over the contact time, of Hertz's force",
-            equation="largest f with |X| = max|X| / sqrt(10)",
-            source="ISO 7626-5, of hammers",
-            unit="Hz",
-            lacking=Reason.BROAD_BAND,
         ),
     ),
     _of,
