@@ -378,6 +378,17 @@ def test_charts_are_drawn(found: vi.Recognition) -> None:
         assert matplotlib_figure(chart).axes
 
 
+def test_plates_that_were_never_trained_on(folder: Path) -> None:
+    """Three plates are three folds; within the two that are trained on there are two."""
+    found = vi.recognise(folder, group="plate", folds=3, seeds=1)
+    assert found.groups == 3
+    assert {one.key for one in found.unseen} >= {"drop.height"}
+    with pytest.raises(
+        vi.InputError, match="coal is in 3 plates, too few for 5 folds; give signals of 5 plates or more, or ask for 3 folds"
+    ):
+        vi.recognise(folder, group="plate")
+
+
 # leaks
 
 
@@ -527,7 +538,9 @@ def test_the_command_trains_and_applies(
     out = str(tmp_path / "out")
     assert run(monkeypatch, "recognise", str(folder), "-o", out, "--folds", "2", "--seeds", "1", "--json") == 0
     printed = capsys.readouterr()
-    assert json.loads(printed.out)["recognition"]["folds"] == 2
+    document = json.loads(printed.out)
+    assert document == {"folder": out, **json.loads((Path(out) / "summary.json").read_text())}
+    assert document["recognition"]["folds"] == 2
     assert "vibroimpact: cross-validation by rock" in printed.err
     other = write_knocks(tmp_path / "other", seed=4, **SMALL)
     assert run(monkeypatch, "recognise", str(other), "--model", out, "-o", str(tmp_path / "applied")) == 0

@@ -14,6 +14,7 @@ import pytest
 from rich.console import RenderableType
 
 import vibroimpact as vi
+from knocks import write_knocks
 from studies import study_table
 from support import one_in, plain_case
 from told import told_case
@@ -34,6 +35,7 @@ from vibroimpact.laws.sheet import law_sheet, law_table
 from vibroimpact.modes.text import modes_summary
 from vibroimpact.paper.report.page import verdict_table
 from vibroimpact.paper.report_section import Verdict
+from vibroimpact.recognition.text import recognised_summary, recognition_summary
 from vibroimpact.report.console import TerminalConsole
 from vibroimpact.results.result import result_of
 from vibroimpact.runs.case_explained import case_explained
@@ -79,6 +81,9 @@ def commands(tmp_path_factory: pytest.TempPathFactory, variable: vi.Response) ->
     sweep = read_sweep(study_table())
     study = vi.read_study(compute_study(sweep, folder / "study"))
     drop = told_case("paper:type1-variable")
+    knocks = write_knocks(folder / "knocks", rocks=8, falls=6)
+    recognition = vi.recognise(knocks, folds=2, seeds=1)
+    recognised = vi.apply_recogniser(recognition.recogniser, knocks)
     return {
         "run": lambda width: result_summary(rigid, width),
         "run, elastic": lambda width: result_summary(rung, width),
@@ -90,6 +95,8 @@ def commands(tmp_path_factory: pytest.TempPathFactory, variable: vi.Response) ->
         "sweep": lambda width: study_summary(study, width),
         "export": lambda _: format_table(),
         "export, done": lambda _: export_summary(drop, find_export_format("lammps"), [folder / "drop.in"]),
+        "recognise": lambda _: recognition_summary(recognition),
+        "recognise, applied": lambda _: recognised_summary(recognised),
         "cases": lambda _: shipped_cases_table(),
         "laws": law_table,
         "laws NAME": lambda _: law_sheet("jackson-green-marghitu"),
@@ -112,6 +119,8 @@ NAMES = (
     "sweep",
     "export",
     "export, done",
+    "recognise",
+    "recognise, applied",
     "cases",
     "laws",
     "laws NAME",

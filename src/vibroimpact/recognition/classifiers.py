@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.arrays import Floats, Indices
-from vibroimpact.recognition.folds import Split, split_signals
+from vibroimpact.recognition.folds import Split, inner_splits
 from vibroimpact.recognition.scores import balanced_accuracy
 from vibroimpact.recognition.signal_features import CONTACT_TIME, EDGES, FEATURES, PEAK, TRUE_TIME
 
@@ -20,7 +20,6 @@ BASELINE, CLASSIFIER, TRUTH, PROBE = "baseline", "classifier", "truth", "probe"
 """Kinds: of one measured quantity, of all features, of what only the simulation knows, of what should tell little."""
 
 Parameters = Mapping[str, Any]
-INNER_FOLDS = 3
 _TREES = 60
 
 
@@ -85,7 +84,7 @@ def fit_tuned(classifier: Classifier, values: Floats, classes: Indices, groups: 
     mapping
         The parameters chosen.
     """
-    splits = split_signals(classes, groups, INNER_FOLDS, seed)
+    splits = inner_splits(classes, groups, seed)
     chosen = classifier.grid[0]
     if len(classifier.grid) > 1:
         chosen = max(

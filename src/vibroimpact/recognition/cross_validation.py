@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.arrays import Floats, Indices
-from vibroimpact.recognition.classifiers import INNER_FOLDS, Classifier, Parameters, fit_tuned, probabilities
-from vibroimpact.recognition.folds import Split, split_signals
+from vibroimpact.recognition.classifiers import Classifier, Parameters, fit_tuned, probabilities
+from vibroimpact.recognition.folds import Split, inner_splits, split_signals
 from vibroimpact.recognition.jobs import Progress, run_jobs
 
 
@@ -109,5 +109,5 @@ def refit(
     parameters : mapping
         Its parameters.
     """
-    splits = split_signals(classes[train], groups[train], INNER_FOLDS, seed)
+    splits = inner_splits(classes[train], groups[train], seed)
     return classifier.make(parameters, seed, splits).fit(values[train], classes[train])

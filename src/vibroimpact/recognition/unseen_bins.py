@@ -119,4 +119,4 @@ def _usable(inside: Bools, classes: Indices, groups: Indices, splits: Sequence[S
     if len(np.unique(classes[inside])) < len(names):
         return False
     outside = [split.train[~inside[split.train]] for split in splits]
-    return all(len(np.unique(groups[part][classes[part] == one])) >= 3 for part in outside for one in names)
+    return all(len(np.unique(groups[part][classes[part] == one])) >= 2 for part in outside for one in names)
