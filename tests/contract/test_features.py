@@ -188,9 +188,16 @@ def test_a_threshold_that_is_given_is_that_of_the_signal() -> None:
     assert silent["packets"][0] == silent["impulses"][0] == 0.0
     assert silent.lacking(0)["rise_time"] == "the envelope stays below the threshold"
     assert silent.lacking(0)["peak_ratio"] == "there are fewer than two packets"
+    assert described(1e300 * ringing()[None], threshold=1e-300)["packets"][0] == 1.0
     scaled = described(1e200 * ringing()[None], threshold=0.3e200)
     assert scaled["packets"][0] == 2.0
     assert scaled["duration"] == pytest.approx(table["duration"])
+
+
+def test_progress_is_told() -> None:
+    told: list[tuple[int, int]] = []
+    vi.feature_table(np.ones((5, 2**14)), RATE, ["rms"], progress=lambda done, of: told.append((done, of)))
+    assert told == [(2, 5), (4, 5), (5, 5)]
 
 
 def test_chosen_features_are_those_of_all() -> None:

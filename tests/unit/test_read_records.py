@@ -165,6 +165,15 @@ def test_a_data_set(tmp_path: Path) -> None:
     np.testing.assert_allclose([one.value for one in found], 1e-3 * signals, rtol=1e-6)
 
 
+def test_signals_that_are_filled_at_their_ends(tmp_path: Path) -> None:
+    signals = dataset(tmp_path / "study.nc")
+    with h5py.File(tmp_path / "study.nc", "r+") as file:
+        file["signal_geophone"][1, 30:], file["signal_geophone"][2], file["signal_geophone"][3, 10] = np.nan, np.nan, np.nan
+    whole, cut, none, spoilt, *_ = vi.read_records(tmp_path)
+    assert [len(one.value) for one in (whole, cut, none, spoilt)] == [50, 30, 0, 50]
+    np.testing.assert_array_equal(cut.value, signals[1, :30])
+
+
 def test_netcdf_by_xarray(tmp_path: Path) -> None:
     xarray = pytest.importorskip("xarray")
     time = ("time", 0.5 + np.arange(50) / 1e3, {"units": "s"})

@@ -25,6 +25,7 @@ from vibroimpact.cases.elastic.modes import compute_modes
 from vibroimpact.cli import main
 from vibroimpact.cli.case_text import shipped_cases_table
 from vibroimpact.cli.doctor import diagnose, diagnosis_rows
+from vibroimpact.cli.feature_text import feature_list, table_summary
 from vibroimpact.cli.material_text import material_library_table, material_sheet
 from vibroimpact.cli.unit_table import converted, unit_table
 from vibroimpact.comparison.comparison import compare_laws
@@ -81,6 +82,8 @@ def commands(tmp_path_factory: pytest.TempPathFactory, variable: vi.Response) ->
     sweep = read_sweep(study_table())
     study = vi.read_study(compute_study(sweep, folder / "study"))
     drop = told_case("paper:type1-variable")
+    signals = [vi.Record(name, signal.value, signal.sensor.rate, signal.sensor.unit) for name, signal in rung.signals.items()]
+    table = vi.record_table([*signals, vi.Record("silence", [0.0] * 100, 20e3, "V")])
     knocks = write_knocks(folder / "knocks", rocks=8, falls=6)
     recognition = vi.recognise(knocks, folds=2, seeds=1)
     recognised = vi.apply_recogniser(recognition.recogniser, knocks)
@@ -95,6 +98,8 @@ def commands(tmp_path_factory: pytest.TempPathFactory, variable: vi.Response) ->
         "sweep": lambda width: study_summary(study, width),
         "export": lambda _: format_table(),
         "export, done": lambda _: export_summary(drop, find_export_format("lammps"), [folder / "drop.in"]),
+        "features": lambda _: table_summary(table),
+        "features --list": lambda _: feature_list(),
         "recognise": lambda _: recognition_summary(recognition),
         "recognise, applied": lambda _: recognised_summary(recognised),
         "cases": lambda _: shipped_cases_table(),
@@ -119,6 +124,8 @@ NAMES = (
     "sweep",
     "export",
     "export, done",
+    "features",
+    "features --list",
     "recognise",
     "recognise, applied",
     "cases",

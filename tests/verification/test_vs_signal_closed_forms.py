@@ -188,7 +188,26 @@ def test_two_tones_are_two_intrinsic_modes() -> None:
     found = features_of(np.sin(2.0 * np.pi * 128.0 * time) + 0.5 * np.sin(2.0 * np.pi * 9.0 * time), 4096.0)
     assert found["intrinsic_mode_1"] == pytest.approx(0.8, abs=0.01)
     assert found["intrinsic_mode_2"] == pytest.approx(0.2, abs=0.01)
-    assert found["intrinsic_mode_3"] < 0.002
+    assert found["intrinsic_mode_3"] + found["intrinsic_mode_4"] < 0.002
+
+
+@pytest.mark.parametrize("level", [0.3, 0.7, 0.95])
+def test_a_clipped_tone(level: float) -> None:
+    """A tone is beyond a level for 1 - 2 asin(level)/pi of the time."""
+    found = features_of(np.clip(np.sin(2.0 * np.pi * 0.00123 * np.arange(2**15)), -level, level), 1.0)
+    assert found["clipped_part"] == pytest.approx(1.0 - 2.0 * math.asin(level) / math.pi, abs=0.01)
+    assert found["peak"] == level
+
+
+def test_entropy_of_wavelet_packets() -> None:
+    """Of a slow tone all energy lies in one packet of eight, of white noise as much in each."""
+    slow = features_of(np.sin(2.0 * np.pi * 8.0 * np.arange(4096) / 4096.0), 1.0)
+    assert slow["wavelet_packet_1"] == pytest.approx(1.0, abs=1e-6)
+    assert slow["wavelet_entropy"] == pytest.approx(0.0, abs=1e-4)
+    noise = features_of(np.random.default_rng(3).standard_normal(2**16), 1.0)
+    parts = np.array([noise[f"wavelet_packet_{number}"] for number in range(1, 9)])
+    assert noise["wavelet_entropy"] == pytest.approx(-np.sum(parts * np.log(parts)) / math.log(8.0), rel=1e-12)
+    assert noise["wavelet_entropy"] == pytest.approx(1.0, abs=1e-3)
 
 
 def test_white_noise() -> None:

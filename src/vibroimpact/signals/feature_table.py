@@ -9,14 +9,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from vibroimpact.arrays import Floats, Integers
+from vibroimpact.arrays import Bools, Floats, Integers
 from vibroimpact.errors import InputError
 from vibroimpact.registry import find_named
 from vibroimpact.signals.block import Block
 from vibroimpact.signals.feature import Family, Feature
 from vibroimpact.signals.packets import DEAD_TIME, check_settings
 from vibroimpact.signals.reasons import Reason
-from vibroimpact.signals.record import as_floats, checked_rate
+from vibroimpact.signals.record import checked_rate, real_numbers
 from vibroimpact.signals.registry import families, features, find_feature
 
 _AT_ONCE = 2**15
@@ -101,7 +101,7 @@ def feature_table(
     >>> table["peak_frequency"].tolist(), table.units
     ([50.0, 200.0], ('V', 'Hz'))
     """
-    signals, frequency = as_floats(values), checked_rate(rate)
+    signals, frequency = real_numbers(values), checked_rate(rate)
     if signals.ndim != 2:
         raise InputError(f"the signals are an array of {signals.ndim} dimensions; give a table of shape (signals, samples)")
     check_settings(threshold, dead_time)
@@ -111,7 +111,7 @@ def feature_table(
     step = max(1, _AT_ONCE // max(1, signals.shape[1]))
     for first in range(0, len(signals), step):
         part = slice(first, first + step)
-        found[part], reasons[part] = _features_of(signals[part], frequency, wanted, chosen, threshold, dead_time)
+        found[part], reasons[part] = _features_of(signals[part].astype(np.float64), frequency, wanted, chosen, threshold, dead_time)
         if progress is not None:
             progress(min(first + step, len(signals)), len(signals))
     return FeatureTable(tuple(wanted), tuple(one.unit_for(unit) for one in wanted.values()), found, reasons)
@@ -153,11 +153,12 @@ def _scaled(signals: Floats, rate: float, threshold: float | None, dead_time: fl
     # in two steps, since the power of two itself may be out of range
     half = exponent // 2
     value = np.ldexp(np.ldexp(signals, -half[:, None]), (half - exponent)[:, None])
-    given = None if threshold is None else np.ldexp(np.ldexp(threshold, -half), half - exponent)
+    # a threshold that is nothing beside a signal is still above zero
+    given = None if threshold is None else np.maximum(np.ldexp(np.ldexp(threshold, -half), half - exponent), np.finfo(float).tiny)
     return Block(value, rate, given, dead_time), exponent
 
 
-def _told(feature: Feature, number: Floats, exponent: Integers, constant: Any, samples: int) -> tuple[Floats, NDArray[np.int8]]:
+def _told(feature: Feature, number: Floats, exponent: Integers, constant: Bools, samples: int) -> tuple[Floats, NDArray[np.int8]]:
     """Return the values of a feature at the scale of the signals, and a reason where there is none."""
     power = feature.degree * exponent
     half = power // 2

@@ -2,8 +2,9 @@
 
 A packet begins at the first sample at which the envelope reaches the threshold, and ends with the last one before the envelope stays
 below for a dead time. An envelope rises before the signal does, by a part of its period; the onset is where the signal itself reaches the
-threshold, and its impulses are the upward crossings of the signal. Rickenmann and McArdell (2007, Earth
-Surf. Process. Landforms 32:1362) count impulses; Wyss and others (2016, Water Resour. Res. 52:7744) take packets by the Hilbert envelope.
+threshold, and its impulses are the upward crossings of the signal. Rickenmann and McArdell (2007, Earth Surf. Process. Landforms 32:1362)
+count impulses; Wyss and others (2016, Water Resour. Res. 52:7744) and Chen and others (2022, Earth Surf. Dynam. 10:279) take packets,
+by the Hilbert envelope.
 """
 
 from __future__ import annotations

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError
@@ -49,7 +51,7 @@ class Record:
     source: str = ""
 
     def __post_init__(self) -> None:
-        value = as_floats(self.value)
+        value = real_numbers(self.value).astype(np.float64, copy=False)
         if value.ndim != 1:
             raise InputError(f"the samples of {shown(self.name)} have {value.ndim} dimensions; a record has one")
         object.__setattr__(self, "value", value)
@@ -66,8 +68,8 @@ class Record:
         return self.start + np.arange(len(self.value)) / self.rate
 
 
-def as_floats(values: object) -> Floats:
-    """Return real numbers of any type as an array of floats.
+def real_numbers(values: object) -> NDArray[Any]:
+    """Return real numbers of any type as an array of that type.
 
     Raises
     ------
@@ -80,7 +82,7 @@ def as_floats(values: object) -> Floats:
         raise InputError("the samples are rows of different lengths; give an array") from None
     if found.dtype.kind not in "fiub":
         raise InputError(f"the samples are of the type {found.dtype}; they must be real numbers")
-    return found.astype(np.float64, copy=False)
+    return found
 
 
 def checked_rate(rate: float) -> float:

@@ -30,7 +30,7 @@ def _of(block: Block) -> Floats:
     return np.stack(columns, axis=1)
 
 
-_PACKETS = "Wyss et al. 2016, Water Resour. Res. 52:7744"
+_PACKETS = "Wyss et al. 2016, Water Resour. Res. 52:7744; Chen et al. 2022, Earth Surf. Dynam. 10:279"
 
 FAMILY = Family(
     (

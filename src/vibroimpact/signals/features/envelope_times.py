@@ -43,7 +43,7 @@ FAMILY = Family(
     (
         Feature(
             name="rise_time",
-            meaning="from the onset, where the envelope first reaches the threshold, to its maximum",
+            meaning="from where the envelope first reaches the threshold to its maximum",
             equation="t(max a) - t(first a >= threshold)",
             source=f"{_EMISSION}, by the envelope",
             unit="s",
@@ -66,7 +66,7 @@ FAMILY = Family(
         ),
         Feature(
             name="temporal_centroid",
-            meaning="mean time of the energy after the onset",
+            meaning="mean time of the energy, from where the envelope first reaches the threshold",
             equation="sum(t x^2) / sum(x^2) - t(first a >= threshold)",
             source="Peeters 2004, A large set of audio features, IRCAM, section 2.3, by the energy",
             unit="s",

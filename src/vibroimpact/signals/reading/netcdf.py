@@ -88,7 +88,9 @@ def _records(data: h5py.Dataset, rate: float, start: float) -> Iterator[Record]:
     step = max(1, _AT_ONCE // max(1, samples * prod(outer[1:])))
     for first in range(0, outer[0], step):
         for value in factor * read_array(data, slice(first, first + step)).astype(float).reshape(-1, samples):
-            yield Record(name, value, rate, unit, start)
+            # shorter signals of a table are filled with NaN at their ends
+            number = samples - int(np.argmin(np.isnan(value[::-1]))) if not np.isnan(value).all() else 0
+            yield Record(name, value[:number], rate, unit, start)
 
 
 def _text(value: Any) -> str:

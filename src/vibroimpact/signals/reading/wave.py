@@ -45,7 +45,11 @@ def wave_records(path: Path) -> Iterator[Record]:
     except Exception:  # of many types, by what is damaged
         raise InputError(f"{path}: the WAV file is damaged, or holds no samples of 8 to 64 bits without compression") from None
     said = _SCALE.search(raw, max(0, len(raw) - 1000))
-    scale, unit = (float(said[1]), in_si(said[2].decode("ascii", "replace"))[1]) if said else (1.0, "1")
+    try:
+        factor, unit = in_si(said[2].decode("ascii", "replace")) if said else (1.0, "1")
+    except InputError as error:
+        raise with_path(path, error) from None
+    scale = factor * float(said[1]) if said else 1.0
     channels = samples.reshape(len(samples), -1).T
     for number, channel in enumerate(channels, 1):
         name = said[3].decode("utf-8", "replace") if said else path.stem
