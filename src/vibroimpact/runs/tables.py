@@ -100,7 +100,9 @@ def shown_columns(result: Result) -> list[str]:
     """
     impacts = result.impacts
     told = {"contacts": several_contacts(impacts), "sensitivity": loses_digits(result.change_by_impact)}
-    told |= {name: bool(np.any(impacts.get(name, 0.0))) for name in ("duration_s", "max_indentation_m", "microslip_lost_J")}
+    told |= {name: bool(np.any(impacts[name])) for name in ("duration_s", "max_indentation_m")}
+    microslip = np.abs(impacts.get("microslip_lost_J", np.nan))
+    told["microslip_lost_J"] = bool(np.any(microslip > _ROUNDING * result.energy["input_J"]))
     return [name for name in _SHOWN_COLUMNS if told.get(name, True) and np.isfinite(impacts.get(name, np.nan)).any()]
 
 
