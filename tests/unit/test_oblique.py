@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ from vibroimpact.arrays import Floats
 from vibroimpact.cases.keys import with_values
 from vibroimpact.dynamics.columns import LEDGER, OBLIQUE_LEDGER, VIBRATION_LEDGER
 from vibroimpact.dynamics.oblique import compliant
+from vibroimpact.runs.tables import ledger_table
 
 RADIUS, MASS = 0.01, 0.02
 PAIR = {"effective_modulus": 1e9, "effective_shear_modulus": 0.8e9, "effective_radius": RADIUS}
@@ -65,6 +67,48 @@ def kinetic(impacts: dict[str, Floats], when: str) -> Floats:
     velocity = sum(impacts[f"{motion}_velocity_{axis}_m_s"] ** 2 for axis in "xy")
     spin = sum(impacts[f"spin_{axis}_{side}_rad_s"] ** 2 for axis in "xyz")
     return np.asarray(0.5 * MASS * velocity + 0.2 * MASS * RADIUS**2 * spin)
+
+
+def test_random_impacts_lose_in_microslip_and_in_gross_slip() -> None:
+    """Both parts are losses, to the error of the integration, and friction took them together; all of steep impacts is gross."""
+    random, number = np.random.default_rng(3), 3000
+    pair = {"effective_modulus": 1e9, "effective_shear_modulus": 1e9 * random.uniform(0.3, 1.2, number), "effective_radius": RADIUS}
+    friction = vi.find_friction_law("mdr")(coefficient=10.0 ** random.uniform(-2.0, 1.0, number), **pair)
+    slip = 10.0 ** random.uniform(-3.0, 1.3, number)
+    oblique = vi.Oblique(velocity=(slip, 0.0), friction=friction)
+    law = vi.find_contact_law("hunt-crossley")(stiffness=1.3e8, restitution=random.uniform(0.1, 1.0, number))
+    found = vi.tabulate(replace(problem(oblique=oblique, impacts=1), laws=(law,), speed=10.0 ** random.uniform(-1.0, 1.0, number)))
+    energy, lost, micro, gross = (
+        np.ravel(values) / (MASS / 7.0 * slip**2)
+        for values in (MASS / 7.0 * slip**2, *(found.impacts[f"{name}_lost_J"] for name in ("friction", "microslip", "gross_slip")))
+    )
+    np.testing.assert_allclose(micro + gross, lost, atol=1e-12)
+    assert micro.min() > -1e-5
+    assert gross.min() > -1e-9
+    assert 0.2 < (micro == 0.0).mean() < 0.6
+    assert (lost < energy + 1e-9).all()
+
+
+@pytest.mark.parametrize("friction", ["coulomb", "rigid", *(name for name in FRICTION if name.startswith("m"))])
+def test_contacts_that_slide_throughout_know_no_microslip(friction: str) -> None:
+    """Neither does the slipping and rolling that follows the bounces."""
+    response = vi.simulate(problem(oblique=vi.Oblique(velocity=(30.0, 0.4), friction=FRICTION[friction]), impacts=None, duration=3.0))
+    assert not response.impacts["microslip_lost_J"][0]
+    assert response.impacts["gross_slip_lost_J"][0] == response.impacts["friction_lost_J"][0]
+    energy = response.energy
+    assert energy["microslip_J"] == pytest.approx(response.impacts["microslip_lost_J"].sum(), rel=1e-12)
+    assert energy["microslip_J"] + energy["gross_slip_J"] == pytest.approx(energy["friction_J"], rel=1e-12)
+
+
+def test_the_ledger_shows_both_parts_of_friction_where_a_result_has_them() -> None:
+    result = vi.result_of(vi.simulate(problem(oblique=spinning("mdr"))))
+    rows = {row.title: row.energy for row in ledger_table(result)[1]}
+    assert {"Lost in microslip", "Lost in gross slip"} < set(rows)
+    assert "Lost by friction" not in rows
+    older = replace(result, energy={name: value for name, value in result.energy.items() if "slip" not in name})
+    without = {row.title: row.energy for row in ledger_table(older)[1]}
+    assert "Lost by friction" in without
+    assert without["Sum"] == rows["Sum"]
 
 
 @pytest.mark.parametrize("law", LAWS)

@@ -344,6 +344,7 @@ class Run:
                 **({} if self.problem.air is None else {"air_J": self.to_air}),
             },
         )
+        energy |= {} if self.oblique is None else self.oblique.friction_parts()
         closes = energy["closure_relative"] <= CLOSURE_LIMIT
         self.outcomes[~(closes & (self.written_off >= -WRITE_OFF_LIMIT * (self.energy_in + added)))] = Outcome.FAILED.code
         return Response(

@@ -39,7 +39,7 @@ class ObliqueMotion:
         self.sphere = Sphere(mass, radius, mass * radius**2 * oblique.inertia_ratio, spread(oblique.gravity))
         self.state = State(spread(oblique.position), spread(oblique.velocity), spread(oblique.spin))
         self.start, self.half = self.state.position, None if oblique.size is None else 0.5 * np.array(oblique.size)[:, None]
-        self.law, self.lost = oblique.friction, np.zeros(len(mass))
+        self.law, self.lost, self.microslip = oblique.friction, np.zeros(len(mass)), np.zeros(len(mass))
 
     def fly(self, drops: Drops, flight: Flight, time: Floats) -> None:
         """Advance drops through their flights up to a time [s]."""
@@ -106,7 +106,7 @@ class ObliqueMotion:
         rubbed = sphere.tangential_mass * np.abs(sliding.slip[-1] - slip - pull * normal.time[-1])
         contact = contact.changed(_across(sphere, contact))
         contact = contact.changed(_rolling(law, sphere, contact.end, normal.impulse[-1], rubbed))
-        self.finish(drops, contact.end, energy_taken(sphere, before, contact.end), row)
+        self.finish(drops, contact.end, energy_taken(sphere, before, contact.end), sliding.microslip, row)
         return contact
 
     def collide_at_once(self, drops: Drops, impulse: Floats, row: dict[str, Floats]) -> None:
@@ -120,19 +120,23 @@ class ObliqueMotion:
         law, rubbed = None if self.law is None else self.law.take(drops), sphere.tangential_mass * np.abs(left - slip)
         change = _rolling(law, sphere, after, impulse, rubbed)
         after = after if change is None else after.changed(change)
-        self.finish(drops, after, energy_taken(sphere, before, after), row)
+        self.finish(drops, after, energy_taken(sphere, before, after), np.zeros(len(drops)), row)
 
-    def finish(self, drops: Drops, after: State, lost: Floats, row: dict[str, Floats]) -> None:
-        """Put drops into their states after a contact in which friction took an energy [J], and write its columns."""
+    def finish(self, drops: Drops, after: State, lost: Floats, microslip: Floats, row: dict[str, Floats]) -> None:
+        """Put drops into their states after a contact in which friction took an energy [J], and write its columns.
+
+        `microslip`: the part of it that was lost while a part of the contact stuck [J].
+        """
         before = self.state.take(drops)
         self.lost[drops] += lost
+        self.microslip[drops] += microslip
         values = [*before.position, *before.velocity, *after.velocity, *before.spin, *after.spin]
         speed = np.hypot(*before.velocity)
         with np.errstate(divide="ignore", invalid="ignore"):
             onward = np.where(speed > 0.0, (before.velocity * after.velocity).sum(axis=0) / speed, np.hypot(*after.velocity))
             ratio = np.where(speed > 0.0, onward / speed, np.nan)
         angle = np.degrees(np.arctan2(onward, row["separation_speed_m_s"][drops]))
-        for name, value in zip(OBLIQUE_IMPACT_COLUMNS, [*values, ratio, angle, lost], strict=True):
+        for name, value in zip(OBLIQUE_IMPACT_COLUMNS, [*values, ratio, angle, lost, microslip, lost - microslip], strict=True):
             row[name][drops] = value
         self._put(drops, after)
 
@@ -146,6 +150,10 @@ class ObliqueMotion:
         """Return the kinetic energies along the plate and of rotation, and the potential energy along the plate, zero at the start [J]."""
         fallen = (self.sphere.gravity * (self.state.position - self.start)).sum(axis=0)
         return *self.sphere.kinetic(self.state), -self.sphere.mass * fallen
+
+    def friction_parts(self) -> dict[str, Floats]:
+        """Return the two parts of the energy that friction took so far [J]; see `FRICTION_PARTS`."""
+        return {"microslip_J": self.microslip, "gross_slip_J": self.lost - self.microslip}
 
 
 def _along(sphere: Sphere, state: State) -> tuple[Floats, Floats, Floats]:

@@ -15,13 +15,14 @@ class Sliding:
     """Motion of the contact points of B contacts along one direction, at G points of time; arrays are (G, B).
 
     `time`: since first touch [s]. `slip`: velocity of the contact point [m/s]. `displacement`: since first touch [m]. `force`: of
-    friction, against the direction [N].
+    friction, against the direction [N]. `microslip`: energy lost while a part of the contact sticks [J] (B,).
     """
 
     time: Floats
     slip: Floats
     displacement: Floats
     force: Floats
+    microslip: Floats
 
 
 @dataclass(frozen=True)
@@ -149,7 +150,7 @@ class ObliqueContact:
     def of(self, drop: int) -> ObliqueContact:
         """Return the motion of one drop."""
         here, sliding = np.array([drop]), self.sliding
-        alone = Sliding(*(values[:, here] for values in (sliding.time, sliding.slip, sliding.displacement, sliding.force)))
+        alone = Sliding(*(values[..., here] for values in vars(sliding).values()))
         return ObliqueContact(
             self.sphere.take(here),
             self.before.take(here),

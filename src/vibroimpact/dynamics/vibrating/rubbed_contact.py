@@ -52,10 +52,10 @@ class RubbedContact:
         return state_after(sphere, before, now, velocity, displacement, twist), -force, taken + spin_energy(sphere, before, twist)
 
     @property
-    def end(self) -> tuple[State, Floats]:
-        """The state at the end of the visit, and the energy that friction took in it [J] (1,)."""
+    def end(self) -> tuple[State, Floats, Floats]:
+        """The state at the end of the visit, the energy that friction took in it, and the part of that in microslip [J] (1,)."""
         state, _, taken = self.at(self.duration)
-        return state, taken
+        return state, taken, np.array([self.parts[-1][1].end.microslip if self.parts else 0.0])
 
 
 def rubbed_contacts(oblique: ObliqueMotion, drops: Drops, contact: Contact, row: dict[str, Floats]) -> ObliqueContacts:

@@ -42,8 +42,9 @@ class Rubbing:
 
     `law`: of one drop. `largest_force`: about [N]. `mass`: effective mass of the motion of the contact point [kg]. `pull`: acceleration of
     gravity along x and y [m/s^2]. `velocity` [m/s] and `displacement` since first touch [m] of the contact point; `force` of friction on
-    it, against these [N]. `history`: of the contact. Since first touch: `work`, energy that friction took, with what the contact stores
-    tangentially [J], and `twisting`, impulse of the moment of full twisting [N m s]. Arrays are (2,).
+    it, against these, and `normal` force [N]. `history`: of the contact. Since first touch: `work`, energy that friction took, with what
+    the contact stores tangentially [J]; `microslip`, the part of it that was not lost while all of the contact slid [J]; and `twisting`,
+    impulse of the moment of full twisting [N m s]. Arrays are (2,).
     """
 
     law: CompliantFriction
@@ -54,14 +55,16 @@ class Rubbing:
     displacement: Floats
     force: Floats
     history: TangentialHistory
+    normal: float = 0.0
     work: float = 0.0
+    microslip: float = 0.0
     twisting: float = 0.0
 
     def flown(self, length: float) -> Rubbing:
         """Return the same after a time without contact force [s]."""
         moved = self.displacement + (self.velocity + 0.5 * self.pull * length) * length
         fresh = self.law.history(self.largest_force)
-        return replace(self, velocity=self.velocity + self.pull * length, displacement=moved, force=np.zeros(2), history=fresh)
+        return replace(self, velocity=self.velocity + self.pull * length, displacement=moved, force=np.zeros(2), normal=0.0, history=fresh)
 
 
 def rubbing_at_touch(law: CompliantFriction, largest_force: float, mass: float, pull: Floats, velocity: Floats) -> Rubbing:
@@ -117,6 +120,7 @@ class FrictionForces:
         )
         self.force = np.repeat(force[:, :, None], NODES_PER_STRETCH, axis=2)
         self.histories: list[TangentialHistory] = [one.history for one in rubbings]
+        self.normal, self.microslip = np.zeros((2, len(rubbings)))
 
     def set_length(self, length: Floats) -> None:
         """Set the lengths of the stretches [s] (B,)."""
@@ -138,12 +142,18 @@ class FrictionForces:
         pressed = (normal[:, None] @ of_force)[:, 0]  # system by system, as all products
         self.force = before.copy()
         for number in np.flatnonzero(iterating).tolist():
-            history = self.rubbings[number].history
+            start = self.rubbings[number]
+            history, frictions, slid = start.history, [start.force], [start.history.slid]
             for node, (force, moved) in enumerate(zip(pressed[number].tolist(), steps[number].T, strict=True), start=1):
                 history, friction = history.after(force, moved)
+                frictions.append(friction)
+                slid.append(history.slid)
                 if node % _STEPS == 0:
                     self.force[number, :, node // _STEPS - 1] = friction
             self.histories[number] = history
+            normals = np.append(start.normal, pressed[number])
+            self.microslip[number] = lost_in_microslip(start.law, normals, np.array(frictions), steps[number].T, np.array(slid))
+            self.normal[number] = normals[-1]
         return np.asarray(np.abs(self.force - before).max(axis=(1, 2)))
 
     def _displacements(self, normal: Floats) -> Floats:
@@ -178,13 +188,27 @@ class FrictionForces:
                 velocity=velocity[number, :, -1],
                 displacement=start.displacement + moved[number],
                 force=force[:, -1],
+                normal=float(self.normal[number]),
                 history=self.histories[number],
                 work=start.work + taken,
+                microslip=start.microslip + float(self.microslip[number]),
                 twisting=start.twisting + length * float(rule.integral[-1] @ moment),
             )
             gain = 0.5 * (end.velocity - start.velocity) @ (end.velocity + start.velocity) - start.pull @ moved[number]
             found.append(RubbedStretch(rule, length, start, end, force, slip, given, float(start.mass * gain) + taken + given))
         return found
+
+
+def lost_in_microslip(law: CompliantFriction, normal: Floats, friction: Floats, moved: Floats, slid: Floats) -> float:
+    """Return what friction took on a way [J], but while all of the contact slid; less its elastic energy, where it slides at the end.
+
+    `normal`: forces [N] (T,). `friction`: forces [N] (T, 2). `moved`: displacements between them [m] (T - 1, 2). `slid`: on the way to
+    each of them [m] (T,).
+    """
+    normal = np.maximum(normal, 0.0)
+    mean, slides = 0.5 * (normal[1:] + normal[:-1]), (slid > 0.0) | (normal == 0.0)
+    taken = 0.5 * ((friction[1:] + friction[:-1]) * moved).sum(axis=1) - law.coefficient * mean * slid[1:]
+    return float(np.where(slides[1:] & slides[:-1], np.diff(law.energy_in_sliding(normal)), taken).sum())
 
 
 @cache
