@@ -224,6 +224,16 @@ def test_a_sphere_falls_off_the_edge() -> None:
     assert len(response.impacts["time_s"]) == 1
 
 
+def test_a_flight_over_the_uphill_edge_and_back() -> None:
+    """A parabola whose top lies 25 mm beyond the edge, and which comes down 55 mm within it: what counts is where the sphere is then."""
+    oblique = vi.Oblique(velocity=(-1.0, 0.0), position=(-0.9, 0.0), gravity=(4.0, 0.0), size=(2.0, 1.0))
+    falls = {"height": RADIUS + 0.5 * 9.81 * 0.45**2, "speed": None, "impacts": 1, "oblique": oblique}
+    response = vi.simulate(problem(**falls))
+    assert response.at([0.25])["position_x_m"][0] == pytest.approx(-1.025, rel=1e-12)
+    assert response.impacts["position_x_m"][0] == pytest.approx(-0.945, rel=1e-12)
+    assert "falls off" not in response.status
+
+
 def test_angle_speed_and_velocity_say_the_same() -> None:
     one = vi.simulate(vi.read_case(CASE))
     drop = {"velocity": [3.0 * np.sin(np.radians(30)), 0.0, -3.0 * np.cos(np.radians(30))], "position": ["-300 mm", 0]}
