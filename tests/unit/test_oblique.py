@@ -217,6 +217,18 @@ def test_an_inclined_plate_pulls_along_x() -> None:
     assert response.impacts["approach_velocity_x_m_s"][0] == pytest.approx(gravity * np.sin(np.radians(20.0)) * touch)
 
 
+@pytest.mark.parametrize("gravity", [0.0, 9.0])
+@pytest.mark.parametrize("law", ["hertz", "hunt-crossley"])
+def test_the_softest_touch_of_a_slope_closes_its_ledger(law: str, gravity: float) -> None:
+    """At 1e-9 m/s nearly all energy is what gravity brings down the plate, up to 1e27 times that at first touch."""
+    oblique = vi.Oblique(gravity=(2.0, 0.0), friction=FRICTION["coulomb"])
+    response = vi.simulate(problem(law, speed=1e-9, gravity=gravity, impacts=5, oblique=oblique))
+    energy = response.energy
+    assert -energy["potential_J"] > 1e10 * energy["input_J"]
+    assert energy["closure_relative"] < 1e-12
+    assert abs(energy["closure_J"]) < 1e-12 * -energy["potential_J"]
+
+
 def test_a_sphere_falls_off_the_edge() -> None:
     response = vi.simulate(vi.read_case({**CASE, "drop": {"velocity": [5.0, 0, -3.0], "position": ["900 mm", 0]}}))
     assert response.outcomes == (vi.Outcome.FELL,)
