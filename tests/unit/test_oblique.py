@@ -261,11 +261,33 @@ def test_an_inclined_plate_pulls_along_x() -> None:
     assert response.impacts["approach_velocity_x_m_s"][0] == pytest.approx(gravity * np.sin(np.radians(20.0)) * touch)
 
 
+@pytest.mark.parametrize("gravity", [0.0, 9.0])
+@pytest.mark.parametrize("law", ["hertz", "hunt-crossley"])
+def test_the_softest_touch_of_a_slope_closes_its_ledger(law: str, gravity: float) -> None:
+    """At 1e-9 m/s nearly all energy is what gravity brings down the plate, up to 1e27 times that at first touch."""
+    oblique = vi.Oblique(gravity=(2.0, 0.0), friction=FRICTION["coulomb"])
+    response = vi.simulate(problem(law, speed=1e-9, gravity=gravity, impacts=5, oblique=oblique))
+    energy = response.energy
+    assert -energy["potential_J"] > 1e10 * energy["input_J"]
+    assert energy["closure_relative"] < 1e-12
+    assert abs(energy["closure_J"]) < 1e-12 * -energy["potential_J"]
+
+
 def test_a_sphere_falls_off_the_edge() -> None:
     response = vi.simulate(vi.read_case({**CASE, "drop": {"velocity": [5.0, 0, -3.0], "position": ["900 mm", 0]}}))
     assert response.outcomes == (vi.Outcome.FELL,)
     assert response.status.startswith("The sphere falls off the edge of the plate after 1 impact, ")
     assert len(response.impacts["time_s"]) == 1
+
+
+def test_a_flight_over_the_uphill_edge_and_back() -> None:
+    """A parabola whose top lies 25 mm beyond the edge, and which comes down 55 mm within it: what counts is where the sphere is then."""
+    oblique = vi.Oblique(velocity=(-1.0, 0.0), position=(-0.9, 0.0), gravity=(4.0, 0.0), size=(2.0, 1.0))
+    falls = {"height": RADIUS + 0.5 * 9.81 * 0.45**2, "speed": None, "impacts": 1, "oblique": oblique}
+    response = vi.simulate(problem(**falls))
+    assert response.at([0.25])["position_x_m"][0] == pytest.approx(-1.025, rel=1e-12)
+    assert response.impacts["position_x_m"][0] == pytest.approx(-0.945, rel=1e-12)
+    assert "falls off" not in response.status
 
 
 def test_angle_speed_and_velocity_say_the_same() -> None:

@@ -326,6 +326,8 @@ class Run:
         final_gap, final_velocity = self.final_motion(np.flatnonzero(at_rest))
         vibration = self.bodies.energies()
         added = self.mass * self.gravity * self.deepest + np.maximum(-self.stored, 0.0)  # the stored energy is negative where it sticks
+        if self.oblique is not None:
+            added += np.maximum(-along["potential_J"], 0.0)  # what gravity did down the plate
         if self.problem.motion is not None:
             vibration = {"drive_J": np.zeros(self.size), **vibration}
             added += np.maximum(-vibration["drive_J"], 0.0)

@@ -12,7 +12,7 @@ from vibroimpact.contact.friction.law import FrictionLaw, ImpulsiveFriction
 from vibroimpact.dynamics.columns import OBLIQUE_IMPACT_COLUMNS
 from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.oblique.normal_motion import NormalMotion
-from vibroimpact.dynamics.oblique.rolling import ACROSS, edge_time, slide_and_roll
+from vibroimpact.dynamics.oblique.rolling import ACROSS, LyingSpheres
 from vibroimpact.dynamics.oblique.sliding import slide
 from vibroimpact.dynamics.oblique.state import ObliqueContact, ObliqueContacts, Sphere, State, energy_taken
 from vibroimpact.dynamics.oblique.statement import Oblique
@@ -63,9 +63,10 @@ class ObliqueMotion:
         """
         sphere, before = self.sphere.take(drops), self.state.take(drops)
         law = None if self.law is None else self.law.take(drops)
+        lying = LyingSpheres(sphere, before, law, pressing, elapsed)
         if self.half is not None:
-            elapsed = edge_time(sphere, before, law, pressing, elapsed, self.half)
-        after, _ = slide_and_roll(sphere, before, law, pressing, elapsed)
+            elapsed = lying.edge_time(self.half)
+        after, _ = lying.at(np.arange(len(drops)), elapsed)
         self.lost[drops] += energy_taken(sphere, before, after)
         self._put(drops, after)
         return elapsed

@@ -20,6 +20,7 @@ from vibroimpact.dynamics.leg import Leg
 from vibroimpact.dynamics.lockstep import Coroutine, run_in_lockstep
 from vibroimpact.dynamics.oblique.motion import ObliqueMotion
 from vibroimpact.dynamics.oblique.state import ObliqueContacts
+from vibroimpact.dynamics.oblique.statement import Oblique
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.vibrating.air_motion import AirMotion
 from vibroimpact.dynamics.vibrating.carried_motion import carry
@@ -66,12 +67,14 @@ def system_of(problem: Problem, mass: float, gravity: float) -> LinearSystem:
     ground[of_plate.stop :] = True
     along = None
     if problem.oblique is not None:
-        along = np.zeros((2, len(shape)))
+        along = np.zeros((5 if _moments_act(problem.oblique) else 2, len(shape)))
         for basis, where in ((problem.plate.rigid, of_rigid), (problem.plate.modes, of_plate)):
             if basis is not None:
                 assert basis.along is not None  # the problem has seen to it
-                along[:, where] = basis.along.T
-        along[:, of_plate.stop :] = _IMMOVABLE * mass**-0.5 * moves[:2, None]
+                along[:2, where] = basis.along.T
+                if basis.turning is not None:
+                    along[2:, where] = (basis.turning[:, [1, 0, 2]] * [-1.0, 1.0, 1.0]).T[: len(along) - 2]
+        along[:2, of_plate.stop :] = _IMMOVABLE * mass**-0.5 * moves[:2, None]
     local = [problem.local_element] if problem.local_element else []
     rate = np.array([stiffness / damping for stiffness, damping in local])
     mobility = np.array([1.0 / damping for _, damping in local])
@@ -81,6 +84,11 @@ def system_of(problem: Problem, mass: float, gravity: float) -> LinearSystem:
     return LinearSystem(
         frequency, damping, shape[None], np.zeros(1), load, inside, ground[None], *of_elements, along, residuals, len(driven)
     )
+
+
+def _moments_act(oblique: Oblique) -> bool:
+    """Return whether rolling resistance or twisting friction acts on some of the drops."""
+    return oblique.friction is not None and bool(np.any(oblique.friction.rolling_coefficient) or np.any(oblique.spin[2]))
 
 
 _IMMOVABLE = 1e-10
@@ -265,8 +273,7 @@ class VibratingBodies:
             return None
         sphere, before = self.oblique.now(np.array([drop]))
         largest = float(encounter.law.forces(encounter.depth, np.zeros(1), encounter.approach_speed)[0][0])
-        along = (float(sphere.tangential_mass[0]), sphere.gravity[:, 0], sphere.slip(before)[:, 0])
-        return rubbing_at_touch(law, largest, *along)
+        return rubbing_at_touch(law, largest, sphere, before)
 
     def slide(self, oblique: ObliqueMotion, leg: Leg, row: dict[str, Floats]) -> ObliqueContacts:
         """Advance drops along the plate as their visits have it."""
