@@ -113,8 +113,8 @@ def _check_motion(case: CaseTable) -> None:
     if case.sensors:
         words = "sensors see what impacts excite, and a plate on supports that move has a motion of its own"
         raise InputError(f"{words}; leave them out", "sensors")
-    if oblique_keys(case) and (elastic_names(case) or not isinstance(contact_laws_of(case)[-1], CompliantLaw)):
-        words = "only a rigid plate that moves is hit obliquely, and under a contact law with a force"
+    if oblique_keys(case) and not isinstance(contact_laws_of(case)[-1], CompliantLaw):
+        words = "a plate that moves is hit obliquely under a contact law with a force only"
         raise InputError(f"{words}; leave this out, or plate.motion", oblique_keys(case)[0])
     length = motion_length(case)
     if case.run.duration is not None and case.run.duration > length:

@@ -45,7 +45,7 @@ class Run:
             self.velocity = -self.spread(problem.speed)
             # at touch: apart by the rounding error of the place of a plate that is shaken
             self.gap = self.gap + problem.surface(0.0)[0] + 4e-15 * np.abs(problem.surface_phasors).sum()
-        self.oblique = None if problem.oblique is None else ObliqueMotion(problem.oblique, self.mass, self.radius)
+        self.oblique = None if problem.oblique is None else ObliqueMotion(problem.oblique, self.mass, self.radius, problem.motion)
         self.ahead: tuple[Drops, AirFlight] | None = None  # flights whose tops have been computed already
         self.energy_in = self.mechanical_energy()
         if self.oblique is not None:

@@ -16,6 +16,7 @@ from vibroimpact.dynamics.oblique.rolling import ACROSS, edge_time, slide_and_ro
 from vibroimpact.dynamics.oblique.sliding import slide
 from vibroimpact.dynamics.oblique.state import ObliqueContact, ObliqueContacts, Sphere, State, energy_taken
 from vibroimpact.dynamics.oblique.statement import Oblique
+from vibroimpact.dynamics.shaken.statement import PlateMotion
 
 OBLIQUE_STEPS = 16
 """Steps for each phase of a contact: the slip velocity at its end is then within 1e-4 of that at first touch."""
@@ -30,9 +31,11 @@ class ObliqueMotion:
         What the drops have at the start.
     mass, radius : array, shape (B,)
         Of the spheres [kg], [m].
+    motion : PlateMotion or None
+        Of the plate.
     """
 
-    def __init__(self, oblique: Oblique, mass: Floats, radius: Floats) -> None:
+    def __init__(self, oblique: Oblique, mass: Floats, radius: Floats, motion: PlateMotion | None) -> None:
         def spread(values: Any) -> Floats:
             return np.array([np.broadcast_to(np.asarray(value, dtype=float), mass.shape) for value in values])
 
@@ -40,6 +43,7 @@ class ObliqueMotion:
         self.state = State(spread(oblique.position), spread(oblique.velocity), spread(oblique.spin))
         self.start, self.half = self.state.position, None if oblique.size is None else 0.5 * np.array(oblique.size)[:, None]
         self.law, self.lost, self.microslip = oblique.friction, np.zeros(len(mass)), np.zeros(len(mass))
+        self.motion = motion
 
     def fly(self, drops: Drops, flight: Flight, time: Floats) -> None:
         """Advance drops through their flights up to a time [s]."""
@@ -73,13 +77,18 @@ class ObliqueMotion:
     def distance(self, drops: Drops, flight: Flight, time: Floats) -> Floats:
         """Return how far drops move along the plate in their flights up to a time [m]."""
         with np.errstate(invalid="ignore"):
-            moved = self._flown(drops, flight, time).position - self.state.take(drops).position
+            moved = self._over_plate(drops, flight, time) - self._over_plate(drops, flight, flight.start)
         return np.asarray(np.nan_to_num(np.hypot(*moved)))
+
+    def _over_plate(self, drops: Drops, flight: Flight, time: Floats) -> Floats:
+        """Return the places of drops at times of their flights [s], seen from the plate [m] (2, b)."""
+        place = self._flown(drops, flight, time).position
+        return place if self.motion is None else place - np.outer(self.motion.direction[:2], self.motion.at(time)[0])
 
     def place_on_plate(self, drops: Drops, flight: Flight, time: Floats) -> Floats:
         """Return the places of drops at times of their flights [s], or the nearest ones on the plate [m] (2, b)."""
         with np.errstate(invalid="ignore"):
-            place = np.nan_to_num(self._flown(drops, flight, time).position)
+            place = np.nan_to_num(self._over_plate(drops, flight, time))
         return place if self.half is None else np.clip(place, -self.half, self.half)
 
     def beside(self, drops: Drops, flight: Flight, time: Floats) -> Bools:
@@ -87,7 +96,7 @@ class ObliqueMotion:
         if self.half is None:
             return np.zeros(len(drops), dtype=bool)
         with np.errstate(invalid="ignore"):
-            place = self._flown(drops, flight, time).position
+            place = self._over_plate(drops, flight, time)
         return np.asarray(np.isfinite(time) & (np.abs(place) > self.half).any(axis=0))
 
     def collide(self, drops: Drops, motions: Sequence[tuple[Drops, NormalMotion]], row: dict[str, Floats]) -> ObliqueContacts:
