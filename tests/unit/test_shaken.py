@@ -405,6 +405,24 @@ def test_an_amplitude_of_zero_leaves_an_elastic_plate_as_it_is() -> None:
         assert np.array_equal(values, one.impacts[name], equal_nan=True), name
 
 
+@pytest.mark.parametrize("oblique", [{}, {"plate.inclination": "3 deg"}])
+def test_a_sphere_comes_to_rest_on_an_elastic_plate_that_is_shaken(oblique: dict[str, Any]) -> None:
+    elastic = {"plate.model": "elastic", "plate.supports": "clamped", "plate.modes": 12, "plate.damping": 0.01}
+    gentle = {"plate.motion.amplitude": "0.1 mm", "drop.height": "22 mm", "run": {"duration": 0.3}, "contact.restitution": 0.5}
+    response = vi.simulate(case(**elastic, **gentle, **oblique))
+    assert response.outcomes == (vi.Outcome.CAPTURED,)
+    assert response.energy["closure_relative"] <= 1e-9
+    history = response.history()
+    total = sum(history[name] for name in history if name in IN_LEDGER)
+    assert total == pytest.approx(total[0], abs=1e-7 * response.energy["input_J"])
+    times = np.linspace(0.25, 0.3, 301)
+    rest, mass, gravity = response.at(times), float(response.problem.sphere.mass), float(response.problem.gravity)
+    # it moves with the surface, which its mass hardly changes, and the force is that of its acceleration
+    assert rest["force_N"] == pytest.approx(mass * (gravity + response.problem.surface(times)[2]), rel=2e-3)
+    assert np.gradient(rest["velocity_m_s"], times, edge_order=2) == pytest.approx(rest["acceleration_m_s2"], abs=2e-3)
+    assert rest["plate_deflection_m"] - rest["position_m"] + 0.02 == pytest.approx(rest["indentation_m"], abs=1e-7)
+
+
 def test_modal_coordinates_and_deflections_are_those_of_the_whole_motion() -> None:
     elastic = {"plate.model": "elastic", "plate.supports": "clamped", "plate.modes": 12, "plate.damping": 0.01, "run.impacts": 1}
     response = vi.simulate(case(**elastic))

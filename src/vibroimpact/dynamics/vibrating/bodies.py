@@ -24,6 +24,7 @@ from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.shaken.steady import steady_surface
 from vibroimpact.dynamics.vibrating.air_motion import AirMotion
 from vibroimpact.dynamics.vibrating.carried_motion import carry
+from vibroimpact.dynamics.vibrating.carried_oscillations import carry_oscillating, steady_response
 from vibroimpact.dynamics.vibrating.contact_equilibrium import ContactEquilibrium
 from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.vibrating.next_touch import next_touch
@@ -65,7 +66,7 @@ def system_of(problem: Problem, mass: float, gravity: float) -> LinearSystem:
     load[0], inside[of_sphere], ground[of_rigid], ground[of_plate] = gravity * mass**0.5, problem.sphere_inside, True, True
     ground[of_plate.stop :] = True
     along = None
-    if problem.oblique is not None:
+    if problem.oblique is not None and problem.oblique.friction is not None:
         along = np.zeros((2, len(shape)))
         for basis, where in ((problem.plate.rigid, of_rigid), (problem.plate.modes, of_plate)):
             if basis is not None:
@@ -272,7 +273,13 @@ class VibratingBodies:
             self.lost[drop, :-1] += found.lost[:-1]
             self.place(drop, found.state)
             if found.outcome == CAPTURED and system.driven:
-                self.lying[drop] = carry(ContactEquilibrium(system, found.local), found.state, found.stored)
+                equilibrium = ContactEquilibrium(system, found.local)
+                response = steady_response(equilibrium)
+                self.lying[drop] = (
+                    carry(equilibrium, found.state, found.stored)
+                    if response is None
+                    else carry_oscillating(response, found.state, found.stored)
+                )
             elif found.outcome in (CAPTURED, SETTLED, RIDING) and not system.driven:
                 equilibrium = ContactEquilibrium(system, found.local)
                 self.left[drop] = equilibrium.excess(found.state, found.stored)
