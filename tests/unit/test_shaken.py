@@ -69,7 +69,6 @@ def test_refused_motions(values: dict[str, Any], words: str) -> None:
     ("values", "words"),
     [
         ({"motion": 25.0}, "must be a PlateMotion"),
-        ({"laws": (Newton(restitution=0.5),), "oblique": vi.Oblique(velocity=(1.0, 0.0))}, "under a contact law with a force only"),
         ({"oblique": vi.Oblique(friction=vi.find_friction_law("coulomb")(coefficient=0.3))}, "no tangential compliance"),
         ({"sensors": (vi.Sensor("a1", (0.0, 0.0)),)}, "sensors"),
         ({"height": 0.0115, "motion": vi.PlateMotion(amplitude=2e-3, frequency=25.0, phase=1.5)}, "begins its motion above"),
@@ -256,7 +255,7 @@ def test_tables_without_their_columns(tmp_path: Path) -> None:
         ({"plate.motion.frequenzy": "25 Hz"}, 'Did you mean "frequency"'),
         ({"plate.motion.direction": [0, 0, 0]}, "length 0"),
         ({"plate.motion.amplitude": "2 Hz"}, r"plate\.motion\.amplitude"),
-        ({"plate.inclination": "10 deg", "contact": {"law": "newton", "restitution": 0.5}}, "under a contact law with a force only"),
+        ({"contact.friction": {"law": "rigid", "coefficient": 0.3}}, "no tangential compliance"),
         ({"drop.height": "21 mm", "plate.motion.phase": "90 deg"}, "begins its motion above"),
         ({"plate.motion": 3}, "not a table"),
     ],
@@ -358,6 +357,44 @@ def test_a_ball_that_rolls_on_a_table_moves_with_two_sevenths_of_its_velocity() 
     share, rest = np.polyfit(speeds, response.at(times)["velocity_x_m_s"], 1)
     assert share == pytest.approx(2.0 / 7.0, rel=3e-3)
     assert abs(rest) < 1e-4
+
+
+@pytest.mark.parametrize(
+    ("law", "most", "kept"), [("rigid", 0.2, 0.3), ("rigid", 1e9, 0.3), ("coulomb", 0.2, 0.0)], ids=["rigid", "sticking", "coulomb"]
+)
+def test_a_billiard_on_a_table_that_moves_along_itself_too(law: str, most: float, kept: float) -> None:
+    """Every impact of 1,000 reverses the slip over the table as Walton has it, and the ledger closes."""
+    friction = vi.find_friction_law(law)(coefficient=most, **({"slip_restitution": kept} if law == "rigid" else {}))
+    oblique = vi.Oblique(velocity=(0.3, 0.1), spin=(10.0, -30.0, 5.0), friction=friction)
+    table = vi.PlateMotion(amplitude=5e-3, frequency=25.0, direction=(0.6, 0.0, 0.8))
+    response = vi.simulate(problem(Newton(restitution=0.8), oblique=oblique, motion=table, impacts=1000))
+    rows, mass, radius = response.impacts, 0.1, 0.01
+    assert len(rows["time_s"]) == 1000
+    assert response.energy["closure_relative"] <= 1e-9
+    assert rows["plate_work_J"].sum() == pytest.approx(-response.energy["drive_J"], rel=1e-12)
+    surface = np.array([0.6, 0.0])[:, None] * table.at(rows["time_s"])[1]
+
+    def slip(when: str, side: str) -> np.ndarray:
+        spins = np.array([-rows[f"spin_y_{side}_rad_s"], rows[f"spin_x_{side}_rad_s"]])
+        return np.array([rows[f"{when}_velocity_{axis}_m_s"] for axis in "xy"]) + radius * spins - surface
+
+    before, after = slip("approach", "before"), slip("separation", "after")
+    impulse = mass * (rows["approach_speed_m_s"] + rows["separation_speed_m_s"])
+    speed = np.hypot(*before)
+    change = np.minimum((1.0 + kept) * speed, most * impulse / (2.0 / 7.0 * mass))
+    assert after == pytest.approx(before * (1.0 - change / speed), abs=1e-10)
+
+
+def test_a_hard_ball_under_friction_is_followed_until_it_rides() -> None:
+    friction = vi.find_friction_law("rigid")(coefficient=0.2)
+    sideways = vi.PlateMotion(amplitude=1e-4, frequency=25.0, direction=(1.0, 0.0, 0.0))
+    oblique = vi.Oblique(velocity=(0.3, 0.1), friction=friction)
+    response = vi.simulate(problem(Newton(restitution=0.3), oblique=oblique, motion=sideways, impacts=None, duration=0.5))
+    assert response.outcomes == (vi.Outcome.RIDING,)
+    assert response.status.endswith(
+        "rides on the plate, which is shaken, and a law without a force does not tell how it moves along it then."
+    )
+    assert response.energy["closure_relative"] <= 1e-9
 
 
 # elastic plates --------------------------------------------------------------------------------------

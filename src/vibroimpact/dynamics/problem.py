@@ -223,9 +223,6 @@ class Problem:
             raise InputError(
                 "sensors see the vibration that impacts excite, and a plate whose supports move has its own; leave one of them out"
             )
-        if self.oblique is not None and isinstance(self.laws[0], InstantaneousLaw):
-            words = "a plate that moves is hit obliquely under a contact law with a force only"
-            raise InputError(f"{words}; leave out what is oblique, or the motion")
         place, speed, _ = self.surface(0.0)
         if self.height is not None and not np.all(np.asarray(self.height) - self.sphere.contact_offset > place):
             raise InputError(

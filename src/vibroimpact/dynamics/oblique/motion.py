@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -118,9 +119,14 @@ class ObliqueMotion:
         self.finish(drops, contact.end, energy_taken(sphere, before, contact.end), sliding.microslip, row)
         return contact
 
-    def collide_at_once(self, drops: Drops, impulse: Floats, row: dict[str, Floats]) -> None:
-        """Let a normal impulse without duration act on drops [N s], and write its columns."""
-        sphere, before = self.sphere.take(drops), self.state.take(drops)
+    def collide_at_once(self, drops: Drops, time: Floats, impulse: Floats, row: dict[str, Floats]) -> Floats:
+        """Let a normal impulse without duration act on drops at some times [N s], [s]; write its columns, and return the plate's work [J].
+
+        That is the work of friction on the spheres, as the plate moves along itself.
+        """
+        sphere, start = self.sphere.take(drops), self.state.take(drops)
+        surface = 0.0 if self.motion is None else np.outer(self.motion.direction[:2], self.motion.at(time)[1])
+        before = replace(start, velocity=start.velocity - surface)  # seen from the plate
         direction, slip, _ = _along(sphere, before)
         left = slip
         if isinstance(self.law, ImpulsiveFriction):
@@ -129,7 +135,9 @@ class ObliqueMotion:
         law, rubbed = None if self.law is None else self.law.take(drops), sphere.tangential_mass * np.abs(left - slip)
         change = _rolling(law, sphere, after, impulse, rubbed)
         after = after if change is None else after.changed(change)
-        self.finish(drops, after, energy_taken(sphere, before, after), np.zeros(len(drops)), row)
+        lost, after = energy_taken(sphere, before, after), replace(after, velocity=after.velocity + surface)
+        self.finish(drops, after, lost, np.zeros(len(drops)), row)
+        return lost - energy_taken(sphere, start, after)
 
     def finish(self, drops: Drops, after: State, lost: Floats, microslip: Floats, row: dict[str, Floats]) -> None:
         """Put drops into their states after a contact in which friction took an energy [J], and write its columns.
