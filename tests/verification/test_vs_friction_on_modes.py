@@ -50,42 +50,59 @@ def friction(name: str, coefficient: float) -> Any:
     )
 
 
-def integrated(plate: ModalBasis, slip: np.ndarray, law: str, coefficient: float, rolling: float = 0.0) -> dict[str, Any]:
+def integrated(
+    plate: ModalBasis, slip: np.ndarray, law: str, coefficient: float, rolling: float = 0.0, motion: vi.PlateMotion | None = None
+) -> dict[str, Any]:
     """The first contact, by DOP853: fall, contact point of the sphere, and modes, with a spring that sticks, or sliding along x.
 
     `rolling`: coefficient of a moment against the spin of a sphere, which begins with that of rolling along x at 3 m/s.
+    Supports may move with one frequency: the modes are relative to them, and begin in their steady motion.
     """
     omega, count = plate.angular_frequencies, len(plate.frequencies)
     assert plate.along is not None
     along, pull = plate.along, np.array(GRAVITY)
+    driving, phasor, direction = 1.0, 0j, np.zeros(3)
+    if motion is not None:
+        driving, phasor, direction = 2.0 * np.pi * motion.frequency[0], motion.phasors[0], np.array(motion.direction)
+    inertia = plate.participation[:, :3] @ direction
+    steady = inertia * driving**2 * phasor / (omega**2 - driving**2 + 2j * plate.damping_ratios * omega * driving)
+
+    def supports(time: float) -> tuple[np.ndarray, np.ndarray, float]:
+        turned = phasor * np.exp(1j * driving * time)
+        return direction * turned.imag, direction * driving * turned.real, -(driving**2) * turned.imag
 
     def parts(state: np.ndarray) -> tuple[Any, ...]:
         (depth, fall), point, point_rate = state[:2], state[2:4], state[4:6]
         return depth, fall, point, point_rate, state[6 : 6 + count], state[6 + count : 6 + 2 * count]
 
-    def forces(state: np.ndarray) -> tuple[float, np.ndarray]:
+    def forces(time: float, state: np.ndarray) -> tuple[float, np.ndarray]:
         depth, _, point, point_rate, place, rate = parts(state)
-        overlap = max(depth + plate.contact @ place, 0.0)
+        moved, speed, _ = supports(time)
+        overlap = max(depth + plate.contact @ place + moved[2], 0.0)
         force = STIFFNESS * overlap**1.5
         if law == "stick":
-            return force, 2.0 * SHEAR * (RADIUS * overlap) ** 0.5 * (point - along.T @ place)
-        rubs = point_rate - along.T @ rate
+            return force, 2.0 * SHEAR * (RADIUS * overlap) ** 0.5 * (
+                point - along.T @ (place - steady.imag) - moved[:2] + supports(0.0)[0][:2]
+            )
+        rubs = point_rate - along.T @ rate - speed[:2]
         return force, coefficient * force * rubs / np.hypot(*rubs)
 
-    def rates(_: float, state: np.ndarray) -> np.ndarray:
+    def rates(time: float, state: np.ndarray) -> np.ndarray:
         _, fall, _, point_rate, place, rate = parts(state)
-        force, rub = forces(state)
+        force, rub = forces(time, state)
         modes = -(omega**2) * place - 2.0 * plate.damping_ratios * omega * rate - plate.contact * force + along @ rub
+        modes -= inertia * supports(time)[2]
         spin = state[-2:]
         turned = 2.5 * rolling * force / MASS * spin / np.hypot(*spin)
         sphere = [fall, 9.81 - force / MASS, *point_rate, *(pull - rub / EFFECTIVE - turned)]
         return np.concatenate([sphere, rate, modes, -2.5 * rub / MASS - turned])
 
     def parted(time: float, state: np.ndarray) -> float:
-        return float(state[0] + plate.contact @ state[6 : 6 + count]) if time > 1e-6 else 1.0
+        return float(state[0] + plate.contact @ state[6 : 6 + count] + supports(time)[0][2]) if time > 1e-6 else 1.0
 
     parted.terminal, parted.direction = True, -1.0  # type: ignore[attr-defined]
-    start = np.concatenate([[0.0, 2.0, 0.0, 0.0], slip, np.zeros(2 * count), [-3.0, 0.0]])
+    begin = -float(supports(0.0)[0][2] + plate.contact @ steady.imag)
+    start = np.concatenate([[begin, 2.0, 0.0, 0.0], slip, steady.imag, driving * steady.real, [-3.0, 0.0]])
     found = solve_ivp(rates, (0.0, 1e-2), start, method="DOP853", events=parted, rtol=1e-12, atol=1e-14, max_step=2e-6)
     end = found.y[:, -1]
     return {"time": found.t[-1], "fall": end[1], "point": end[4:6], "place": end[6 : 6 + count], "rate": end[6 + count : 6 + 2 * count]}
@@ -303,3 +320,50 @@ def test_springs_follow_the_turning_points() -> None:
         springs, rub = springs.after(float(force[point]), way)
         assert rub @ [0.6, 0.8] == pytest.approx(curve[20 * point], abs=1e-4 * 0.1 * force.max())
         assert abs(rub @ [0.8, -0.6]) < 1e-12 * force.max()
+
+
+def shaken(plate: ModalBasis, seed: int) -> tuple[ModalBasis, vi.PlateMotion]:
+    """A plate whose supports reach its modes in all directions, and their motion by 0.2 mm at 400 Hz."""
+    random = np.random.default_rng(seed)
+    direction = random.normal(size=3)
+    moves = np.concatenate([0.5 * random.normal(size=(len(plate.frequencies), 3)), np.zeros((len(plate.frequencies), 3))], axis=1)
+    motion = vi.PlateMotion(
+        amplitude=2e-4, frequency=400.0, phase=random.uniform(0.0, 6.0), direction=tuple(direction / np.linalg.norm(direction))
+    )
+    return replace(plate, participation=moves[:, : plate.participation.shape[1]]), motion
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_a_contact_that_sticks_to_a_plate_that_is_shaken(seed: int) -> None:
+    """Sphere, modes and prescribed motion in all directions, the velocities to 1e-7."""
+    (plate, motion), velocity = shaken(bending_modes(seed), seed), (0.4, -0.25)
+    response = vi.simulate(replace(drop(plate, friction("mindlin", 1e9), velocity=velocity), motion=motion))
+    found = integrated(plate, np.array(velocity), "stick", 0.0, motion=motion)
+    row = {name: values[0] for name, values in response.impacts.items()}
+    assert row["contacts"] == 1
+    assert row["duration_s"] == pytest.approx(found["time"], rel=1e-7)
+    history = response.at([row["time_s"] + row["duration_s"]])
+    assert history["velocity_m_s"][0] == pytest.approx(-found["fall"], rel=1e-7)
+    rolled = np.array([-row["spin_y_after_rad_s"], row["spin_x_after_rad_s"]]) * RADIUS
+    point = np.array([row["separation_velocity_x_m_s"], row["separation_velocity_y_m_s"]]) + rolled
+    assert point == pytest.approx(found["point"], rel=1e-7, abs=1e-7 * 0.4)
+    assert response.modal(row["time_s"] + row["duration_s"])["plate"][0] == pytest.approx(
+        found["place"], abs=1e-7 * np.abs(found["place"]).max()
+    )
+    assert response.energy["closure_relative"] < 1e-9
+
+
+@pytest.mark.parametrize("name", ["mdr", "mindlin", "mindlin-force"])
+def test_a_contact_that_slides_on_a_plate_that_is_shaken(name: str) -> None:
+    plate = bending_modes(7)
+    assert plate.along is not None
+    straight, motion = shaken(replace(plate, along=plate.along * np.array([1.0, 0.0])), 7)
+    motion = replace(motion, direction=(0.6, 0.0, 0.8))
+    row = {
+        key: values[0]
+        for key, values in vi.simulate(replace(drop(straight, friction(name, 0.1), velocity=(3.0, 0.0)), motion=motion)).impacts.items()
+    }
+    found = integrated(straight, np.array([3.0, 0.0]), "slide", 0.1, motion=motion)
+    assert row["contacts"] == 1
+    assert row["separation_velocity_x_m_s"] - RADIUS * row["spin_y_after_rad_s"] == pytest.approx(found["point"][0], rel=1e-7)
+    assert row["duration_s"] == pytest.approx(found["time"], rel=1e-7)

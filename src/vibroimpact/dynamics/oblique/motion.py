@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,7 @@ from vibroimpact.dynamics.oblique.rolling import ACROSS, LyingSpheres
 from vibroimpact.dynamics.oblique.sliding import slide
 from vibroimpact.dynamics.oblique.state import ObliqueContact, ObliqueContacts, Sphere, State, energy_taken
 from vibroimpact.dynamics.oblique.statement import Oblique
+from vibroimpact.dynamics.shaken.statement import PlateMotion
 
 OBLIQUE_STEPS = 16
 """Steps for each phase of a contact: the slip velocity at its end is then within 1e-4 of that at first touch."""
@@ -30,9 +32,11 @@ class ObliqueMotion:
         What the drops have at the start.
     mass, radius : array, shape (B,)
         Of the spheres [kg], [m].
+    motion : PlateMotion or None
+        Of the plate.
     """
 
-    def __init__(self, oblique: Oblique, mass: Floats, radius: Floats) -> None:
+    def __init__(self, oblique: Oblique, mass: Floats, radius: Floats, motion: PlateMotion | None) -> None:
         def spread(values: Any) -> Floats:
             return np.array([np.broadcast_to(np.asarray(value, dtype=float), mass.shape) for value in values])
 
@@ -40,6 +44,7 @@ class ObliqueMotion:
         self.state = State(spread(oblique.position), spread(oblique.velocity), spread(oblique.spin))
         self.start, self.half = self.state.position, None if oblique.size is None else 0.5 * np.array(oblique.size)[:, None]
         self.law, self.lost, self.microslip = oblique.friction, np.zeros(len(mass)), np.zeros(len(mass))
+        self.motion = motion
 
     def fly(self, drops: Drops, flight: Flight, time: Floats) -> None:
         """Advance drops through their flights up to a time [s]."""
@@ -74,13 +79,18 @@ class ObliqueMotion:
     def distance(self, drops: Drops, flight: Flight, time: Floats) -> Floats:
         """Return how far drops move along the plate in their flights up to a time [m]."""
         with np.errstate(invalid="ignore"):
-            moved = self._flown(drops, flight, time).position - self.state.take(drops).position
+            moved = self._over_plate(drops, flight, time) - self._over_plate(drops, flight, flight.start)
         return np.asarray(np.nan_to_num(np.hypot(*moved)))
+
+    def _over_plate(self, drops: Drops, flight: Flight, time: Floats) -> Floats:
+        """Return the places of drops at times of their flights [s], seen from the plate [m] (2, b)."""
+        place = self._flown(drops, flight, time).position
+        return place if self.motion is None else place - np.outer(self.motion.direction[:2], self.motion.at(time)[0])
 
     def place_on_plate(self, drops: Drops, flight: Flight, time: Floats) -> Floats:
         """Return the places of drops at times of their flights [s], or the nearest ones on the plate [m] (2, b)."""
         with np.errstate(invalid="ignore"):
-            place = np.nan_to_num(self._flown(drops, flight, time).position)
+            place = np.nan_to_num(self._over_plate(drops, flight, time))
         return place if self.half is None else np.clip(place, -self.half, self.half)
 
     def beside(self, drops: Drops, flight: Flight, time: Floats) -> Bools:
@@ -88,7 +98,7 @@ class ObliqueMotion:
         if self.half is None:
             return np.zeros(len(drops), dtype=bool)
         with np.errstate(invalid="ignore"):
-            place = self._flown(drops, flight, time).position
+            place = self._over_plate(drops, flight, time)
         return np.asarray(np.isfinite(time) & (np.abs(place) > self.half).any(axis=0))
 
     def collide(self, drops: Drops, motions: Sequence[tuple[Drops, NormalMotion]], row: dict[str, Floats]) -> ObliqueContacts:
@@ -110,9 +120,14 @@ class ObliqueMotion:
         self.finish(drops, contact.end, energy_taken(sphere, before, contact.end), sliding.microslip, row)
         return contact
 
-    def collide_at_once(self, drops: Drops, impulse: Floats, row: dict[str, Floats]) -> None:
-        """Let a normal impulse without duration act on drops [N s], and write its columns."""
-        sphere, before = self.sphere.take(drops), self.state.take(drops)
+    def collide_at_once(self, drops: Drops, time: Floats, impulse: Floats, row: dict[str, Floats]) -> Floats:
+        """Let a normal impulse without duration act on drops at some times [N s], [s]; write its columns, and return the plate's work [J].
+
+        That is the work of friction on the spheres, as the plate moves along itself.
+        """
+        sphere, start = self.sphere.take(drops), self.state.take(drops)
+        surface = 0.0 if self.motion is None else np.outer(self.motion.direction[:2], self.motion.at(time)[1])
+        before = replace(start, velocity=start.velocity - surface)  # seen from the plate
         direction, slip, _ = _along(sphere, before)
         left = slip
         if isinstance(self.law, ImpulsiveFriction):
@@ -121,7 +136,9 @@ class ObliqueMotion:
         law, rubbed = None if self.law is None else self.law.take(drops), sphere.tangential_mass * np.abs(left - slip)
         change = _rolling(law, sphere, after, impulse, rubbed)
         after = after if change is None else after.changed(change)
-        self.finish(drops, after, energy_taken(sphere, before, after), np.zeros(len(drops)), row)
+        lost, after = energy_taken(sphere, before, after), replace(after, velocity=after.velocity + surface)
+        self.finish(drops, after, lost, np.zeros(len(drops)), row)
+        return lost - energy_taken(sphere, start, after)
 
     def finish(self, drops: Drops, after: State, lost: Floats, microslip: Floats, row: dict[str, Floats]) -> None:
         """Put drops into their states after a contact in which friction took an energy [J], and write its columns.
