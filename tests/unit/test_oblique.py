@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ from vibroimpact.arrays import Floats
 from vibroimpact.cases.keys import with_values
 from vibroimpact.dynamics.columns import LEDGER, OBLIQUE_LEDGER, VIBRATION_LEDGER
 from vibroimpact.dynamics.oblique import compliant
+from vibroimpact.runs.tables import ledger_table
 
 RADIUS, MASS = 0.01, 0.02
 PAIR = {"effective_modulus": 1e9, "effective_shear_modulus": 0.8e9, "effective_radius": RADIUS}
@@ -65,6 +67,48 @@ def kinetic(impacts: dict[str, Floats], when: str) -> Floats:
     velocity = sum(impacts[f"{motion}_velocity_{axis}_m_s"] ** 2 for axis in "xy")
     spin = sum(impacts[f"spin_{axis}_{side}_rad_s"] ** 2 for axis in "xyz")
     return np.asarray(0.5 * MASS * velocity + 0.2 * MASS * RADIUS**2 * spin)
+
+
+def test_random_impacts_lose_in_microslip_and_in_gross_slip() -> None:
+    """Both parts are losses, to the error of the integration, and friction took them together; all of steep impacts is gross."""
+    random, number = np.random.default_rng(3), 3000
+    pair = {"effective_modulus": 1e9, "effective_shear_modulus": 1e9 * random.uniform(0.3, 1.2, number), "effective_radius": RADIUS}
+    friction = vi.find_friction_law("mdr")(coefficient=10.0 ** random.uniform(-2.0, 1.0, number), **pair)
+    slip = 10.0 ** random.uniform(-3.0, 1.3, number)
+    oblique = vi.Oblique(velocity=(slip, 0.0), friction=friction)
+    law = vi.find_contact_law("hunt-crossley")(stiffness=1.3e8, restitution=random.uniform(0.1, 1.0, number))
+    found = vi.tabulate(replace(problem(oblique=oblique, impacts=1), laws=(law,), speed=10.0 ** random.uniform(-1.0, 1.0, number)))
+    energy, lost, micro, gross = (
+        np.ravel(values) / (MASS / 7.0 * slip**2)
+        for values in (MASS / 7.0 * slip**2, *(found.impacts[f"{name}_lost_J"] for name in ("friction", "microslip", "gross_slip")))
+    )
+    np.testing.assert_allclose(micro + gross, lost, atol=1e-12)
+    assert micro.min() > -1e-5
+    assert gross.min() > -1e-9
+    assert 0.2 < (micro == 0.0).mean() < 0.6
+    assert (lost < energy + 1e-9).all()
+
+
+@pytest.mark.parametrize("friction", ["coulomb", "rigid", *(name for name in FRICTION if name.startswith("m"))])
+def test_contacts_that_slide_throughout_know_no_microslip(friction: str) -> None:
+    """Neither does the slipping and rolling that follows the bounces."""
+    response = vi.simulate(problem(oblique=vi.Oblique(velocity=(30.0, 0.4), friction=FRICTION[friction]), impacts=None, duration=3.0))
+    assert not response.impacts["microslip_lost_J"][0]
+    assert response.impacts["gross_slip_lost_J"][0] == response.impacts["friction_lost_J"][0]
+    energy = response.energy
+    assert energy["microslip_J"] == pytest.approx(response.impacts["microslip_lost_J"].sum(), rel=1e-12)
+    assert energy["microslip_J"] + energy["gross_slip_J"] == pytest.approx(energy["friction_J"], rel=1e-12)
+
+
+def test_the_ledger_shows_both_parts_of_friction_where_a_result_has_them() -> None:
+    result = vi.result_of(vi.simulate(problem(oblique=spinning("mdr"))))
+    rows = {row.title: row.energy for row in ledger_table(result)[1]}
+    assert {"Lost in microslip", "Lost in gross slip"} < set(rows)
+    assert "Lost by friction" not in rows
+    older = replace(result, energy={name: value for name, value in result.energy.items() if "slip" not in name})
+    without = {row.title: row.energy for row in ledger_table(older)[1]}
+    assert "Lost by friction" in without
+    assert without["Sum"] == rows["Sum"]
 
 
 @pytest.mark.parametrize("law", LAWS)
@@ -217,11 +261,33 @@ def test_an_inclined_plate_pulls_along_x() -> None:
     assert response.impacts["approach_velocity_x_m_s"][0] == pytest.approx(gravity * np.sin(np.radians(20.0)) * touch)
 
 
+@pytest.mark.parametrize("gravity", [0.0, 9.0])
+@pytest.mark.parametrize("law", ["hertz", "hunt-crossley"])
+def test_the_softest_touch_of_a_slope_closes_its_ledger(law: str, gravity: float) -> None:
+    """At 1e-9 m/s nearly all energy is what gravity brings down the plate, up to 1e27 times that at first touch."""
+    oblique = vi.Oblique(gravity=(2.0, 0.0), friction=FRICTION["coulomb"])
+    response = vi.simulate(problem(law, speed=1e-9, gravity=gravity, impacts=5, oblique=oblique))
+    energy = response.energy
+    assert -energy["potential_J"] > 1e10 * energy["input_J"]
+    assert energy["closure_relative"] < 1e-12
+    assert abs(energy["closure_J"]) < 1e-12 * -energy["potential_J"]
+
+
 def test_a_sphere_falls_off_the_edge() -> None:
     response = vi.simulate(vi.read_case({**CASE, "drop": {"velocity": [5.0, 0, -3.0], "position": ["900 mm", 0]}}))
     assert response.outcomes == (vi.Outcome.FELL,)
     assert response.status.startswith("The sphere falls off the edge of the plate after 1 impact, ")
     assert len(response.impacts["time_s"]) == 1
+
+
+def test_a_flight_over_the_uphill_edge_and_back() -> None:
+    """A parabola whose top lies 25 mm beyond the edge, and which comes down 55 mm within it: what counts is where the sphere is then."""
+    oblique = vi.Oblique(velocity=(-1.0, 0.0), position=(-0.9, 0.0), gravity=(4.0, 0.0), size=(2.0, 1.0))
+    falls = {"height": RADIUS + 0.5 * 9.81 * 0.45**2, "speed": None, "impacts": 1, "oblique": oblique}
+    response = vi.simulate(problem(**falls))
+    assert response.at([0.25])["position_x_m"][0] == pytest.approx(-1.025, rel=1e-12)
+    assert response.impacts["position_x_m"][0] == pytest.approx(-0.945, rel=1e-12)
+    assert "falls off" not in response.status
 
 
 def test_angle_speed_and_velocity_say_the_same() -> None:

@@ -20,6 +20,7 @@ from vibroimpact.dynamics.shaken.tabulated import tabulated_motion
 from vibroimpact.runs.charts import run_charts
 from vibroimpact.runs.history_charts import _touch_and_release, tops_of_rebounds
 from vibroimpact.runs.scene import rigid_scene
+from vibroimpact.structures.modal_model import ModalBasis
 
 SOFT = KuwabaraKono(stiffness=1e8, dissipation_time=1e-5)
 CASE: dict[str, Any] = {
@@ -36,8 +37,8 @@ SPRINGS = [{"type": "spring", "position": [x, y], "stiffness": "2 kN/m"} for x i
 def problem(law: vi.ContactLaw = SOFT, **changes: Any) -> vi.Problem:
     start = {} if "speed" in changes else {"height": 0.05}
     values: dict[str, Any] = {"motion": vi.PlateMotion(amplitude=2e-3, frequency=25.0), "gravity": 9.8, "impacts": 6, **start, **changes}
-    values = {"laws": (law,), **values}
-    return vi.Problem(sphere=vi.Body(mass=0.1, contact_offset=0.01), plate=vi.rigid_plate(), **values)
+    values = {"laws": (law,), "plate": vi.rigid_plate(), **values}
+    return vi.Problem(sphere=vi.Body(mass=0.1, contact_offset=0.01), **values)
 
 
 def case(**values: Any) -> vi.Problem:
@@ -68,7 +69,6 @@ def test_refused_motions(values: dict[str, Any], words: str) -> None:
     ("values", "words"),
     [
         ({"motion": 25.0}, "must be a PlateMotion"),
-        ({"laws": (Newton(restitution=0.5),), "oblique": vi.Oblique(velocity=(1.0, 0.0))}, "under a law with a force"),
         ({"oblique": vi.Oblique(friction=vi.find_friction_law("coulomb")(coefficient=0.3))}, "no tangential compliance"),
         ({"sensors": (vi.Sensor("a1", (0.0, 0.0)),)}, "sensors"),
         ({"height": 0.0115, "motion": vi.PlateMotion(amplitude=2e-3, frequency=25.0, phase=1.5)}, "begins its motion above"),
@@ -255,8 +255,7 @@ def test_tables_without_their_columns(tmp_path: Path) -> None:
         ({"plate.motion.frequenzy": "25 Hz"}, 'Did you mean "frequency"'),
         ({"plate.motion.direction": [0, 0, 0]}, "length 0"),
         ({"plate.motion.amplitude": "2 Hz"}, r"plate\.motion\.amplitude"),
-        ({"plate.inclination": "10 deg", "plate.model": "elastic", "plate.supports": "clamped"}, "only a rigid plate that moves"),
-        ({"plate.inclination": "10 deg", "contact": {"law": "newton", "restitution": 0.5}}, "under a contact law with a force"),
+        ({"contact.friction": {"law": "rigid", "coefficient": 0.3}}, "no tangential compliance"),
         ({"drop.height": "21 mm", "plate.motion.phase": "90 deg"}, "begins its motion above"),
         ({"plate.motion": 3}, "not a table"),
     ],
@@ -360,6 +359,44 @@ def test_a_ball_that_rolls_on_a_table_moves_with_two_sevenths_of_its_velocity() 
     assert abs(rest) < 1e-4
 
 
+@pytest.mark.parametrize(
+    ("law", "most", "kept"), [("rigid", 0.2, 0.3), ("rigid", 1e9, 0.3), ("coulomb", 0.2, 0.0)], ids=["rigid", "sticking", "coulomb"]
+)
+def test_a_billiard_on_a_table_that_moves_along_itself_too(law: str, most: float, kept: float) -> None:
+    """Every impact of 1,000 reverses the slip over the table as Walton has it, and the ledger closes."""
+    friction = vi.find_friction_law(law)(coefficient=most, **({"slip_restitution": kept} if law == "rigid" else {}))
+    oblique = vi.Oblique(velocity=(0.3, 0.1), spin=(10.0, -30.0, 5.0), friction=friction)
+    table = vi.PlateMotion(amplitude=5e-3, frequency=25.0, direction=(0.6, 0.0, 0.8))
+    response = vi.simulate(problem(Newton(restitution=0.8), oblique=oblique, motion=table, impacts=1000))
+    rows, mass, radius = response.impacts, 0.1, 0.01
+    assert len(rows["time_s"]) == 1000
+    assert response.energy["closure_relative"] <= 1e-9
+    assert rows["plate_work_J"].sum() == pytest.approx(-response.energy["drive_J"], rel=1e-12)
+    surface = np.array([0.6, 0.0])[:, None] * table.at(rows["time_s"])[1]
+
+    def slip(when: str, side: str) -> np.ndarray:
+        spins = np.array([-rows[f"spin_y_{side}_rad_s"], rows[f"spin_x_{side}_rad_s"]])
+        return np.array([rows[f"{when}_velocity_{axis}_m_s"] for axis in "xy"]) + radius * spins - surface
+
+    before, after = slip("approach", "before"), slip("separation", "after")
+    impulse = mass * (rows["approach_speed_m_s"] + rows["separation_speed_m_s"])
+    speed = np.hypot(*before)
+    change = np.minimum((1.0 + kept) * speed, most * impulse / (2.0 / 7.0 * mass))
+    assert after == pytest.approx(before * (1.0 - change / speed), abs=1e-10)
+
+
+def test_a_hard_ball_under_friction_is_followed_until_it_rides() -> None:
+    friction = vi.find_friction_law("rigid")(coefficient=0.2)
+    sideways = vi.PlateMotion(amplitude=1e-4, frequency=25.0, direction=(1.0, 0.0, 0.0))
+    oblique = vi.Oblique(velocity=(0.3, 0.1), friction=friction)
+    response = vi.simulate(problem(Newton(restitution=0.3), oblique=oblique, motion=sideways, impacts=None, duration=0.5))
+    assert response.outcomes == (vi.Outcome.RIDING,)
+    assert response.status.endswith(
+        "rides on the plate, which is shaken, and a law without a force does not tell how it moves along it then."
+    )
+    assert response.energy["closure_relative"] <= 1e-9
+
+
 # elastic plates --------------------------------------------------------------------------------------
 
 
@@ -405,6 +442,24 @@ def test_an_amplitude_of_zero_leaves_an_elastic_plate_as_it_is() -> None:
         assert np.array_equal(values, one.impacts[name], equal_nan=True), name
 
 
+@pytest.mark.parametrize("oblique", [{}, {"plate.inclination": "3 deg"}])
+def test_a_sphere_comes_to_rest_on_an_elastic_plate_that_is_shaken(oblique: dict[str, Any]) -> None:
+    elastic = {"plate.model": "elastic", "plate.supports": "clamped", "plate.modes": 12, "plate.damping": 0.01}
+    gentle = {"plate.motion.amplitude": "0.1 mm", "drop.height": "22 mm", "run": {"duration": 0.3}, "contact.restitution": 0.5}
+    response = vi.simulate(case(**elastic, **gentle, **oblique))
+    assert response.outcomes == (vi.Outcome.CAPTURED,)
+    assert response.energy["closure_relative"] <= 1e-9
+    history = response.history()
+    total = sum(history[name] for name in history if name in IN_LEDGER)
+    assert total == pytest.approx(total[0], abs=1e-7 * response.energy["input_J"])
+    times = np.linspace(0.25, 0.3, 301)
+    rest, mass, gravity = response.at(times), float(response.problem.sphere.mass), float(response.problem.gravity)
+    # it moves with the surface, which its mass hardly changes, and the force is that of its acceleration
+    assert rest["force_N"] == pytest.approx(mass * (gravity + response.problem.surface(times)[2]), rel=2e-3)
+    assert np.gradient(rest["velocity_m_s"], times, edge_order=2) == pytest.approx(rest["acceleration_m_s2"], abs=2e-3)
+    assert rest["plate_deflection_m"] - rest["position_m"] + 0.02 == pytest.approx(rest["indentation_m"], abs=1e-7)
+
+
 def test_modal_coordinates_and_deflections_are_those_of_the_whole_motion() -> None:
     elastic = {"plate.model": "elastic", "plate.supports": "clamped", "plate.modes": 12, "plate.damping": 0.01, "run.impacts": 1}
     response = vi.simulate(case(**elastic))
@@ -414,6 +469,89 @@ def test_modal_coordinates_and_deflections_are_those_of_the_whole_motion() -> No
     assert motion is not None
     surface = motion.at(times)[0] + response.modal(times)["plate"] @ modes.contact
     assert surface == pytest.approx(response.at(times)["plate_deflection_m"], abs=1e-12)
+
+
+OBLIQUE: dict[str, Any] = {
+    "plate.model": "elastic",
+    "plate.supports": "clamped",
+    "plate.modes": 12,
+    "plate.damping": 0.01,
+    "drop": {"speed": 0.9, "angle": "20 deg", "spin": [10.0, -30.0, 50.0], "position": ["-60 mm", "20 mm"]},
+    "contact.friction": {"law": "mindlin", "coefficient": 0.3},
+}
+
+
+def test_an_amplitude_of_zero_leaves_an_oblique_drop_on_an_elastic_plate_as_it_is() -> None:
+    still = case(**OBLIQUE, **{"plate.motion.amplitude": 0.0})
+    one, other = vi.simulate(still), vi.simulate(replace(still, motion=None))
+    for name, values in other.impacts.items():
+        assert np.array_equal(values, one.impacts[name], equal_nan=True), name
+    for name, values in other.history().items():
+        assert np.array_equal(values, one.history()[name], equal_nan=True), name
+
+
+def test_the_ledger_of_oblique_impacts_on_an_elastic_screen_closes() -> None:
+    screen = {"plate.motion.direction": [3, 0, 4], "plate.inclination": "5 deg", "plate.element": "solid", "run.impacts": 8}
+    response = vi.simulate(case(**OBLIQUE, **screen))
+    history = response.history()
+    total = sum(history[name] for name in history if name in IN_LEDGER)
+    assert total == pytest.approx(total[0], abs=1e-6 * response.energy["input_J"])
+    assert response.energy["closure_relative"] <= 1e-9
+    assert response.impacts["plate_work_J"].sum() == pytest.approx(-response.energy["drive_J"], rel=1e-9)
+    touch = response.at(response.impacts["time_s"])
+    assert touch["surface_velocity_m_s"] == pytest.approx(response.impacts["plate_velocity_m_s"], abs=1e-12)
+    assert touch["plate_deflection_m"] == pytest.approx(touch["position_m"] - 0.02, abs=1e-12)
+
+
+@pytest.mark.parametrize("drive", ["slow", "table"])
+def test_an_elastic_plate_that_drifts_is_one_at_rest_to_an_observer_who_drifts(tmp_path: Path, drive: str) -> None:
+    """A steady velocity along the plate, of a slow motion, or of a table, whose cosines have it to 3e-5: the place on the plate counts."""
+    times, drift = np.linspace(0.0, 0.2, 201), 0.25
+    path = tmp_path / "drift.csv"
+    path.write_text("time [s],displacement [m]\n" + "".join(f"{at:.6g},{drift * at:.12g}\n" for at in times))
+    table = {"file": str(path)} if drive == "table" else {"amplitude": drift / (2e-4 * math.pi), "frequency": 1e-4}
+    moving = {"plate.motion": {**table, "direction": [1, 0, 0]}, "drop.velocity": [0.4, 0.1, -0.9], "run": {"duration": 0.2}}
+    accuracy, begun = (1e-4, -0.1 * drift) if drive == "table" else (1e-7, 0.0)  # the zero of a table is its mean
+    still = {"drop.velocity": [0.4 - drift, 0.1, -0.9], "drop.position": [-0.06 - begun, 0.02], "run": {"duration": 0.2}}
+    oblique = with_values(CASE, {**OBLIQUE, "drop": {"spin": [10.0, -30.0, 50.0], "position": [-0.06, 0.02]}})
+    unshaken = with_values(oblique, still)
+    del unshaken["plate"]["motion"]
+    seen, found = vi.simulate(vi.read_case(unshaken)), vi.simulate(vi.read_case(with_values(oblique, moving)))
+    assert len(found.impacts["time_s"]) >= 2
+    for name in ("time_s", "separation_speed_m_s", "spin_x_after_rad_s", "spin_y_after_rad_s", "spin_z_after_rad_s", "friction_lost_J"):
+        assert found.impacts[name] == pytest.approx(seen.impacts[name], rel=2.0 * accuracy), name
+    sideways = seen.impacts["separation_velocity_x_m_s"] + drift
+    assert found.impacts["separation_velocity_x_m_s"] == pytest.approx(sideways, abs=accuracy * drift)
+    away = begun + drift * found.impacts["time_s"]
+    assert found.impacts["position_x_m"] == pytest.approx(seen.impacts["position_x_m"] + away, abs=accuracy * drift)
+    assert found.energy["closure_relative"] <= 1e-9
+
+
+def test_a_shaken_plate_whose_modes_hardly_move_is_a_rigid_one() -> None:
+    number = 5
+    modes = ModalBasis(
+        np.linspace(500.0, 5e3, number),
+        np.full(number, 0.02),
+        np.full(number, 1e-9),
+        np.zeros((number, 3)),
+        mass=4.0,
+        along=np.full((number, 2), 1e-9),
+    )
+    screen = vi.PlateMotion(amplitude=2e-3, frequency=25.0, direction=(0.6, 0.0, 0.8))
+    stiff = vi.Body(mass=np.inf, contact_offset=0.0, modes=modes)
+    elastic, rigid = (rubbing((0.3, 0.0), screen, impacts=4, plate=plate) for plate in (stiff, vi.rigid_plate()))
+    for name in ("time_s", "separation_velocity_x_m_s", "spin_y_after_rad_s", "plate_work_J", "friction_lost_J"):
+        assert elastic.impacts[name] == pytest.approx(rigid.impacts[name], rel=1e-6), name
+
+
+def test_a_sphere_falls_off_a_plate_that_moves_away() -> None:
+    """Over the edge as it moves: 0.1 m from the middle of the plate, which is 0.05 m from its mean position by the second impact."""
+    oblique = vi.Oblique(position=(0.07, 0.0), size=(0.2, 0.2))
+    away = vi.PlateMotion(amplitude=0.1, frequency=0.5, direction=(-1.0, 0.0, 0.0))
+    response = vi.simulate(problem(oblique=oblique, motion=away, impacts=None, duration=1.0))
+    assert response.outcomes == (vi.Outcome.FELL,)
+    assert 0.1 * np.sin(np.pi * response.end_time[0]) > 0.03
+    assert 0.1 * np.sin(np.pi * response.impacts["time_s"][-1]) <= 0.03
 
 
 @pytest.mark.parametrize("law", ["newton", "lankarani-nikravesh"])

@@ -1,9 +1,9 @@
-"""Against Chung and Ooi (2011), Granular Matter 13, 643-656, doi 10.1007/s10035-011-0277-0: tests 1, 2, 5 and 8.
+"""Against Chung and Ooi (2011), Granular Matter 13, 643-656, doi 10.1007/s10035-011-0277-0: tests 1, 2, 5, 7 and 8.
 
 Inputs from the article; values from Hertz's closed form, which its digitised curves meet to 1 %. Tolerance 1e-5,
 the digits given. Inputs of test 8 and the points read from its figure are those of the benchmarks of Kratos' DEM application. Test 7, two
-equal spheres with opposite spins, whose contact point does not slip, needs a second sphere that spins; what it asks of one is in
-test_vs_lammps_granular.py (impact without slip).
+equal spheres with opposite spins, is its own mirror image in the plane of contact, whose points move along it with both spheres: seen from
+there each hits a rigid plate without slip.
 """
 
 from __future__ import annotations
@@ -137,6 +137,33 @@ def test_5_spin_of_a_sphere_that_hits_at_an_angle(law: str, mean: float, largest
     assert apart.mean() < mean
     assert apart.max() < largest
     assert (law == "mdr") == (apart.mean() < 0.015)
+
+
+@pytest.mark.parametrize("law", ["mdr", "mindlin", "mindlin-rescale", "mindlin-force", "coulomb", "rigid"])
+@pytest.mark.parametrize("material", [(7e10, 0.33, 2699.0), (1.2e11, 0.35, 8900.0)])  # aluminium alloy, copper
+def test_7_equal_spheres_with_opposite_spins(law: str, material: tuple[float, float, float]) -> None:
+    """At 0.2 m/s, with 0.4 and a restitution of 0.5, they part with the spins that they had, and do not move sideways."""
+    radius, speed, (young, poisson, density) = 0.1, 0.2, material
+    metal = vi.Material(density=density, youngs_modulus=young, poissons_ratio=poisson)
+    rigid = vi.Material(density=density, youngs_modulus=np.inf, poissons_ratio=poisson)
+    moduli = {"effective_modulus": effective_modulus(metal, rigid), "effective_shear_modulus": effective_shear_modulus(metal, rigid)}
+    pair = {} if law in ("coulomb", "rigid") else {**moduli, "effective_radius": radius}
+    spin = np.linspace(0.0, 24.0, 7)
+    problem = vi.Problem(
+        sphere=vi.rigid_sphere(radius, metal),
+        plate=vi.rigid_plate(),
+        laws=(vi.find_contact_law("gonthier")(stiffness=hertz_stiffness(moduli["effective_modulus"], radius), restitution=0.5),),
+        speed=speed,
+        gravity=0.0,
+        impacts=1,
+        oblique=vi.Oblique(
+            velocity=(radius * spin, 0.0), spin=(0.0, spin, 0.0), friction=vi.find_friction_law(law)(coefficient=0.4, **pair)
+        ),
+    )
+    row = {name: values[:, 0] for name, values in vi.tabulate(problem).impacts.items()}
+    np.testing.assert_allclose(row["separation_speed_m_s"], 0.5 * speed, rtol=0.03)  # the law meets the restitution asked to first order
+    np.testing.assert_allclose(row["spin_y_after_rad_s"], spin, rtol=1e-14)
+    np.testing.assert_allclose(row["separation_velocity_x_m_s"] - radius * spin, 0.0, atol=1e-14)  # seen from where the plane is at rest
 
 
 FIGURE_8 = (

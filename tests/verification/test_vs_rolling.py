@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 
 import vibroimpact as vi
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.oblique.rolling import slide_and_roll
+from vibroimpact.dynamics.oblique.rolling import LyingSpheres
 from vibroimpact.dynamics.oblique.state import Sphere, State
 
 RADIUS, MASS, GRAVITY = 0.02, 0.3, 9.81
@@ -24,9 +24,8 @@ def after(
     along = np.array([[GRAVITY * np.sin(angle)], [0.0]])
     ball = Sphere(MASS * one, RADIUS * one, 0.4 * MASS * RADIUS**2 * one, along)
     start = State(np.zeros((2, 1)), np.array(velocity, dtype=float)[:, None], np.array(spin, dtype=float)[:, None])
-    return slide_and_roll(
-        ball, start, vi.find_friction_law("coulomb")(coefficient=mu, rolling_coefficient=rolling), GRAVITY * np.cos(angle) * one, time * one
-    )
+    law = vi.find_friction_law("coulomb")(coefficient=mu, rolling_coefficient=rolling)
+    return LyingSpheres(ball, start, law, GRAVITY * np.cos(angle) * one, time * one).at(np.array([0]), time * one)
 
 
 def test_sliding_ends_in_rolling_with_five_sevenths() -> None:
@@ -116,6 +115,51 @@ def test_a_sphere_rolls_off_the_edge() -> None:
     response = resting(oblique=vi.Oblique(velocity=(0.7, 0.0), friction=friction, size=(2.0, 1.0)))
     assert response.end_time[0] < 3.0
     assert response.at([float(response.end_time[0])])["position_x_m"][0] == pytest.approx(1.0, rel=1e-12)
+
+
+def on_slope(velocity: Any, spin: Any, mu: float, rolling: float, until: float, angle: float = 0.2) -> LyingSpheres:
+    one, law = np.ones(1), vi.find_friction_law("coulomb")(coefficient=mu, rolling_coefficient=rolling)
+    ball = Sphere(MASS * one, RADIUS * one, 0.4 * MASS * RADIUS**2 * one, np.array([[GRAVITY * np.sin(angle)], [0.0]]))
+    start = State(np.zeros((2, 1)), np.array(velocity, dtype=float)[:, None], np.array([*spin, 0.0], dtype=float)[:, None])
+    return LyingSpheres(ball, start, law, GRAVITY * np.cos(angle) * one, until * one)
+
+
+def test_a_sphere_that_rolls_over_the_uphill_edge_does_not_come_back() -> None:
+    """It leaves where its way up, v t - a t^2 / 2 with a = 5/7 g sin, first reaches the edge; later it would lie on the plate again."""
+    speed, up, edge = 1.0, 5.0 / 7.0 * GRAVITY * np.sin(0.2), 0.3
+    rolls = on_slope((-speed, 0.0), (0.0, -speed / RADIUS), 0.5, 0.0, 2.0 * speed / up)
+    assert rolls.at(np.array([0]), rolls.until)[0].position[0, 0] == pytest.approx(0.0, abs=1e-12)
+    assert rolls.edge_time(np.full((2, 1), edge))[0] == pytest.approx((speed - np.sqrt(speed**2 - 2.0 * up * edge)) / up, rel=1e-12)
+    assert rolls.edge_time(np.full((2, 1), 0.5 * speed**2 / up * (1.0 + 1e-12)))[0] == rolls.until[0]
+
+
+@pytest.mark.parametrize("rolling", [0.0, 0.1])
+def test_the_first_edge_of_spheres_that_turn(rolling: float) -> None:
+    """Against the motion at 20,000 times: spheres that slip and roll across a slope, and come back from an edge in part."""
+    random, back = np.random.default_rng(3), 0
+    for _ in range(40):
+        velocity, spin = random.normal(size=2) * 0.4 - [1.2, 0.0], random.normal(size=2) * 30.0
+        moves = on_slope(velocity, spin, float(random.uniform(0.05, 0.4)), rolling, 2.0)
+        times = np.linspace(0.0, 2.0, 20001)
+        places = np.abs(moves.at(np.zeros(20001, dtype=int), times)[0].position)
+        half = float(random.uniform(0.2, 1.0)) * places[0].max() * np.ones((2, 1))
+        out = (places > half).any(axis=0)
+        first = times[out.argmax()] if out.any() else 2.0
+        found = float(moves.edge_time(half)[0])
+        assert first - 1e-4 * (1.0 + 1e-9) <= found <= first
+        back += bool(out.any() and not out[-1])
+    assert back > 3
+
+
+def test_a_motion_is_the_same_however_far_it_is_followed() -> None:
+    for rolling in (0.0, 0.1):
+        moves = on_slope((-0.4, 1.0), (8.0, 30.0), 0.3, rolling, 2.0)
+        for time in (0.05, 0.2, 0.9, 2.0):
+            alone, friction = on_slope((-0.4, 1.0), (8.0, 30.0), 0.3, rolling, time).at(np.array([0]), np.array([time]))
+            among, frictions = moves.at(np.zeros(3, dtype=int), np.array([0.0, time, 2.0]))
+            np.testing.assert_allclose(among.position[:, 1], alone.position[:, 0], atol=1e-10)
+            np.testing.assert_allclose(among.velocity[:, 1], alone.velocity[:, 0], atol=1e-9)
+            np.testing.assert_allclose(frictions[:, 1], friction[:, 0], atol=1e-6)
 
 
 def test_rolling_resistance_brings_the_sphere_to_rest() -> None:
@@ -213,6 +257,22 @@ def test_a_run_comes_to_rest_by_rolling_resistance() -> None:
     np.testing.assert_allclose(history["velocity_x_m_s"][rolls], slowed[rolls], atol=1e-9)
 
 
+def test_a_history_is_integrated_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    import scipy.integrate
+
+    friction = vi.find_friction_law("coulomb")(coefficient=0.3, rolling_coefficient=0.05)
+    response = resting(oblique=vi.Oblique(velocity=(0.3, 0.7), spin=(10.0, 0.0, 0.0), gravity=(0.9, 0.0), friction=friction))
+    calls, integrate = [], scipy.integrate.solve_ivp
+
+    def counted(*parts: Any, **settings: Any) -> Any:
+        calls.append(1)
+        return integrate(*parts, **settings)
+
+    monkeypatch.setattr(scipy.integrate, "solve_ivp", counted)
+    response.at(np.linspace(float(response.rest.time[0]), 3.0, 500))
+    assert 0 < len(calls) < 5
+
+
 def test_rolling_resistance_decides_whether_it_reaches_the_edge() -> None:
     for rolling, falls in ((0.01, True), (0.05, False)):
         friction = vi.find_friction_law("coulomb")(coefficient=0.2, rolling_coefficient=rolling)
@@ -251,9 +311,9 @@ def test_a_contact_with_an_area_resists_twisting() -> None:
     law = vi.find_friction_law("mdr")(coefficient=0.2, **pair)
     until = 3.0 * 0.4 * MASS * RADIUS**2 / moment
     for time, left in ((0.25 * until, 2.25), (until, 0.0), (3.0 * until, 0.0)):
-        state, _ = slide_and_roll(ball, start, law, GRAVITY * one, time * one)
+        state, _ = LyingSpheres(ball, start, law, GRAVITY * one, time * one).at(np.array([0]), time * one)
         assert state.spin[2, 0] == pytest.approx(left, abs=1e-12)
-    state, _ = slide_and_roll(ball, start, vi.find_friction_law("coulomb")(coefficient=0.2), GRAVITY * one, one)
+    state, _ = LyingSpheres(ball, start, vi.find_friction_law("coulomb")(coefficient=0.2), GRAVITY * one, one).at(np.array([0]), one)
     assert state.spin[2, 0] == 3.0
 
 
@@ -287,7 +347,6 @@ def test_a_slip_of_rounding_is_none() -> None:
     ball = Sphere(one, 0.02 * one, 0.4 * 0.02**2 * one, np.array([[1.0], [0.0]]))
     velocity = np.array([[1.3], [0.7]])
     spin = np.array([[-0.7 / 0.02], [1.3 / 0.02], [0.0]]) * (1.0 + 1e-15)
-    state, _ = slide_and_roll(
-        ball, State(np.zeros((2, 1)), velocity, spin), vi.find_friction_law("coulomb")(coefficient=0.3), 9.81 * one, 2.0 * one
-    )
+    start, law = State(np.zeros((2, 1)), velocity, spin), vi.find_friction_law("coulomb")(coefficient=0.3)
+    state, _ = LyingSpheres(ball, start, law, 9.81 * one, 2.0 * one).at(np.array([0]), 2.0 * one)
     assert state.velocity[:, 0] == pytest.approx([1.3 + 2.0 * 5.0 / 7.0, 0.7], rel=1e-12)

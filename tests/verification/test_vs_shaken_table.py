@@ -20,6 +20,7 @@ from oracles.shaken_integration import ShakenDeck
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.kuwabara_kono import KuwabaraKono
 from vibroimpact.contact.laws.newton import Newton
+from vibroimpact.dynamics.columns import ALL_HISTORY_COLUMNS
 from vibroimpact.structures.modal_model import ModalBasis
 
 G, FREQUENCY = 9.8, 25.0
@@ -193,3 +194,44 @@ def test_a_table_that_hardly_moves_is_nearly_a_plate_at_rest(law: vi.ContactLaw)
     )
     for name in ("time_s", "duration_s", "approach_speed_m_s", "separation_speed_m_s", "max_indentation_m", "rebound_height_m"):
         assert shaken.impacts[name] == pytest.approx(rest.impacts[name], rel=1e-8), name
+
+
+def test_a_lump_at_rest_on_a_sprung_deck_moves_on_as_scipy_has_it() -> None:
+    """Found at rest, the lump is no longer integrated: its contact is linear, which errs by the square of the change of the force."""
+    law, system = KuwabaraKono(stiffness=1e9, dissipation_time=2e-3), ShakenDeck(20.0, 80.0, 12.0, 0.05, 1e9, 2e-3, 2e-4, 15.0)
+    shape = np.array([80.0**-0.5])
+    moves = np.array([[0.0, 0.0, 80.0**0.5]])
+    modes = ModalBasis(np.array([12.0]), np.array([0.05]), shape, moves, {"a": np.outer(shape, [0.0, 0.0, 1.0])}, 80.0)
+    problem = vi.Problem(
+        sphere=vi.Body(mass=20.0, contact_offset=0.1),
+        plate=vi.Body(mass=np.inf, contact_offset=0.0, modes=modes),
+        laws=(law,),
+        height=0.102,
+        gravity=9.8,
+        duration=1.5,
+        impacts=None,
+        motion=vi.PlateMotion(amplitude=2e-4, frequency=15.0),
+    )
+    response, times = vi.simulate(problem), np.linspace(0.0, 1.5, 15001)
+    assert response.outcomes == (vi.Outcome.CAPTURED,)
+    assert "moves with the plate" in response.status
+    (expected, left), found = system.follow(0.002, times), response.at(times)
+    weight, rest = 20.0 * 9.8, float(response.rest.time[0])
+    assert rest < 0.1
+    assert max(left, default=0.0) < rest
+    later = times > rest + 0.05
+    change = np.abs(found["force_N"][later] / weight - 1.0).max()
+    assert 0.2 < change < 0.5
+    sag = (weight / 1e9) ** (2.0 / 3.0)
+    assert found["plate_deflection_m"] == pytest.approx(expected[:, 2], abs=2e-7)
+    assert found["position_m"] - 0.1 == pytest.approx(expected[:, 0], abs=0.2 * change**2 * sag)
+    force = 20.0 * (9.8 + np.gradient(expected[:, 1], times, edge_order=2))
+    assert found["force_N"][later] == pytest.approx(force[later], abs=1e-3 * weight)
+    # the ledger closes, and its drive is the work of the contact at the surface as it moves without the lump
+    total = sum(found[name] for name, column in ALL_HISTORY_COLUMNS.items() if column.in_ledger and name in found)
+    assert total == pytest.approx(total[0], abs=1e-7 * response.energy["input_J"])
+    steady = times > 1.0  # what is left of the impact, and loses energy together with the steady motion, has decayed
+    power, drive = (found["force_N"] * found["surface_velocity_m_s"])[steady], -found["drive_J"][steady]
+    work = np.append(0.0, np.cumsum(0.5 * (power[1:] + power[:-1]) * np.diff(times[steady])))
+    assert np.ptp(work) > 0.05
+    assert drive - drive[0] == pytest.approx(work, abs=0.01 * np.ptp(work))

@@ -90,7 +90,8 @@ def _check_oblique(case: CaseTable, law: ContactLaw) -> None:
         words = "a mesh that is brought along does not say where the plate ends, over whose edge a sphere may fall"
         raise InputError(f"{words}; give size and leave out mesh, or leave this out", keys[0])
     friction = friction_law_of(case)
-    if (deforms(case) or case.plate.motion is not None) and friction is not None and not isinstance(friction, CompliantFriction):
+    shaken = case.plate.motion is not None and isinstance(law, CompliantLaw)
+    if (deforms(case) or shaken) and friction is not None and not isinstance(friction, CompliantFriction):
         words = f"{friction.name} has no tangential compliance, which friction needs on bodies that deform or are shaken"
         raise InputError(f'{words}; take "mdr" or one of the "mindlin" laws', "contact.friction.law")
     if isinstance(friction, CompliantFriction) and not isinstance(law, CompliantLaw):
@@ -113,9 +114,6 @@ def _check_motion(case: CaseTable) -> None:
     if case.sensors:
         words = "sensors see what impacts excite, and a plate on supports that move has a motion of its own"
         raise InputError(f"{words}; leave them out", "sensors")
-    if oblique_keys(case) and (elastic_names(case) or not isinstance(contact_laws_of(case)[-1], CompliantLaw)):
-        words = "only a rigid plate that moves is hit obliquely, and under a contact law with a force"
-        raise InputError(f"{words}; leave this out, or plate.motion", oblique_keys(case)[0])
     length = motion_length(case)
     if case.run.duration is not None and case.run.duration > length:
         raise InputError(f"the motion of the plate ends at {length:.6g} s; stop the run by then", "run.duration")

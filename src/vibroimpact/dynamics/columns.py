@@ -165,6 +165,10 @@ OBLIQUE_IMPACT_COLUMNS: dict[str, Column] = {
     ),
     "rebound_angle_deg": Column("deg", "angle of the rebound from the normal, positive onwards", "Rebound angle", "rebound angle"),
     "friction_lost_J": Column("J", "energy that friction took", "Lost by friction", "friction"),
+    "microslip_lost_J": Column(
+        "J", "the part of it that was lost while a part of the contact stuck", "of that in microslip", "in\u00a0microslip"
+    ),
+    "gross_slip_lost_J": Column("J", "the other part: in slip of the whole contact, and in twisting and rolling"),
 }
 """Further columns of the impact table, where motion is not along the normal alone."""
 
@@ -192,6 +196,12 @@ OBLIQUE_HISTORY_COLUMNS: dict[str, Column] = {
 }
 """Further columns of a history, where motion is not along the normal alone."""
 
+FRICTION_PARTS: dict[str, Column] = {
+    "microslip_J": _lost("the part of friction_J that was lost while a part of a contact stuck", "Lost in microslip", "microslip"),
+    "gross_slip_J": _lost("the other part: in slip of whole contacts, and in twisting and rolling", "Lost in gross slip", "gross slip"),
+}
+"""Two parts of `friction_J`, which are known at the end of a run."""
+
 AIR_HISTORY_COLUMNS: dict[str, Column] = {"air_J": _lost("energy lost so far to the drag of air", "Lost to the drag of air", "air")}
 """A further column of a history, where the sphere flies through air."""
 
@@ -202,6 +212,9 @@ ALL_HISTORY_COLUMNS = {
     **OBLIQUE_HISTORY_COLUMNS,
     **AIR_HISTORY_COLUMNS,
 }
+
+LEDGER_COLUMNS = {**ALL_HISTORY_COLUMNS, **FRICTION_PARTS}
+"""Columns of a history, and entries of the ledger beside them."""
 
 MOTION_COLUMNS = (*tuple(HISTORY_COLUMNS)[:8], "plate_deflection_m")
 """Those of motion and force, from `time_s` to `potential_J`, which are found from the state without the losses so far."""

@@ -24,7 +24,7 @@ def close_ledger(energy_in: Floats, added: Floats, entries: dict[str, Floats]) -
     energy_in : array, shape (B,)
         Kinetic and potential energy at the start [J].
     added : array, shape (B,)
-        Work of gravity and adhesion within the indentation [J]; in a soft touch more than `energy_in`.
+        Work of gravity and adhesion within the indentation, and of gravity down the plate [J]; in a soft touch more than `energy_in`.
     entries : dict of str to array
         The entries of the ledger at the end [J].
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from copy import copy
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from numbers import Integral
@@ -222,9 +223,6 @@ class Problem:
             raise InputError(
                 "sensors see the vibration that impacts excite, and a plate whose supports move has its own; leave one of them out"
             )
-        if self.oblique is not None and (self.plate.modes is not None or isinstance(self.laws[0], InstantaneousLaw)):
-            words = "only a rigid plate that moves is hit obliquely, and under a law with a force"
-            raise InputError(f"{words}; leave out what is oblique, or the motion")
         place, speed, _ = self.surface(0.0)
         if self.height is not None and not np.all(np.asarray(self.height) - self.sphere.contact_offset > place):
             raise InputError(
@@ -302,6 +300,13 @@ class Problem:
             oblique=None if self.oblique is None else self.oblique.take(drop),
             air=None if self.air is None else self.air.take(drop),
         )
+
+    def on_plate(self, plate: Body, quasi_static: QuasiStatic) -> Problem:
+        """Return the problem of a drop under way whose contact is at another place of the plate: its start is not checked against that."""
+        found = copy(self)
+        vars(found).pop("surface_phasors", None)
+        vars(found).update(plate=plate, quasi_static=quasi_static)
+        return found
 
     def to_problem(self) -> Problem:
         """Return the problem itself."""

@@ -45,7 +45,7 @@ class Run:
             self.velocity = -self.spread(problem.speed)
             # at touch: apart by the rounding error of the place of a plate that is shaken
             self.gap = self.gap + problem.surface(0.0)[0] + 4e-15 * np.abs(problem.surface_phasors).sum()
-        self.oblique = None if problem.oblique is None else ObliqueMotion(problem.oblique, self.mass, self.radius)
+        self.oblique = None if problem.oblique is None else ObliqueMotion(problem.oblique, self.mass, self.radius, problem.motion)
         self.ahead: tuple[Drops, AirFlight] | None = None  # flights whose tops have been computed already
         self.energy_in = self.mechanical_energy()
         if self.oblique is not None:
@@ -181,11 +181,11 @@ class Run:
             self.time[drops], self.gap[drops], self.velocity[drops] = touch, place, velocity + separation
             row["separation_speed_m_s"][drops] = separation
             row["duration_s"][drops] = row["max_indentation_m"][drops] = row["plastic_work_J"][drops] = 0.0
+            lost, along = 0.5 * self.mass[drops] * (speed**2 - separation**2), np.zeros(len(drops))
             if self.oblique is not None:
-                self.oblique.collide_at_once(drops, self.mass[drops] * (speed + separation), row)
-            lost = 0.5 * self.mass[drops] * (speed**2 - separation**2)
+                along = self.oblique.collide_at_once(drops, touch, self.mass[drops] * (speed + separation), row)
             if self.problem.shaken:
-                leg, lost = self.ride(leg, touch, speed, lost, row)
+                leg, lost = self.ride(leg, touch, speed, (lost, along), row)
         else:
             assert isinstance(law, CompliantLaw)
             closing = self.bodies.closing_speed(drops, speed, self.velocity[drops])
@@ -212,18 +212,24 @@ class Run:
         self.stop_resting(drops[moving], law if moving.all() else law.take(np.flatnonzero(moving)), row)
         return leg
 
-    def ride(self, leg: Leg, touch: Floats, speed: Floats, lost: Floats, row: dict[str, Floats]) -> tuple[Leg, Floats]:
+    def ride(self, leg: Leg, touch: Floats, speed: Floats, energies: tuple[Floats, Floats], row: dict[str, Floats]) -> tuple[Leg, Floats]:
         """Let drops that hardly rebound from a shaken plate ride on it; return the leg with the rides, and the energy lost [J].
 
-        `speed`: at which they met the plate [m/s]. `lost`: in the impact without what is lost as they come to ride [J].
+        `speed`: at which they met the plate [m/s]. `energies`: lost in the impact without what is lost as they come to ride, and the work
+        of friction by the plate [J]. A sphere that moves along the plate is not followed any further where it rides.
         """
         from vibroimpact.dynamics.shaken.bodies import ShakenBodies
 
         assert isinstance(self.bodies, ShakenBodies)
         drops, separation = leg.contact_drops, row["separation_speed_m_s"][leg.contact_drops]
-        ride = self.bodies.ride(drops, touch, separation, self.rest_speed[drops])
+        (lost, along), ride = energies, self.bodies.ride(drops, touch, separation, self.rest_speed[drops])
+        if self.oblique is not None:
+            self.stop(drops[ride.end > touch], Outcome.RIDING, touch[ride.end > touch])
+            ride = replace(ride, end=touch)
         rides, end = ride.end > touch, np.where(np.isfinite(ride.end), ride.end, touch)
-        work = ride.mass * (speed + np.where(rides, 0.0, separation)) * ride.surface(touch)[1] + ride.energy(end) - ride.energy(touch)
+        work = (
+            along + ride.mass * (speed + np.where(rides, 0.0, separation)) * ride.surface(touch)[1] + ride.energy(end) - ride.energy(touch)
+        )
         self.bodies.work[drops] += work
         row["plate_work_J"][drops] = work
         carried = drops[rides]
@@ -326,6 +332,8 @@ class Run:
         final_gap, final_velocity = self.final_motion(np.flatnonzero(at_rest))
         vibration = self.bodies.energies()
         added = self.mass * self.gravity * self.deepest + np.maximum(-self.stored, 0.0)  # the stored energy is negative where it sticks
+        if self.oblique is not None:
+            added += np.maximum(-along["potential_J"], 0.0)  # what gravity did down the plate
         if self.problem.motion is not None:
             vibration = {"drive_J": np.zeros(self.size), **vibration}
             added += np.maximum(-vibration["drive_J"], 0.0)
@@ -344,6 +352,7 @@ class Run:
                 **({} if self.problem.air is None else {"air_J": self.to_air}),
             },
         )
+        energy |= {} if self.oblique is None else self.oblique.friction_parts()
         closes = energy["closure_relative"] <= CLOSURE_LIMIT
         self.outcomes[~(closes & (self.written_off >= -WRITE_OFF_LIMIT * (self.energy_in + added)))] = Outcome.FAILED.code
         return Response(

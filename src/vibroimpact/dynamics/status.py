@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.arrays import Floats
+from vibroimpact.contact.law import InstantaneousLaw
 from vibroimpact.dynamics.change_by_impact import change_by_impact
 from vibroimpact.dynamics.energy import why_failed
 from vibroimpact.dynamics.outcome import Outcome
@@ -36,6 +37,9 @@ def status_of(run: Ended) -> str:
     after = f"after {number} impact{'' if number == 1 else 's'}"
     if outcome is Outcome.IMPACTS:
         return f"Stopped {after}, at the top of the last rebound, at {_time(run, end, 6)} s."
+    if outcome is Outcome.RIDING and isinstance(run.problem.laws[0], InstantaneousLaw):
+        words = "a law without a force does not tell how it moves along it then"
+        return f"Stopped {after}, at {_time(run, end, 6)} s: {_riding(run)}, and {words}."
     if outcome is Outcome.RIDING:
         from vibroimpact.dynamics.vibrating.visit import MOST_STEPS, MOST_STEPS_TO_A_TIME  # where bodies vibrate
 

@@ -11,9 +11,10 @@ import numpy as np
 from vibroimpact.arrays import Floats, Indices
 from vibroimpact.dynamics.columns import (
     AIR_LEDGER,
-    ALL_HISTORY_COLUMNS,
     ALL_IMPACT_COLUMNS,
+    FRICTION_PARTS,
     LEDGER,
+    LEDGER_COLUMNS,
     OBLIQUE_LEDGER,
     SHAKEN_LEDGER,
     VIBRATION_LEDGER,
@@ -47,6 +48,7 @@ _SHOWN_COLUMNS = (
     "tangential_restitution",
     "rebound_angle_deg",
     "friction_lost_J",
+    "microslip_lost_J",
     "air_lost_J",
     "contacts",
     "sensitivity",
@@ -94,11 +96,13 @@ def impact_table(result: Result) -> ImpactTable:
 def shown_columns(result: Result) -> list[str]:
     """Return the names of the columns of the impact table that are shown for a result: those that have a value.
 
-    An instantaneous law has neither a duration nor an indentation.
+    An instantaneous law has neither a duration nor an indentation, and a contact that slides throughout no microslip.
     """
     impacts = result.impacts
     told = {"contacts": several_contacts(impacts), "sensitivity": loses_digits(result.change_by_impact)}
     told |= {name: bool(np.any(impacts[name])) for name in ("duration_s", "max_indentation_m")}
+    microslip = np.abs(impacts.get("microslip_lost_J", np.nan))
+    told["microslip_lost_J"] = bool(np.any(microslip > _ROUNDING * result.energy["input_J"]))
     return [name for name in _SHOWN_COLUMNS if told.get(name, True) and np.isfinite(impacts.get(name, np.nan)).any()]
 
 
@@ -110,12 +114,15 @@ def several_contacts(impacts: Mapping[str, Floats]) -> bool:
 def ledger_table(result: Result) -> tuple[str, list[LedgerRow]]:
     """Return the final ledger as text: its unit, and a row for each entry, their sum and the energy put in, in certain figures.
 
-    Entries that are zero but for rounding are left out.
+    Entries that are zero but for rounding are left out. The two parts of friction stand for it, where the result has them.
     """
     put_in, scale = result.energy["input_J"], multiple("J", result.energy["input_J"])
+    parts = {"friction_J": tuple(FRICTION_PARTS)} if result.energy.keys() >= FRICTION_PARTS.keys() else {}
+    entries = (*LEDGER, *VIBRATION_LEDGER, *SHAKEN_LEDGER, *OBLIQUE_LEDGER, *AIR_LEDGER)
     values = {
         name: result.energy[name]
-        for name in (*LEDGER, *VIBRATION_LEDGER, *SHAKEN_LEDGER, *OBLIQUE_LEDGER, *AIR_LEDGER)
+        for entry in entries
+        for name in parts.get(entry, (entry,))
         if abs(result.energy.get(name, 0.0)) > _ROUNDING * put_in
     }
     figures = {name: _certain_figures_of_energy(name, result) for name in values}
@@ -127,7 +134,7 @@ def ledger_table(result: Result) -> tuple[str, list[LedgerRow]]:
     rows = []
     for name, value in values.items():
         energy, part = shown(name, value / scale.size, put_in / scale.size), shown(name, 100.0 * value / put_in, 100.0)
-        title = ALL_HISTORY_COLUMNS[name].label if name in ALL_HISTORY_COLUMNS else name
+        title = LEDGER_COLUMNS[name].label if name in LEDGER_COLUMNS else name
         rows.append(LedgerRow(name, title, energy, part))
     return scale.unit, rows
 
@@ -154,7 +161,7 @@ def _certain_figures_of_energy(entry: str, result: Result) -> int:
     if not len(change) or not change[-1] > 0.0:
         return ALL_FIGURES
     lost = np.abs(impacts["energy_lost_J"])
-    if ALL_HISTORY_COLUMNS[entry].is_loss and lost.sum() > 0.0:
+    if LEDGER_COLUMNS[entry].is_loss and lost.sum() > 0.0:
         return int(certain_figures(2.0 * change @ lost / lost.sum()))
     first, closing, separation = (
         float(impacts[name][place]) for name, place in (("approach_speed_m_s", 0), ("approach_speed_m_s", -1), ("separation_speed_m_s", -1))

@@ -216,6 +216,8 @@ class ModalBasis:
         modes [m/N].
     along : array, shape (modes, 2), optional
         Displacement of the contact point along x and y in each mode [kg^-1/2], by which friction moves the body.
+    turning : array, shape (modes, 3), optional
+        Rotation about x, y and z in each rigid motion [kg^-1/2 m^-1], by which moments at the contact turn the body; none by default.
     """
 
     frequencies: Floats
@@ -228,6 +230,7 @@ class ModalBasis:
     frequency_errors: Floats | None = None
     residuals: Mapping[str, Floats] = field(default_factory=dict)
     along: Floats | None = None
+    turning: Floats | None = None
 
     @property
     def angular_frequencies(self) -> Floats:
@@ -316,6 +319,7 @@ def rigid_basis(model: ModalModel, contact: tuple[Spot, Side], points: Mapping[s
         properties.mass,
         _rotation(properties, turning @ properties.inertia),
         along=touched[:, :2],
+        turning=turning,
     )
 
 

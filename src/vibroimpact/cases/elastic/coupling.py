@@ -308,7 +308,7 @@ def _at_place(case: CaseTable, problem: Problem, place: tuple[float, float]) -> 
     """Return the problem of a case with the contact at another place of its plate [m]."""
     coupling = coupling_of(case.model_copy(update={"drop": case.drop.model_copy(update={"position": place})}))
     plate = replace(problem.plate, modes=coupling.modes["plate"], rigid=coupling.rigid)
-    return replace(problem, plate=plate, quasi_static=coupling.quasi_static)
+    return problem.on_plate(plate, coupling.quasi_static)
 
 
 def _identified(case: CaseTable, measured: MeasuredImpact, problem: Problem) -> tuple[tuple[float, float], dict[str, float | str]]:

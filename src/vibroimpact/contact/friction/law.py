@@ -15,7 +15,7 @@ from typing import ClassVar, NamedTuple, Protocol
 
 import numpy as np
 
-from vibroimpact.arrays import Array, Drops, Floats
+from vibroimpact.arrays import Array, Bools, Drops, Floats
 from vibroimpact.contact.parameters import Parameters, parameter
 
 _TWISTING = 3.0 * np.pi / 16.0
@@ -76,6 +76,9 @@ class CompliantFriction(FrictionLaw):
     sliding_bound: ClassVar[float] = 1.0
     """While the depth shrinks, all of the contact slips on as long as the displacement shrinks by no more than this part of it."""
 
+    sliding_energy: ClassVar[float] = 0.4
+    r"""Elastic work of a contact as it grows while all of it slides, over :math:`\mu F \kappa D`."""
+
     effective_modulus: Array = parameter(
         "effective modulus E*", "Pa", detail="Effective modulus :math:`E^*`.", above=0, from_pair="effective_modulus"
     )
@@ -90,6 +93,15 @@ class CompliantFriction(FrictionLaw):
         """Return the moment of full twisting under a normal force [N m]: 3 pi/16 mu F a (Johnson 1985, section 7.2; Lubkin 1951)."""
         radius = np.cbrt(0.75 * force * self.effective_radius / self.effective_modulus)
         return np.asarray(_TWISTING * self.coefficient * force * radius)
+
+    def energy_in_sliding(self, force: Floats) -> Floats:
+        """Return the work that stretches the contact along the plate, while all of it slides up to a normal force [J].
+
+        Of `mdr` it is what springs of stiffness G* dx store at their limits mu E*/G* (D - x^2/R), 2/5 mu F kappa D together.
+        """
+        depth = np.cbrt(0.75 * force / (self.effective_modulus * np.sqrt(self.effective_radius))) ** 2
+        kappa = self.coefficient * self.effective_modulus / self.effective_shear_modulus
+        return np.asarray(self.sliding_energy * self.coefficient * force * kappa * depth)
 
     def memory(self, size: int) -> Memory:
         """Return the memory of `size` contacts before first touch."""
@@ -121,6 +133,10 @@ class Memory(Protocol):
 
     power: ClassVar[int]
 
+    @property
+    def slides(self) -> Floats | Bools:
+        """Not zero where all of a contact slides (B,)."""
+
     def turns(self, drops: Drops | slice, step: Step) -> tuple[Drops, Floats, Floats]:
         """Return which of b contacts change within a step, at which places in it, and how near these are to where the force is not smooth.
 
@@ -143,6 +159,10 @@ class Memory(Protocol):
 
 class TangentialHistory(Protocol):
     """Tangential displacements of one contact under way in two directions; it does not change, so that a way may be tried."""
+
+    @property
+    def slid(self) -> float:
+        """How far all of the contact slid on the way to here [m]; nothing if a part of it sticks."""
 
     def after(self, force: float, moved: Floats) -> tuple[TangentialHistory, Floats]:
         """Return the history at another normal force [N], and the friction force [N] (2,).

@@ -23,6 +23,7 @@ class ContactSprings:
 
     `hertz`: Hertz's stiffness [N/m^1.5]. `radius`: effective radius [m]. `stiffness`: 2 G* [Pa]. `ratio`: mu E*/G* [-]. `width`: of a
     spring [m]. `depth`: D [m]. `stretch`: displacement of each spring of one half, integrated over its width in contact [m^2] (2, N).
+    `slid`: how far the one in the middle, which sticks longest, slid on the way [m].
     """
 
     hertz: float
@@ -32,6 +33,7 @@ class ContactSprings:
     width: float
     depth: float
     stretch: Floats
+    slid: float = 0.0
 
     def after(self, force: float, moved: Floats) -> tuple[ContactSprings, Floats]:
         """Return the springs at another normal force [N], after the surfaces have moved past each other [m] (2,), and the friction [N]."""
@@ -54,7 +56,8 @@ class ContactSprings:
         most = self.ratio * np.where(covered > 0.0, self._pressed(right, depth) - self._pressed(left, depth), 0.0)
         length = np.hypot(*stretch)
         stretch = stretch * np.where(length > most, most / np.maximum(length, 1e-300), 1.0)
-        return replace(self, depth=depth, stretch=stretch), self.stiffness * stretch.sum(axis=1)
+        slid = max(float(length[0] - most[0]), 0.0) / max(float(covered[0]), 1e-300)
+        return replace(self, depth=depth, stretch=stretch, slid=slid), self.stiffness * stretch.sum(axis=1)
 
     def _pressed(self, place: Floats, depth: float) -> Floats:
         """Return the integral of D - x^2/R up to a place [m^2]."""

@@ -48,8 +48,8 @@ _SAME = 1e-6
 
 def slide_compliant(
     law: CompliantFriction, normal: NormalMotion, slip: Floats, mass: Floats, pull: Floats
-) -> tuple[Floats, Floats, Floats]:
-    """Return slip velocity [m/s], displacement [m] and friction force [N] of contacts under a law with tangential compliance, each (G, B).
+) -> tuple[Floats, Floats, Floats, Floats]:
+    """Return the sliding of contacts under a law with tangential compliance: what `Sliding` has beside the time.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ def slide_compliant(
     path = _slide_throughout(normal, hertz, slip / kappa, stiffness / mass, pull / kappa)
     least = np.where(depth_slope > 0.0, depth_slope, law.sliding_bound * depth_slope)
     sticks = np.flatnonzero((stiffness > 0.0) & (path[0] * normal.pace < least - _ROUNDING * depth_slope.max(axis=0)).any(axis=0))
-    arrays = (slip / kappa, stiffness / mass, pull / kappa)
+    arrays, microslip = (slip / kappa, stiffness / mass, pull / kappa), np.zeros(len(slip))
     turning = np.sqrt((arrays[1] * np.sqrt(depth) * normal.pace**2).max(axis=0))[sticks]
     parts = 2 ** np.ceil(np.log2(np.clip(turning / _MOST_TURNING, 1.0, _MOST_PARTS))).astype(int)
     for number in np.unique(parts).tolist():
@@ -88,9 +88,10 @@ def slide_compliant(
         if number > 1:
             pace, deep = _refined(steps, pace, number), _refined(steps, deep, number)
             steps, pace = np.repeat(steps, number), (pace[0] / number, pace[1] / number)
-        found = _integrate(law.memory(len(here)), steps, pace, deep, *(values[here] for values in arrays))
-        path[:, :, here] = found[:, ::number]
-    return path[0] * kappa, path[1] * kappa, stiffness * kappa * path[2]
+        way = _Way(law.memory(len(here)), law.sliding_energy, *(values[here] for values in arrays))
+        path[:, :, here] = _integrate(way, steps, pace, deep)[:, ::number]
+        microslip[here] = way.microslip
+    return path[0] * kappa, path[1] * kappa, stiffness * kappa * path[2], mass * kappa**2 * microslip
 
 
 Pair = tuple[Floats, Floats]
@@ -123,15 +124,14 @@ def _refined(steps: Floats, known: Pair, number: int) -> Pair:
     return fine, fine_slopes / number
 
 
-def _integrate(memory: Memory, steps: Floats, pace: Pair, depth: Pair, slip: Floats, stiffness: Floats, pull: Floats) -> Floats:
+def _integrate(way: _Way, steps: Floats, pace: Pair, depth: Pair) -> Floats:
     """Return slip velocity, displacement and integral (3, G, B), of which the first two are over kappa.
 
     `pace`, `depth`: values and slopes of dt by the parameter and of the depth (G, B); `steps`: of the parameter.
     """
-    way = _Way(memory, slip, stiffness, pull)
     deep = depth[0]
     if deep[0].any():  # the force begins with a jump
-        way.jump(np.zeros_like(slip), deep[0])
+        way.jump(np.zeros_like(deep[0]), deep[0])
     found = np.empty((3, *deep.shape))
     found[:, 0] = way.state[[1, 0, 2]]
     paces, depths = np.stack(pace, axis=1), np.stack(depth, axis=1)
@@ -141,6 +141,8 @@ def _integrate(memory: Memory, steps: Floats, pace: Pair, depth: Pair, slip: Flo
         elif not np.allclose(deep[point - 1], deep[point], rtol=_SAME, atol=0.0):
             way.jump(deep[point - 1], deep[point])
         found[:, point] = way.state[[1, 0, 2]]
+    if deep[-1].any():  # what it stores then is lost, as it slides back
+        way.jump(deep[-1], np.zeros_like(deep[-1]))
     return found
 
 
@@ -158,19 +160,22 @@ class _Ahead(NamedTuple):
 class _Way:
     """The motion of B contacts along the plate, under way.
 
-    `state`: displacement and velocity, over kappa; integral, and its derivatives by displacement and by depth (5, B).
+    `state`: displacement and velocity, over kappa; integral, and its derivatives by displacement and by depth (5, B). `microslip`: energy
+    lost while a part of the contact sticks, over the mass and the square of kappa (B,). `stored`: the law's `sliding_energy`.
     """
 
-    def __init__(self, memory: Memory, slip: Floats, stiffness: Floats, pull: Floats) -> None:
-        self.memory, self.stiffness, self.pull = memory, stiffness, pull
-        self.state = np.zeros((5, len(slip)))
+    def __init__(self, memory: Memory, stored: float, slip: Floats, stiffness: Floats, pull: Floats) -> None:
+        self.memory, self.stiffness, self.pull, self.stored = memory, stiffness, pull, stored
+        self.state, self.microslip = np.zeros((5, len(slip))), np.zeros(len(slip))
         self.state[1] = slip
 
     def jump(self, depth: Floats, depth_there: Floats) -> None:
         """Change the depth at once."""
         nothing, displacement, integral = np.zeros_like(depth), self.state[0], self.state[2]
         ends = (depth, nothing, depth_there, nothing), (displacement, nothing, displacement, nothing), (integral, nothing, nothing)
+        before, slid = self.state[:3].copy(), self.memory.slides != 0
         self.state[2:] = self.memory.advance(_ALL, Step(*(np.stack(one) for one in ends)))
+        self._lose(_ALL, before, slid, depth, depth_there)
 
     def go(self, pace: Floats, depth: Floats) -> None:
         """Take a step, from place to place with contacts that change within it; its pace and depth are changed to the last part."""
@@ -222,6 +227,7 @@ class _Way:
         """End a step with the force that acts there, and with that which acts where it so leads to."""
         step, velocity, expected = ahead
         stiffness, pull = self.stiffness[drops], self.pull[drops]
+        before, slid = self.state[:3, drops].copy(), self.memory.slides[drops] != 0
         integral, by_displacement, by_depth = self.memory.advance(drops, step)
         moved, faster = np.zeros((2, len(velocity)))
         for _ in range(_CORRECTIONS):
@@ -230,3 +236,15 @@ class _Way:
             moved, faster = np.einsum("oib,ib->ob", corrections, more)
         integral = integral + by_displacement * moved
         self.state[:, drops] = step.displacement[2] + moved, velocity + faster, integral, by_displacement, by_depth
+        self._lose(drops, before, slid, step.depth[0], step.depth[2])
+
+    def _lose(self, drops: Drops | slice, before: Floats, slid: Bools, depth: Floats, depth_there: Floats) -> None:
+        """Count what contacts took on a way on which they did not slide throughout, less what they store then.
+
+        `before`: displacement, velocity and integral at its start (3, b); `slid`: do they slide there?
+        """
+        start, velocity, integral = before
+        displacement, velocity_there, integral_there = self.state[:3, drops]
+        taken = 0.5 * (velocity - velocity_there) * (velocity + velocity_there) + self.pull[drops] * (displacement - start)
+        stored = self.stored * self.stiffness[drops] * (np.abs(integral_there) * depth_there - np.abs(integral) * depth)
+        self.microslip[drops] += np.where(slid & (self.memory.slides[drops] != 0), stored, taken)

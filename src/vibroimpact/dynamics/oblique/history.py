@@ -9,8 +9,8 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.columns import OBLIQUE_HISTORY_COLUMNS
 from vibroimpact.dynamics.leg import Leg
-from vibroimpact.dynamics.oblique.rolling import slide_and_roll
-from vibroimpact.dynamics.oblique.state import Sphere, State, energy_taken
+from vibroimpact.dynamics.oblique.rolling import LyingSpheres
+from vibroimpact.dynamics.oblique.state import State, energy_taken
 from vibroimpact.dynamics.oblique.statement import Oblique
 from vibroimpact.dynamics.problem import Problem
 
@@ -79,11 +79,11 @@ def _lying(problem: Problem, leg: Leg, moving: Moving, elapsed: Floats) -> Movin
     """Return the motion of a sphere that lies on the plate for some times [s]; `moving`: when it came to lie, the same for all of them."""
     assert leg.oblique is not None
     assert problem.oblique is not None
-    (sphere, _), (start, _, taken) = leg.oblique, moving
-    ones = np.ones(len(elapsed))
-    many = Sphere(sphere.mass * ones, sphere.radius * ones, sphere.inertia * ones, sphere.gravity * ones)
-    state, friction = slide_and_roll(many, start, problem.oblique.friction, float(problem.gravity) * ones, elapsed)
-    return state, friction, taken + energy_taken(many, start, state)
+    (sphere, _), (states, _, taken), same = leg.oblique, moving, np.zeros(len(elapsed), dtype=np.intp)
+    start, pressing = states.take(same[:1]), np.array([float(problem.gravity)])
+    lying = LyingSpheres(sphere, start, problem.oblique.friction, pressing, elapsed.max(keepdims=True))
+    state, friction = lying.at(same, elapsed)
+    return state, friction, taken + energy_taken(sphere, start, state)
 
 
 def _columns(oblique: Oblique, leg: Leg, state: State, friction: Floats, taken: Floats) -> dict[str, Floats]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,10 +13,11 @@ from vibroimpact.contact.friction.law import FrictionLaw, ImpulsiveFriction
 from vibroimpact.dynamics.columns import OBLIQUE_IMPACT_COLUMNS
 from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.oblique.normal_motion import NormalMotion
-from vibroimpact.dynamics.oblique.rolling import ACROSS, edge_time, slide_and_roll
+from vibroimpact.dynamics.oblique.rolling import ACROSS, LyingSpheres
 from vibroimpact.dynamics.oblique.sliding import slide
 from vibroimpact.dynamics.oblique.state import ObliqueContact, ObliqueContacts, Sphere, State, energy_taken
 from vibroimpact.dynamics.oblique.statement import Oblique
+from vibroimpact.dynamics.shaken.statement import PlateMotion
 
 OBLIQUE_STEPS = 16
 """Steps for each phase of a contact: the slip velocity at its end is then within 1e-4 of that at first touch."""
@@ -30,16 +32,19 @@ class ObliqueMotion:
         What the drops have at the start.
     mass, radius : array, shape (B,)
         Of the spheres [kg], [m].
+    motion : PlateMotion or None
+        Of the plate.
     """
 
-    def __init__(self, oblique: Oblique, mass: Floats, radius: Floats) -> None:
+    def __init__(self, oblique: Oblique, mass: Floats, radius: Floats, motion: PlateMotion | None) -> None:
         def spread(values: Any) -> Floats:
             return np.array([np.broadcast_to(np.asarray(value, dtype=float), mass.shape) for value in values])
 
         self.sphere = Sphere(mass, radius, mass * radius**2 * oblique.inertia_ratio, spread(oblique.gravity))
         self.state = State(spread(oblique.position), spread(oblique.velocity), spread(oblique.spin))
         self.start, self.half = self.state.position, None if oblique.size is None else 0.5 * np.array(oblique.size)[:, None]
-        self.law, self.lost = oblique.friction, np.zeros(len(mass))
+        self.law, self.lost, self.microslip = oblique.friction, np.zeros(len(mass)), np.zeros(len(mass))
+        self.motion = motion
 
     def fly(self, drops: Drops, flight: Flight, time: Floats) -> None:
         """Advance drops through their flights up to a time [s]."""
@@ -63,9 +68,10 @@ class ObliqueMotion:
         """
         sphere, before = self.sphere.take(drops), self.state.take(drops)
         law = None if self.law is None else self.law.take(drops)
+        lying = LyingSpheres(sphere, before, law, pressing, elapsed)
         if self.half is not None:
-            elapsed = edge_time(sphere, before, law, pressing, elapsed, self.half)
-        after, _ = slide_and_roll(sphere, before, law, pressing, elapsed)
+            elapsed = lying.edge_time(self.half)
+        after, _ = lying.at(np.arange(len(drops)), elapsed)
         self.lost[drops] += energy_taken(sphere, before, after)
         self._put(drops, after)
         return elapsed
@@ -73,13 +79,18 @@ class ObliqueMotion:
     def distance(self, drops: Drops, flight: Flight, time: Floats) -> Floats:
         """Return how far drops move along the plate in their flights up to a time [m]."""
         with np.errstate(invalid="ignore"):
-            moved = self._flown(drops, flight, time).position - self.state.take(drops).position
+            moved = self._over_plate(drops, flight, time) - self._over_plate(drops, flight, flight.start)
         return np.asarray(np.nan_to_num(np.hypot(*moved)))
+
+    def _over_plate(self, drops: Drops, flight: Flight, time: Floats) -> Floats:
+        """Return the places of drops at times of their flights [s], seen from the plate [m] (2, b)."""
+        place = self._flown(drops, flight, time).position
+        return place if self.motion is None else place - np.outer(self.motion.direction[:2], self.motion.at(time)[0])
 
     def place_on_plate(self, drops: Drops, flight: Flight, time: Floats) -> Floats:
         """Return the places of drops at times of their flights [s], or the nearest ones on the plate [m] (2, b)."""
         with np.errstate(invalid="ignore"):
-            place = np.nan_to_num(self._flown(drops, flight, time).position)
+            place = np.nan_to_num(self._over_plate(drops, flight, time))
         return place if self.half is None else np.clip(place, -self.half, self.half)
 
     def beside(self, drops: Drops, flight: Flight, time: Floats) -> Bools:
@@ -87,7 +98,7 @@ class ObliqueMotion:
         if self.half is None:
             return np.zeros(len(drops), dtype=bool)
         with np.errstate(invalid="ignore"):
-            place = self._flown(drops, flight, time).position
+            place = self._over_plate(drops, flight, time)
         return np.asarray(np.isfinite(time) & (np.abs(place) > self.half).any(axis=0))
 
     def collide(self, drops: Drops, motions: Sequence[tuple[Drops, NormalMotion]], row: dict[str, Floats]) -> ObliqueContacts:
@@ -106,12 +117,17 @@ class ObliqueMotion:
         rubbed = sphere.tangential_mass * np.abs(sliding.slip[-1] - slip - pull * normal.time[-1])
         contact = contact.changed(_across(sphere, contact))
         contact = contact.changed(_rolling(law, sphere, contact.end, normal.impulse[-1], rubbed))
-        self.finish(drops, contact.end, energy_taken(sphere, before, contact.end), row)
+        self.finish(drops, contact.end, energy_taken(sphere, before, contact.end), sliding.microslip, row)
         return contact
 
-    def collide_at_once(self, drops: Drops, impulse: Floats, row: dict[str, Floats]) -> None:
-        """Let a normal impulse without duration act on drops [N s], and write its columns."""
-        sphere, before = self.sphere.take(drops), self.state.take(drops)
+    def collide_at_once(self, drops: Drops, time: Floats, impulse: Floats, row: dict[str, Floats]) -> Floats:
+        """Let a normal impulse without duration act on drops at some times [N s], [s]; write its columns, and return the plate's work [J].
+
+        That is the work of friction on the spheres, as the plate moves along itself.
+        """
+        sphere, start = self.sphere.take(drops), self.state.take(drops)
+        surface = 0.0 if self.motion is None else np.outer(self.motion.direction[:2], self.motion.at(time)[1])
+        before = replace(start, velocity=start.velocity - surface)  # seen from the plate
         direction, slip, _ = _along(sphere, before)
         left = slip
         if isinstance(self.law, ImpulsiveFriction):
@@ -120,19 +136,25 @@ class ObliqueMotion:
         law, rubbed = None if self.law is None else self.law.take(drops), sphere.tangential_mass * np.abs(left - slip)
         change = _rolling(law, sphere, after, impulse, rubbed)
         after = after if change is None else after.changed(change)
-        self.finish(drops, after, energy_taken(sphere, before, after), row)
+        lost, after = energy_taken(sphere, before, after), replace(after, velocity=after.velocity + surface)
+        self.finish(drops, after, lost, np.zeros(len(drops)), row)
+        return lost - energy_taken(sphere, start, after)
 
-    def finish(self, drops: Drops, after: State, lost: Floats, row: dict[str, Floats]) -> None:
-        """Put drops into their states after a contact in which friction took an energy [J], and write its columns."""
+    def finish(self, drops: Drops, after: State, lost: Floats, microslip: Floats, row: dict[str, Floats]) -> None:
+        """Put drops into their states after a contact in which friction took an energy [J], and write its columns.
+
+        `microslip`: the part of it that was lost while a part of the contact stuck [J].
+        """
         before = self.state.take(drops)
         self.lost[drops] += lost
+        self.microslip[drops] += microslip
         values = [*before.position, *before.velocity, *after.velocity, *before.spin, *after.spin]
         speed = np.hypot(*before.velocity)
         with np.errstate(divide="ignore", invalid="ignore"):
             onward = np.where(speed > 0.0, (before.velocity * after.velocity).sum(axis=0) / speed, np.hypot(*after.velocity))
             ratio = np.where(speed > 0.0, onward / speed, np.nan)
         angle = np.degrees(np.arctan2(onward, row["separation_speed_m_s"][drops]))
-        for name, value in zip(OBLIQUE_IMPACT_COLUMNS, [*values, ratio, angle, lost], strict=True):
+        for name, value in zip(OBLIQUE_IMPACT_COLUMNS, [*values, ratio, angle, lost, microslip, lost - microslip], strict=True):
             row[name][drops] = value
         self._put(drops, after)
 
@@ -146,6 +168,10 @@ class ObliqueMotion:
         """Return the kinetic energies along the plate and of rotation, and the potential energy along the plate, zero at the start [J]."""
         fallen = (self.sphere.gravity * (self.state.position - self.start)).sum(axis=0)
         return *self.sphere.kinetic(self.state), -self.sphere.mass * fallen
+
+    def friction_parts(self) -> dict[str, Floats]:
+        """Return the two parts of the energy that friction took so far [J]; see `FRICTION_PARTS`."""
+        return {"microslip_J": self.microslip, "gross_slip_J": self.lost - self.microslip}
 
 
 def _along(sphere: Sphere, state: State) -> tuple[Floats, Floats, Floats]:

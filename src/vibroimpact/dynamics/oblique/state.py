@@ -15,13 +15,14 @@ class Sliding:
     """Motion of the contact points of B contacts along one direction, at G points of time; arrays are (G, B).
 
     `time`: since first touch [s]. `slip`: velocity of the contact point [m/s]. `displacement`: since first touch [m]. `force`: of
-    friction, against the direction [N].
+    friction, against the direction [N]. `microslip`: energy lost while a part of the contact sticks [J] (B,).
     """
 
     time: Floats
     slip: Floats
     displacement: Floats
     force: Floats
+    microslip: Floats
 
 
 @dataclass(frozen=True)
@@ -102,7 +103,7 @@ def energy_taken(sphere: Sphere, before: State, after: State) -> Floats:
     return np.asarray(sum(sphere.kinetic(before)) + work - sum(sphere.kinetic(after)))
 
 
-def state_after(sphere: Sphere, before: State, time: Floats, velocity: Floats, displacement: Floats, twist: Floats) -> State:
+def state_after(sphere: Sphere, before: State, time: Floats, moved: tuple[Floats, Floats], turned: tuple[Floats, Floats]) -> State:
     """Return the states a time after first touch [s], from the motion of the contact points of the spheres.
 
     Parameters
@@ -113,21 +114,17 @@ def state_after(sphere: Sphere, before: State, time: Floats, velocity: Floats, d
         Their states at first touch.
     time : array, shape (B,)
         Times since then [s].
-    velocity, displacement : array, shape (2, B)
+    moved : tuple of two arrays, shape (2, B)
         Velocities of the contact points [m/s], and their displacements since then [m].
-    twist : array, shape (B,)
-        Changes of the spin about the normal [rad/s].
+    turned : tuple of two arrays, shapes (3, B) and (2, B)
+        What moments made of the spins about -y, x and z [rad/s], and of the displacements [m].
     """
-    slip, mass = sphere.slip(before), sphere.tangential_mass
-    impulse = mass * (velocity - slip - sphere.gravity * time)
-    moved = mass * (displacement - (slip + 0.5 * sphere.gravity * time) * time)
-    pushed = sphere.pushed(sphere.fly(before, time), impulse, twist)
-    return State(pushed.position + moved / sphere.mass, pushed.velocity, pushed.spin)
-
-
-def spin_energy(sphere: Sphere, before: State, twist: Floats) -> Floats:
-    """Return the energy that a change of the spin about the normal takes [J]."""
-    return np.asarray(-0.5 * sphere.inertia * twist * (2.0 * before.spin[2] + twist))
+    (velocity, displacement), (spin, way), slip, mass = moved, turned, sphere.slip(before), sphere.tangential_mass
+    change = sphere.radius * spin[:2]
+    impulse = mass * (velocity - slip - sphere.gravity * time - change)
+    shift = mass * (displacement - (slip + 0.5 * sphere.gravity * time) * time - way)
+    pushed = sphere.turned(sphere.pushed(sphere.fly(before, time), impulse), change, spin[2])
+    return State(pushed.position + shift / sphere.mass, pushed.velocity, pushed.spin)
 
 
 @dataclass(frozen=True)
@@ -149,7 +146,7 @@ class ObliqueContact:
     def of(self, drop: int) -> ObliqueContact:
         """Return the motion of one drop."""
         here, sliding = np.array([drop]), self.sliding
-        alone = Sliding(*(values[:, here] for values in (sliding.time, sliding.slip, sliding.displacement, sliding.force)))
+        alone = Sliding(*(values[..., here] for values in vars(sliding).values()))
         return ObliqueContact(
             self.sphere.take(here),
             self.before.take(here),

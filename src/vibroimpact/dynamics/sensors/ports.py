@@ -23,7 +23,7 @@ class Ports:
 
     `shapes`: displacement in each coordinate of the plate against the force at each port (ports, n) [kg^-1/2]. `residuals`: residual
     compliances between each and the sensors, by their names (3,) [m/N]. `first`: the port of the normal force for each system of a run, by
-    its identity; those of friction along x and y follow it.
+    its identity; those of friction, and of its moments, follow it.
     """
 
     shapes: Floats

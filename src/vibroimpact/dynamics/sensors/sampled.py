@@ -284,7 +284,8 @@ def _in_contact(chain: MeasuringChain, ports: Ports, stretch: VibratingStretch, 
     port = ports.of(stretch.system)
     moved -= chain.direct[port] @ force_derivatives(stretch, times)
     if stretch.rubbed is not None:  # there is no residual compliance to friction: its derivatives do not count
-        moved -= np.einsum("ps,pt->st", chain.direct[port + 1 : port + 3, :, 0], stretch.rubbed.at(times)[2])
+        forces = stretch.rubbed.at(times)[2]
+        moved -= np.einsum("ps,pt->st", chain.direct[port + 1 : port + 1 + len(forces), :, 0], forces)
     return np.asarray(moved)
 
 

@@ -63,7 +63,9 @@ class ShakenBodies(RigidBodies):
 
     def _state(self, system: LinearSystem, time: float, gap: float, velocity: float) -> State:
         """Return the state of a drop at a time [s]."""
-        phasors = self.problem.surface_phasors * np.exp(1j * system.angular_frequency[1:] * time) / system.shape[0, 1:]
+        phasors = self.problem.surface_phasors * np.exp(1j * system.angular_frequency[1:] * time)
+        if self.problem.surface_phasors.any():  # it may move along itself alone
+            phasors = phasors / system.shape[0, 1:]
         root = float(system.mass[0]) ** 0.5
         return State(
             np.append(-root * gap, phasors.imag), np.append(-root * velocity, system.angular_frequency[1:] * phasors.real), np.zeros(0)

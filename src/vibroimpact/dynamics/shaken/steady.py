@@ -39,6 +39,16 @@ def steady_phasors(motion: PlateMotion, modes: ModalBasis | None, shapes: Floats
     return np.asarray(supports + (modes.contact if shapes is None else shapes) @ steady_modes(motion, modes))
 
 
+def steady_surface(motion: PlateMotion, modes: ModalBasis) -> Complex:
+    """Return the phasors of the steady motion of the contact point along x, y and the normal [m] (3, k), as `PlateMotion.at` takes them.
+
+    The modes must tell how they move it along the plate.
+    """
+    assert modes.along is not None
+    shapes = np.column_stack([modes.along, modes.contact])
+    return np.asarray(np.outer(motion.direction, motion.phasors) + shapes.T @ steady_modes(motion, modes))
+
+
 def steady_modes(motion: PlateMotion, modes: ModalBasis) -> Complex:
     """Return the phasors of the modes in the steady motion, relative to the supports [kg^1/2 m] (modes, k)."""
     along = modes.participation @ np.array(motion.direction)

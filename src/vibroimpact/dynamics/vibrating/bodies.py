@@ -20,9 +20,12 @@ from vibroimpact.dynamics.leg import Leg
 from vibroimpact.dynamics.lockstep import Coroutine, run_in_lockstep
 from vibroimpact.dynamics.oblique.motion import ObliqueMotion
 from vibroimpact.dynamics.oblique.state import ObliqueContacts
+from vibroimpact.dynamics.oblique.statement import Oblique
 from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.shaken.steady import steady_surface
 from vibroimpact.dynamics.vibrating.air_motion import AirMotion
 from vibroimpact.dynamics.vibrating.carried_motion import carry
+from vibroimpact.dynamics.vibrating.carried_oscillations import carry_oscillating, steady_response
 from vibroimpact.dynamics.vibrating.contact_equilibrium import ContactEquilibrium
 from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.vibrating.next_touch import next_touch
@@ -56,22 +59,23 @@ def system_of(problem: Problem, mass: float, gravity: float) -> LinearSystem:
     parts = [(np.zeros(1), np.zeros(1), np.array([mass**-0.5]))]
     of_bodies = ((problem.plate.rigid, 1.0), (problem.sphere.modes, -1.0), (problem.plate.modes, 1.0))
     parts += [(basis.angular_frequencies, basis.damping_ratios, sign * basis.contact) for basis, sign in of_bodies if basis]
-    driven = problem.motion.angular_frequency if problem.motion is not None and problem.shaken else np.zeros(0)
-    moves, _ = driven_motion_of(problem)
-    parts += [(driven, np.zeros_like(driven), np.full_like(driven, _IMMOVABLE * mass**-0.5 * moves[2]))]
+    driven, _, moved = driven_motion_of(problem)
+    parts += [(driven, np.zeros_like(driven), _IMMOVABLE * mass**-0.5 * moved[2])]
     frequency, damping, shape = (np.concatenate(part) for part in zip(*parts, strict=True))
     of_rigid, of_sphere, of_plate = slices_of(problem)
     load, inside, ground = np.zeros(len(shape)), np.zeros(len(shape), dtype=bool), np.zeros(len(shape), dtype=bool)
     load[0], inside[of_sphere], ground[of_rigid], ground[of_plate] = gravity * mass**0.5, problem.sphere_inside, True, True
     ground[of_plate.stop :] = True
     along = None
-    if problem.oblique is not None:
-        along = np.zeros((2, len(shape)))
+    if problem.oblique is not None and problem.oblique.friction is not None:
+        along = np.zeros((5 if _moments_act(problem.oblique) else 2, len(shape)))
         for basis, where in ((problem.plate.rigid, of_rigid), (problem.plate.modes, of_plate)):
             if basis is not None:
                 assert basis.along is not None  # the problem has seen to it
-                along[:, where] = basis.along.T
-        along[:, of_plate.stop :] = _IMMOVABLE * mass**-0.5 * moves[:2, None]
+                along[:2, where] = basis.along.T
+                if basis.turning is not None:
+                    along[2:, where] = (basis.turning[:, [1, 0, 2]] * [-1.0, 1.0, 1.0]).T[: len(along) - 2]
+        along[:2, of_plate.stop :] = _IMMOVABLE * mass**-0.5 * moved[:2]
     local = [problem.local_element] if problem.local_element else []
     rate = np.array([stiffness / damping for stiffness, damping in local])
     mobility = np.array([1.0 / damping for _, damping in local])
@@ -83,18 +87,38 @@ def system_of(problem: Problem, mass: float, gravity: float) -> LinearSystem:
     )
 
 
+def _moments_act(oblique: Oblique) -> bool:
+    """Return whether rolling resistance or twisting friction acts on some of the drops."""
+    return oblique.friction is not None and bool(np.any(oblique.friction.rolling_coefficient) or np.any(oblique.spin[2]))
+
+
 _IMMOVABLE = 1e-10
 """Shape of a driven coordinate over that of the sphere [-]: of a mass 1e20 times that of the sphere, which no contact disturbs."""
 
 
-def driven_motion_of(problem: Problem) -> tuple[Floats, Complex]:
-    """Return the direction in which what drives a plate moves its surface (3,), and the phasors of that motion [m] (k,).
+def driven_motion_of(problem: Problem) -> tuple[Floats, Complex, Floats]:
+    """Return the harmonic motions that what drives a plate consists of, and what each adds to that of its surface at the contact point.
 
-    A rigid plate moves with its supports; of an elastic one only the motion along the normal is followed.
+    Returns
+    -------
+    angular_frequency : array, shape (d,)
+        [rad/s].
+    phasors : array of complex, shape (d,)
+        Of the motions, times their shapes in metres.
+    shape : array, shape (3, d)
+        Displacement of the surface along x, y and the normal by each. A rigid plate moves with its supports; an elastic one along its
+        normal, and in all directions, out of phase, where it is hit obliquely: by sine and cosine of each frequency.
     """
-    if problem.motion is None or problem.plate.modes is not None:
-        return np.array([0.0, 0.0, 1.0]), problem.surface_phasors
-    return np.array(problem.motion.direction), problem.motion.phasors
+    motion, modes = problem.motion, problem.plate.modes
+    if motion is None or not problem.shaken:
+        return np.zeros(0), np.zeros(0, dtype=complex), np.zeros((3, 0))
+    omega, ones = motion.angular_frequency, np.ones(len(motion.phasors))
+    if modes is None:
+        return omega, motion.phasors, np.outer(motion.direction, ones)
+    if problem.oblique is None:
+        return omega, problem.surface_phasors, np.outer([0.0, 0.0, 1.0], ones)
+    surface = steady_surface(motion, modes)
+    return np.tile(omega, 2), np.concatenate([ones, 1j * ones]), np.concatenate([surface.real, surface.imag], axis=1)
 
 
 def slices_of(problem: Problem) -> tuple[slice, slice, slice]:
@@ -144,6 +168,7 @@ class VibratingBodies:
                 phasors.imag,
                 self.system.angular_frequency[-driven:] * phasors.real,
             )
+        self.places = [problem] * size
         self.local = np.zeros((size, len(self.system.rate)))
         self.lost = np.zeros((size, self.system.number + 1))
         self.lying: list[RestMotion | None] = [None] * size
@@ -170,7 +195,10 @@ class VibratingBodies:
         motions, elapsed = tuple(motion for motion, _ in found), np.array([time for _, time in found])
         touch = flight.start + elapsed
         when = np.where(np.isfinite(elapsed), touch, flight.start)
-        return touch, -self._rigid_speed(drops, flight.at(when)[1] - self.problem.surface(when)[1]), motions
+        surface = self.problem.surface(when)[1]
+        if self.problem.at_place is not None:
+            surface = np.array([self.places[drop].surface(time)[1] for drop, time in zip(drops, when, strict=True)])
+        return touch, -self._rigid_speed(drops, flight.at(when)[1] - surface), motions
 
     def _free(self, drop: int, flight: Flight) -> FreeMotion:
         """Return the free motion of a drop whose sphere is on a flight."""
@@ -200,8 +228,11 @@ class VibratingBodies:
     def move_to(self, drop: int, place: tuple[float, float]) -> None:
         """Let the contact of a drop be at another place on the plate [m]."""
         assert self.problem.at_place is not None
-        there = self.problem.at_place(place)
-        self.systems[drop], self.series[drop] = system_of(there, float(self.mass[drop]), float(self.gravity[drop])), there.quasi_static
+        self.places[drop] = there = self.problem.at_place(place)
+        mass, gravity = float(self.mass[drop]), float(self.gravity[drop])
+        # what drives the plate has its coordinates in common
+        found = system_of(there, float(self.mass[0]), float(self.gravity[0])).with_sphere(mass**-0.5, gravity * mass**0.5)
+        self.systems[drop], self.series[drop] = found, there.quasi_static
 
     def pass_flight(self, drops: Drops, motions: Motions, elapsed: Floats) -> None:
         """Advance the coordinates of drops by free motion."""
@@ -245,10 +276,18 @@ class VibratingBodies:
             row["energy_to_vibration_J"][drop] = after - before + found.lost[: system.number - system.driven].sum()
             if self.problem.motion is not None:
                 row["plate_work_J"][drop] = -found.lost[system.number - system.driven : -1].sum()
+            if self.problem.motion is not None and self.problem.at_place is not None:
+                row["plate_velocity_m_s"][drop] = system.driven_motion(start)[1]
             self.lost[drop, :-1] += found.lost[:-1]
             self.place(drop, found.state)
             if found.outcome == CAPTURED and system.driven:
-                self.lying[drop] = carry(ContactEquilibrium(system, found.local), found.state, found.stored)
+                equilibrium = ContactEquilibrium(system, found.local)
+                response = steady_response(equilibrium)
+                self.lying[drop] = (
+                    carry(equilibrium, found.state, found.stored)
+                    if response is None
+                    else carry_oscillating(response, found.state, found.stored)
+                )
             elif found.outcome in (CAPTURED, SETTLED, RIDING) and not system.driven:
                 equilibrium = ContactEquilibrium(system, found.local)
                 self.left[drop] = equilibrium.excess(found.state, found.stored)
@@ -265,8 +304,7 @@ class VibratingBodies:
             return None
         sphere, before = self.oblique.now(np.array([drop]))
         largest = float(encounter.law.forces(encounter.depth, np.zeros(1), encounter.approach_speed)[0][0])
-        along = (float(sphere.tangential_mass[0]), sphere.gravity[:, 0], sphere.slip(before)[:, 0])
-        return rubbing_at_touch(law, largest, *along)
+        return rubbing_at_touch(law, largest, sphere, before)
 
     def slide(self, oblique: ObliqueMotion, leg: Leg, row: dict[str, Floats]) -> ObliqueContacts:
         """Advance drops along the plate as their visits have it."""

@@ -27,7 +27,7 @@ from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State
 from vibroimpact.dynamics.vibrating.local import LocalContact
 from vibroimpact.dynamics.vibrating.oscillators import Oscillators
 
-_MARGIN = 0.5
+REST_MARGIN = 0.5
 """Largest variation of the force at rest, relative to the weight. So near to the weight the spring of a contact is nearly linear (that of
 Hertz's law keeps 0.79 to 1.14 of its stiffness), with a reserve for the coupling of modes by damping.
 """
@@ -72,10 +72,10 @@ def near_equilibrium(system: LinearSystem, state: State, force: float, indentati
     frequency than that from the trace of the flexibility, on a contact with about the stiffness of force over indentation.
     """
     weight, mass = weight_on(system), float(system.mass[0])
-    most = _MARGIN * weight
+    most = REST_MARGIN * weight
     if not weight or abs(force - weight) > most:
         return False
-    on_springs = mass * (abs(indentation) / weight / _MARGIN + float(system.compliance[0]))
+    on_springs = mass * (abs(indentation) / weight / REST_MARGIN + float(system.compliance[0]))
     slowest = float((on_springs + system.flexibility.sum()) ** -0.5)
     return mass * abs(float(system.rigid_motion(state)[1][0])) * slowest < most
 
@@ -89,13 +89,13 @@ def rides_for_good(equilibrium: ContactEquilibrium, state: State, force: float) 
     """
     system = equilibrium.system
     if system.number > 1 + system.driven or system.rate.size or system.along is not None:
-        return False  # other coordinates oscillate too, or it moves along the plate
+        return False  # other coordinates oscillate too (`carried_oscillations`), or it moves along the plate
     driven, mass = slice(1, None), float(system.mass[0])
     speeds = np.hypot(state.velocity[driven], system.angular_frequency[driven] * state.displacement[driven])
     greatest = float((np.abs(system.shape[0, driven]) * system.angular_frequency[driven]) @ speeds)
     carried = equilibrium.weight + mass * float(system.driven_motion(state)[2])
     left = abs(force - carried) + np.sqrt(equilibrium.contact[0] * mass) * abs(float(system.rates(state)[0]))
-    return bool(left < _MARGIN * (equilibrium.weight - mass * greatest))
+    return bool(left < REST_MARGIN * (equilibrium.weight - mass * greatest))
 
 
 @dataclass(frozen=True, eq=False)
@@ -195,7 +195,7 @@ class ContactEquilibrium:
 
     def cannot_separate(self, state: State) -> bool:
         """Whether the bound of the force excludes that the sphere separates."""
-        return self.force_bound(state) < _MARGIN * self.weight
+        return self.force_bound(state) < REST_MARGIN * self.weight
 
     def excess(self, state: State, stored: float) -> float:
         """Return the energy of sphere, oscillators and contact, which stores `stored` [J], above their equilibrium [J]."""

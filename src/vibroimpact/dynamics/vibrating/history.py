@@ -89,6 +89,8 @@ def _further_columns(problem: Problem, segment: VibratingSegment, time: Floats, 
     }
     if problem.motion is not None:
         found |= _shaken_columns(problem, problem.motion, segment.start + time, found, lost[:, -1 - system.driven : -1])
+        if problem.at_place is not None:  # the contact is where the sphere falls
+            found["surface_m"], found["surface_velocity_m_s"], _ = system.driven_motion(state)
     return found
 
 

@@ -69,8 +69,9 @@ class LinearSystem(Oscillators):
         Of the massless elements: stiffness over damping [1/s], and one over damping [m/(N s)].
     local_contact : array of int, shape (k,)
         The contact that each massless element is in series with.
-    along : array, shape (2, n), optional
-        Displacement of the surface below along x and y at the only contact, by each coordinate [kg^-1/2]; where there is friction.
+    along : array, shape (2, n) or (5, n), optional
+        Displacement of the surface below along x and y at the only contact, by each coordinate [kg^-1/2], where there is friction; where
+        moments act, also its rotations about -y, x and z [kg^-1/2 m^-1].
     residuals : mapping of str to array, shape (3,)
         Residual compliances between the only contact and the sensors, by their names [m/N].
     driven : int, default 0
@@ -108,10 +109,10 @@ class LinearSystem(Oscillators):
 
     @cached_property
     def rubbed(self) -> LinearSystem:
-        """The same system with two further contacts, at which friction acts, in the direction of x and of y."""
+        """The same system with a further contact for each direction in which friction acts, and about which its moments do."""
         assert self.along is not None
-        apart = np.concatenate([self.offset, np.zeros(2)])
-        shapes, below = np.concatenate([self.shape, -self.along]), np.repeat(self.below, 3, axis=0)
+        apart = np.concatenate([self.offset, np.zeros(len(self.along))])
+        shapes, below = np.concatenate([self.shape, -self.along]), np.repeat(self.below, 1 + len(self.along), axis=0)
         return replace(self, shape=shapes, offset=apart, below=below, along=None)
 
     @cached_property

@@ -10,7 +10,7 @@ import numpy as np
 from vibroimpact.arrays import Drops, Floats
 from vibroimpact.dynamics.contact import Contact
 from vibroimpact.dynamics.oblique.motion import ObliqueMotion
-from vibroimpact.dynamics.oblique.state import ObliqueContacts, Sphere, State, spin_energy, state_after
+from vibroimpact.dynamics.oblique.state import ObliqueContacts, Sphere, State, state_after
 from vibroimpact.dynamics.vibrating.rubbing import RubbedStretch
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 
@@ -20,14 +20,13 @@ class RubbedContact:
     """The motion along the plate during the visit of one drop; see `ObliqueContact`.
 
     `sphere`, `before`: the sphere, and its state at first touch. `duration`: of the visit [s] (1,). `parts`: starts of its stretches under
-    friction since first touch [s], and these. `twist`: change of the spin about the normal [rad/s] (1,).
+    friction since first touch [s], and these.
     """
 
     sphere: Sphere
     before: State
     duration: Floats
     parts: Sequence[tuple[float, RubbedStretch]]
-    twist: Floats
 
     def of(self, drop: int) -> RubbedContact:
         """Return itself: it belongs to one drop."""
@@ -39,23 +38,26 @@ class RubbedContact:
         slip = sphere.slip(before)
         velocity, displacement = slip + sphere.gravity * now, (slip + 0.5 * sphere.gravity * now) * now
         force, taken = np.zeros((2, len(now))), np.zeros(len(now))
+        turned, turned_way = np.zeros((3, len(now))), np.zeros((2, len(now)))
         for start, stretch in self.parts:  # what follows a stretch flies on from its end until the next one
             within, later = (now >= start) & (now <= start + stretch.length), now > start + stretch.length
             if within.any():
-                velocity[:, within], displacement[:, within], force[:, within], taken[within] = stretch.at(now[within] - start)
+                velocity[:, within], displacement[:, within], forces, taken[within] = stretch.at(now[within] - start)
+                force[:, within] = forces[:2]
+                turned[:, within], turned_way[:, within] = stretch.turned(now[within] - start)
             if later.any():
                 end, rest = stretch.end, now[later] - start - stretch.length
                 velocity[:, later] = end.velocity[:, None] + end.pull[:, None] * rest
                 displacement[:, later] = end.displacement[:, None] + (end.velocity[:, None] + 0.5 * end.pull[:, None] * rest) * rest
-                force[:, later], taken[later] = 0.0, end.work
-        twist = self.twist * now / self.duration
-        return state_after(sphere, before, now, velocity, displacement, twist), -force, taken + spin_energy(sphere, before, twist)
+                force[:, later], taken[later], turned[:, later] = 0.0, end.work, end.turned[:, None]
+                turned_way[:, later] = end.turned_way[:, None] + end.radius * end.turned[:2, None] * rest
+        return state_after(sphere, before, now, (velocity, displacement), (turned, turned_way)), -force, taken
 
     @property
-    def end(self) -> tuple[State, Floats]:
-        """The state at the end of the visit, and the energy that friction took in it [J] (1,)."""
+    def end(self) -> tuple[State, Floats, Floats]:
+        """The state at the end of the visit, the energy that friction took in it, and the part of that in microslip [J] (1,)."""
         state, _, taken = self.at(self.duration)
-        return state, taken
+        return state, taken, np.array([self.parts[-1][1].end.microslip if self.parts else 0.0])
 
 
 def rubbed_contacts(oblique: ObliqueMotion, drops: Drops, contact: Contact, row: dict[str, Floats]) -> ObliqueContacts:
@@ -68,8 +70,7 @@ def rubbed_contacts(oblique: ObliqueMotion, drops: Drops, contact: Contact, row:
     for place, stretches in enumerate(parts):
         here, one = np.array([place]), drops[place : place + 1]
         sphere, before = oblique.now(one)
-        twist = sphere.twist(before, np.array([stretches[-1][1].end.twisting if stretches else 0.0]))
-        along = RubbedContact(sphere, before, contact.duration[here], stretches, twist)
+        along = RubbedContact(sphere, before, contact.duration[here], stretches)
         oblique.finish(one, *along.end, row)
         found.append((here, along))
     return tuple(found)

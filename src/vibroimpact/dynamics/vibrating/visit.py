@@ -18,6 +18,7 @@ from vibroimpact.contact.quasi_static import QuasiStatic
 from vibroimpact.dynamics.contact import CAPTURED, FAILED, RELEASED, RIDING, SETTLED
 from vibroimpact.dynamics.lockstep import Coroutine
 from vibroimpact.dynamics.vibrating.active_contact import ContactDefinition, closing_speed, locate_highest_peak, motion_speed
+from vibroimpact.dynamics.vibrating.carried_oscillations import SteadyResponse, steady_response
 from vibroimpact.dynamics.vibrating.contact_equilibrium import (
     ContactEquilibrium,
     least_energy,
@@ -118,6 +119,7 @@ class _VisitMarch:
         self.stretches, self.most_stretches = 0, MOST_STEPS if np.isinf(until) else MOST_STEPS_TO_A_TIME
         self.separation_time, self.stored = 0.0, 0.0
         self.equilibrium: ContactEquilibrium | None = None
+        self.response: SteadyResponse | None = None
         self.active = march.begin_contact(0)
 
     # one contact after another ----------------------------------------------------------------------
@@ -209,8 +211,11 @@ class _VisitMarch:
             return False
         if self.equilibrium is None or self.equilibrium.local.law is not local.law:
             self.equilibrium = ContactEquilibrium(self.system, local)
+            self.response = steady_response(self.equilibrium)
         if driven:
-            return rides_for_good(self.equilibrium, self.march.state, force)
+            if rides_for_good(self.equilibrium, self.march.state, force):
+                return True
+            return self.response is not None and self.response.carries_for_good(self.march.state, force)
         return self.equilibrium.linear and self.equilibrium.cannot_separate(self.march.state)
 
     @property

@@ -39,6 +39,7 @@ class Mindlin(CompliantFriction):
     equation = "Q = 2 G* a xi, at most mu F"
     source = "Mindlin 1949, J. Appl. Mech. 16:259; LAMMPS, granular: mindlin"
     sliding_bound = 2.0 / 3.0
+    sliding_energy = 4.0 / 15.0
 
     rescales: ClassVar[bool] = False
     """Does the displacement shrink with the radius of the contact?"""
@@ -108,6 +109,7 @@ class MindlinForce(Mindlin):
     equation = "dQ = 2 G* a ds, at most mu F"
     source = "Mindlin & Deresiewicz 1953, J. Appl. Mech. 20:327; LAMMPS, granular: mindlin/force"
     sliding_bound = 1.0
+    sliding_energy = 0.4
 
     def memory(self, size: int) -> Memory:
         """Return contacts without a force; see `CompliantFriction`."""
@@ -246,14 +248,16 @@ class OneSpring:
     law: Mindlin
     radius: float
     stretch: Floats
+    slid: float = 0.0
 
     def after(self, force: float, moved: Floats) -> tuple[OneSpring, Floats]:
         """Stretch the spring, at most to sliding."""
         law, radius = self.law, self.law.radius_under(force)
         kept = radius / self.radius if law.rescales and radius < self.radius else 1.0
         stretch, stiffness = self.stretch * kept + moved * (0.5 * (1.0 + kept)), 2.0 * float(law.effective_shear_modulus) * radius
-        stretch = stretch * _kept(stiffness * stretch, float(law.coefficient) * force)
-        return OneSpring(law, radius, stretch), stiffness * stretch
+        bounded = _kept(stiffness * stretch, float(law.coefficient) * force)
+        slid, stretch = (1.0 - bounded) * float(np.hypot(*stretch)), stretch * bounded
+        return OneSpring(law, radius, stretch, slid), stiffness * stretch
 
 
 @dataclass(frozen=True)
@@ -263,13 +267,16 @@ class OneForce:
     law: Mindlin
     radius: float
     force: Floats
+    slid: float = 0.0
 
     def after(self, force: float, moved: Floats) -> tuple[OneForce, Floats]:
         """Change the force as without slip, by the mean stiffness on the way, at most to sliding."""
         law, radius = self.law, self.law.radius_under(force)
-        pulled = self.force + float(law.effective_shear_modulus) * (self.radius + radius) * moved
-        pulled = pulled * _kept(pulled, float(law.coefficient) * force)
-        return OneForce(law, radius, pulled), pulled
+        stiffness = float(law.effective_shear_modulus) * (self.radius + radius)
+        pulled = self.force + stiffness * moved
+        bounded = _kept(pulled, float(law.coefficient) * force)
+        slid, pulled = (1.0 - bounded) * float(np.hypot(*pulled)) / max(stiffness, 1e-300), pulled * bounded
+        return OneForce(law, radius, pulled, slid), pulled
 
 
 def _kept(pulled: Floats, most: float) -> float:
