@@ -20,7 +20,8 @@ Floats = NDArray[np.float64]
 class ShakenDeck:
     """Masses [kg], the deck's own frequency [Hz] and damping ratio, the contact's K [N/m^1.5] and T [s], and the shaking of the frame.
 
-    A deck of infinite mass moves with the frame.
+    A deck of infinite mass moves with the frame. Where nothing pushes the lump, air slows it down by `drag` [1/m] times the square of
+    its velocity.
     """
 
     mass: float
@@ -32,6 +33,7 @@ class ShakenDeck:
     amplitude: float
     shaking: float
     gravity: float = 9.8
+    drag: float = 0.0
 
     def frame(self, time: float) -> tuple[float, float, float]:
         """Displacement, velocity and acceleration of the frame."""
@@ -59,11 +61,12 @@ class ShakenDeck:
     def slopes(self, time: float, y: Floats, pushes: bool) -> list[float]:
         """Time derivative of the state."""
         force, (place, speed, acceleration) = (self.push(y) if pushes else 0.0), self.frame(time)
+        slowed = 0.0 if force > 0.0 else self.drag * abs(y[1]) * y[1]
         if np.isinf(self.deck):
-            return [y[1], force / self.mass - self.gravity, y[3], acceleration]
+            return [y[1], force / self.mass - self.gravity - slowed, y[3], acceleration]
         own = 2.0 * np.pi * self.frequency
         pull = -2.0 * self.damping * own * (y[3] - speed) - own**2 * (y[2] - place) - force / self.deck
-        return [y[1], force / self.mass - self.gravity, y[3], pull]
+        return [y[1], force / self.mass - self.gravity - slowed, y[3], pull]
 
     def follow(self, height: float, times: Floats, tolerance: float = 3e-14) -> tuple[Floats, list[float]]:
         """States at times (T, 4) of a lump that starts at rest at a height of its lowest point, and when it leaves the deck."""

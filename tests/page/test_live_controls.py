@@ -118,6 +118,8 @@ def test_every_choice(case: str, page: Page, server: Server) -> None:
                 assert (value_at(case_shown, key) == "adams-default") == (value == "adams-default")
             elif key == "drop.air":
                 assert ("air" in case_shown["drop"]) == (value == "air")
+            elif key == "plate.motion":
+                assert ("motion" in case_shown["plate"]) == (value == "shaken")
             elif key == "contact.friction.law":
                 assert case_shown["contact"].get("friction", {}).get("law", "none") == value
             elif key.endswith("material"):
@@ -228,6 +230,28 @@ def test_an_oblique_drop(page: Page, server: Server) -> None:
     row(page, "plate.model").locator("select").select_option("rigid")
     settle(page)
     assert (faults(page), shown(page)) == ([], case)
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_a_plate_that_is_shaken(case: str, page: Page, server: Server) -> None:
+    """Amplitude, frequency, phase and direction have controls, and impacts and charts are those of the plate that moves."""
+    open_live(page, server, CASES[case])
+    before, columns = shown(page), set(page.locator("table th").all_text_contents())
+    row(page, "plate.motion").locator("select").select_option("shaken")
+    settle(page)
+    for key, value, told_as in (("amplitude", 0.5, 5e-4), ("frequency", 40, 40.0), ("phase", 90, np.pi / 2.0)):
+        type_value(page, f"plate.motion.{key}", value)
+        assert faults(page) == []
+        assert value_at(shown(page), f"plate.motion.{key}") == pytest.approx(told_as)
+    assert set(page.locator("table th").all_text_contents()) > columns
+    for value, direction in (("x", [1, 0, 0]), ("z", [0, 0, 1])):
+        row(page, "plate.motion.direction").locator("select").select_option(value)
+        settle(page)
+        assert faults(page) == []
+        assert shown(page)["plate"]["motion"]["direction"] == direction
+    row(page, "plate.motion").locator("select").select_option("rest")
+    settle(page)
+    assert shown(page) == before
 
 
 def test_a_body_that_becomes_elastic_and_rigid_again(page: Page, server: Server) -> None:

@@ -518,6 +518,52 @@ def test_frames_of_an_oblique_drop_move_along_the_plate(oblique: Drop, oblique_r
     assert "does not turn" in notes_of("vtu", oblique)
 
 
+@pytest.fixture(scope="module", params=["rigid", "elastic"])
+def shaken(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Drop, vi.Response]]:
+    """A drop on a plate that is shaken along a slant, and its response."""
+    motion = {"amplitude": "1 mm", "frequency": "30 Hz", "phase": "50 deg", "direction": [0.6, 0, 0.8]}
+    elastic = request.param == "elastic"
+    plate = {**(ELASTIC["plate"] if elastic else {"size": ["300 mm", "200 mm", "6 mm"], "material": "steel"}), "motion": motion}
+    case = vi.read_case({**ELASTIC, "plate": plate, "drop": {"height": "40 mm"}, "run": {"duration": 0.2}})
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("VIBROIMPACT_STORE", str(tmp_path_factory.mktemp("store")))
+        response = vi.simulate(case)
+        yield drop_of_result(result_of(response), case), response
+
+
+def test_data_of_a_plate_that_is_shaken(shaken: tuple[Drop, vi.Response], tmp_path: Path) -> None:
+    drop, response = shaken
+    assert drop.motion is not None
+    history = pandas.read_csv(BytesIO(files_of("csv", drop)["history.csv"]))
+    place = response.problem.surface(history["time_s"].to_numpy())[0]
+    np.testing.assert_allclose(history["surface_m"], place, atol=1e-12)
+    assert {"plate_velocity_m_s", "plate_work_J"} < set(pandas.read_csv(BytesIO(files_of("csv", drop)["impacts.csv"])).columns)
+    (content,) = files_of("mat", drop).values()
+    read = loadmat(BytesIO(content), simplify_cells=True)
+    assert (read["drop"]["motion_amplitude"], read["drop"]["motion_frequency"]) == (1e-3, 30.0)
+    assert (read["units"]["drop"]["motion_frequency"], read["drop"]["motion_direction"].tolist()) == ("Hz", [0.6, 0.0, 0.8])
+    path = tmp_path / "drop.uff"
+    (content,) = files_of("uff58", drop).values()
+    path.write_bytes(content)
+    pyuff = pytest.importorskip("pyuff")
+    sets = pyuff.UFF(str(path)).read_sets()
+    heights = next(one for one in sets if one["type"] == 58 and one["rsp_node"] == 1 and one["ordinate_spec_data_type"] == 8)
+    np.testing.assert_allclose(heights["data"], response.at(heights["x"])["position_m"], atol=2e-6)
+    times, plates = frames(files_of("vtu", drop), "plate", tmp_path)
+    moved = 1e-3 * np.sin(60.0 * np.pi * np.array(times) + np.radians(50.0))
+    for at, frame in zip(moved, plates, strict=True):
+        lifted = frame.points + frame.point_data["displacement_m"] if drop.surface else frame.points
+        np.testing.assert_allclose([lifted[:, 0].min(), lifted[:, 0].max()], 0.6 * at + np.array([-0.15, 0.15]), atol=1e-6)
+        edge = lifted[np.isclose(frame.points[:, 0], frame.points[:, 0].max()), 2].max()
+        assert edge == pytest.approx(0.8 * at, abs=1e-6)  # clamped: it moves with the supports
+
+
+@pytest.mark.parametrize("program", ["adams", "adams-view", "exudyn", "lammps", "mujoco", "yade"])
+def test_programs_get_no_plate_that_moves(shaken: tuple[Drop, vi.Response], program: str) -> None:
+    with pytest.raises(vi.InputError, match=r"plate\.motion: programs get a plate at rest"):
+        find_export_format(program).prepare(shaken[0])
+
+
 def test_holes_and_plates_without_a_size(elastic: Drop, rigid: Drop, tmp_path: Path) -> None:
     height = elastic.surface["height"].copy()
     height[:, 0, 0] = np.nan

@@ -281,6 +281,7 @@ def test_report_and_signals_are_those_of_the_last_case() -> None:
     [
         {"plate": {"mesh": "/etc/passwd"}},
         {"plate": {"mesh": {"file": "/etc/passwd"}}},
+        {"plate": {"motion": {"file": "/etc/passwd"}}},
         {"sphere": {"mesh": "../../etc/passwd.bdf"}},
         {"calibrate": {"target": {"file": "/etc/passwd"}}},
         {"calibrate": {"target": "/etc/passwd"}},

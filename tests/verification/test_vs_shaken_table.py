@@ -10,12 +10,15 @@ J. Sound Vib. 84:173, for high bounces; both hold for the exact motion, since th
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 import vibroimpact as vi
+from oracles.bouncing_in_air import clift_gauvin
 from oracles.shaken_integration import ShakenDeck
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.kuwabara_kono import KuwabaraKono
@@ -166,6 +169,70 @@ def test_lump_on_a_deck(deck: float, relaxation: float, height: float) -> None:
     assert found["plate_velocity_m_s"] == pytest.approx(expected[:, 3], abs=1e-6)
     assert len(left) > 2
     assert response.energy["closure_relative"] <= 1e-9
+
+
+@pytest.mark.parametrize(("relaxation", "height"), [(2e-5, 0.02), (2e-3, 0.006)], ids=["bouncing", "riding and launched again"])
+@pytest.mark.parametrize("deck", [np.inf, 1.4], ids=["stiff deck", "sprung deck"])
+def test_a_light_lump_on_a_deck_in_air(deck: float, relaxation: float, height: float) -> None:
+    """As above, of 0.35 kg and 0.2 m in diameter, which air slows down by 6 % of its weight at 1 m/s."""
+    mass, radius, coefficient, density = 0.35, 0.1, 10.0, 1.2
+    drag = 0.375 * density / (mass / (4.0 / 3.0 * math.pi * radius**3)) * coefficient / radius
+    system = ShakenDeck(mass, deck, 12.0, 0.05, 2e6 if relaxation < 1e-3 else 2e5, relaxation, 1.6e-3, 15.0, drag=drag)
+    modes = None
+    if np.isfinite(deck):
+        modes = ModalBasis(np.array([12.0]), np.array([0.05]), np.array([deck**-0.5]), np.array([[0.0, 0.0, deck**0.5]]), {}, deck)
+    problem = vi.Problem(
+        sphere=vi.Body(mass=mass, contact_offset=radius),
+        plate=vi.Body(mass=np.inf, contact_offset=0.0, modes=modes),
+        laws=(KuwabaraKono(stiffness=system.stiffness, dissipation_time=relaxation),),
+        height=radius + height,
+        gravity=9.8,
+        duration=1.0,
+        impacts=None,
+        rest_speed=1e-9,
+        tolerance=1e-11,
+        motion=vi.PlateMotion(amplitude=1.6e-3, frequency=15.0),
+        air=vi.Air(density=density, drag_coefficient=coefficient),
+    )
+    response, times = vi.simulate(problem), np.linspace(0.0, 1.0, 1001)
+    expected, left = system.follow(height, times)
+    vacuum, _ = replace(system, drag=0.0).follow(height, times)
+    assert np.abs(expected[:, 0] - vacuum[:, 0]).max() > 1e-5
+    found = response.at(times)
+    split = response.impacts["time_s"][response.impacts["contacts"] > 1]  # between the contacts of one row there is no drag
+    here = times < split.min(initial=np.inf)
+    assert found["position_m"][here] - radius == pytest.approx(expected[here, 0], abs=1e-8)
+    assert found["velocity_m_s"][here] == pytest.approx(expected[here, 1], abs=1e-6)
+    assert found["plate_deflection_m"][here] == pytest.approx(expected[here, 2], abs=1e-8)
+    assert np.count_nonzero(here) > 900
+    assert len(left) > 2
+    assert response.energy["closure_relative"] <= 1e-9
+    assert response.energy["air_J"] > 0.0
+
+
+def test_a_hard_ball_on_a_table_in_air() -> None:
+    """A table tennis ball, between its touches by SciPy: each flight from the table to the next meeting."""
+    radius, density, restitution = 0.02, 84.0, 0.9
+    mass = 4.0 / 3.0 * math.pi * radius**3 * density
+    problem = replace(ball(restitution, table(2.0), impacts=8), sphere=vi.Body(mass=mass, contact_offset=radius), height=0.15, air=vi.Air())
+    response = vi.simulate(problem)
+
+    def slopes(_: float, y: Any) -> list[float]:
+        drag = 0.375 * 1.2 / density * clift_gauvin(max(1.2 * abs(y[1]) * 2.0 * radius / 1.81e-5, 1e-12)) / radius
+        return [y[1], -G - drag * abs(y[1]) * y[1]]
+
+    def gap(time: float, y: Any) -> float:
+        return float(y[0] - problem.surface(time)[0])
+
+    gap.terminal, gap.direction = True, -1.0  # type: ignore[attr-defined]
+    time, state = 0.0, [0.15 - radius, 0.0]
+    for touch, speed in zip(response.impacts["time_s"], response.impacts["approach_speed_m_s"], strict=True):
+        flight = solve_ivp(slopes, (time, time + 2.0), state, "DOP853", events=gap, rtol=1e-12, atol=1e-14, max_step=2e-3)
+        time, velocity = float(flight.t[-1]), float(problem.surface(flight.t[-1])[1])
+        assert (touch, speed) == (pytest.approx(time, abs=1e-8), pytest.approx(velocity - flight.y[1, -1], rel=1e-6))
+        state = [float(problem.surface(time)[0]) + 1e-15, velocity + restitution * (velocity - flight.y[1, -1])]
+    assert response.energy["closure_relative"] <= 1e-9
+    assert response.impacts["rebound_height_m"][-1] == pytest.approx(float(response.at(response.end_time[0])["position_m"]), abs=1e-12)
 
 
 @pytest.mark.parametrize("law", [Newton(restitution=0.6), Hertz(stiffness=1e8), KuwabaraKono(stiffness=1e8, dissipation_time=1e-5)])

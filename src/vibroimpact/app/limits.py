@@ -48,11 +48,11 @@ def check_table(table: dict[str, Any]) -> None:
                 raise InputError("null is no value of a case; leave the key out", f"{where}{key}")
             if isinstance(value, (dict, list)):
                 left.append((value, f"{where}{key}."))
-    for body in ("sphere", "plate"):
+    for body, key in (("sphere", "mesh"), ("plate", "mesh"), ("plate", "motion")):
         section = table.get(body)
-        mesh = section.get("mesh") if isinstance(section, dict) else None
-        if isinstance(mesh, str) or (isinstance(mesh, dict) and "file" in mesh):
-            raise InputError("the live page reads no files; run the case with: vibroimpact run", f"{body}.mesh")
+        part = section.get(key) if isinstance(section, dict) else None
+        if isinstance(part, str) or (isinstance(part, dict) and "file" in part):
+            raise InputError("the live page reads no files; run the case with: vibroimpact run", f"{body}.{key}")
     for name, command in _ELSEWHERE.items():
         if name in table:
             raise InputError(f"the live page does not read this section; use: {command}", name)

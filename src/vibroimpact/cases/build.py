@@ -7,6 +7,7 @@ from dataclasses import fields, replace
 from typing import TYPE_CHECKING, Any, Literal, cast
 
 from vibroimpact.calibration.section import calibrate_table
+from vibroimpact.cases.elastic.positions import check_positions
 from vibroimpact.cases.fields.elastic_body import BroughtMeshTable
 from vibroimpact.cases.fields.material import material_table
 from vibroimpact.cases.motion import motion_length
@@ -47,11 +48,9 @@ def check_case(case: CaseTable) -> None:
             raise InputError(f'"all" needs a law that loses energy, {words}; {remedy}, or drop.same_spot = false', "run.impacts")
     _check_oblique(case, law)
     if case.drop.air is not None:
-        if case.plate.motion is not None:
-            raise InputError("a sphere above a plate that moves flies in a vacuum; leave this out", "drop.air")
         check_thin(case.drop.air.density, case.sphere.material.density, "drop.air.density")
     _check_motion(case)
-    if case.sensors and case.plate.model == "rigid":
+    if case.sensors and case.plate.model == "rigid" and case.plate.motion is None:
         remedy = 'give it model = "elastic", or leave out the sensors' if case.plate.radius is None else "leave out the sensors"
         raise InputError(f"the plate is rigid, so that its points do not move; {remedy}", "sensors")
     local = case.contact.local
@@ -62,11 +61,10 @@ def check_case(case: CaseTable) -> None:
         raise InputError(words, "contact.finite_sphere")
     if local.finite_sphere and not isinstance(law, CompliantLaw):
         raise InputError(f"{law.name} gives no force that a finite sphere would change; leave this out", "contact.finite_sphere")
+    check_positions(case)
     if elastic_names(case):
         from vibroimpact.cases.elastic.bodies import elastic_bodies  # imports scipy.sparse
-        from vibroimpact.cases.elastic.positions import check_positions
 
-        check_positions(case)
         elastic_bodies(case)
 
 
@@ -111,9 +109,6 @@ def _check_motion(case: CaseTable) -> None:
         return
     if case.plate.radius is not None or case.plate.supports == "free":
         raise InputError("only a plate that supports hold moves with them; leave this out", "plate.motion")
-    if case.sensors:
-        words = "sensors see what impacts excite, and a plate on supports that move has a motion of its own"
-        raise InputError(f"{words}; leave them out", "sensors")
     length = motion_length(case)
     if case.run.duration is not None and case.run.duration > length:
         raise InputError(f"the motion of the plate ends at {length:.6g} s; stop the run by then", "run.duration")
@@ -209,5 +204,6 @@ def _body(case: CaseTable, name: Literal["sphere", "plate"]) -> dict[str, Any]:
         found["size"] = list(found["size"])
     if "motion" in found:
         motion = {key: list(value) if isinstance(value, tuple) else value for key, value in found["motion"].items()}
-        found["motion"] = {key: value for key, value in motion.items() if key != "phase"} if "file" in motion else motion
+        other = "phase" if "file" in motion else "repeat"
+        found["motion"] = {key: value for key, value in motion.items() if key != other}
     return {**found, "material": material_table(section.material)}

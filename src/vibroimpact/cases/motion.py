@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 _FEWEST, _MOST = 33, 20_000  # samples of a motion; each takes part in every search for a touch
 _EQUAL = 1e-3  # of a step: the deviation of rounded times from equal steps
 _UNKNOWN = 0.05  # of the range of a motion: the largest error of a sample found from its neighbours
+_SEAM = 2.0  # times the largest of these errors within a period: the largest where it repeats
+_ROUNDING = 1e-9  # of the largest sample: an error that means nothing
 
 
 def motion_of(case: CaseTable) -> PlateMotion | None:
@@ -34,7 +36,7 @@ def motion_of(case: CaseTable) -> PlateMotion | None:
 
 
 def motion_length(case: CaseTable) -> float:
-    """Return how long the motion of a file lasts [s]; infinite without one."""
+    """Return how long the motion of a file lasts [s]; infinite without one, or if it repeats."""
     return np.inf if case.plate.motion is None else _motion(case.plate.motion)[1]
 
 
@@ -47,25 +49,27 @@ def _motion(table: MotionTable) -> tuple[PlateMotion, float]:
         assert table.amplitude is not None
         assert table.frequency is not None
         return PlateMotion(amplitude=table.amplitude, frequency=table.frequency, phase=table.phase, direction=direction), np.inf
-    from vibroimpact.dynamics.shaken.tabulated import tabulated_motion  # here, as few plates are shaken
+    from vibroimpact.dynamics.shaken.tabulated import periodic_motion, tabulated_motion  # here, as few plates are shaken
 
     try:
-        step, displacement = _samples(table.file)
+        step, displacement = _samples(table.file, table.repeat)
     except InputError as error:
         raise InputError(error.message, "plate.motion.file") from None
+    if table.repeat:
+        return periodic_motion(step, displacement, direction), np.inf
     return tabulated_motion(step, displacement, direction), step * (len(displacement) - 1)
 
 
-def _samples(file: str) -> tuple[float, Floats]:
-    """Return the step [s] and the displacements [m] of a file.
+def _samples(file: str, repeat: bool) -> tuple[float, Floats]:
+    """Return the step [s] and the displacements [m] of a file; `repeat`: of one period.
 
     Raises
     ------
     InputError
-        If the file has neither displacements nor accelerations, its times have no equal steps, it has too few samples or too many, or a
-        sample can't be guessed from its neighbours.
+        If the file has neither displacements nor accelerations, its times have no equal steps, it has too few samples or too many, a
+        sample can't be guessed from its neighbours, or a period does not end where it begins.
     """
-    from vibroimpact.dynamics.shaken.tabulated import integrated_twice
+    from vibroimpact.dynamics.shaken.tabulated import integrated_twice, integrated_twice_over_period
     from vibroimpact.measurements.table_file import read_table_file
 
     table = read_table_file(file, {"time": "s", "displacement": "m", "acceleration": "m/s^2"})
@@ -80,8 +84,12 @@ def _samples(file: str) -> tuple[float, Floats]:
         raise InputError(f"{file}: {len(time)} samples are no motion that can be followed: {many}")
     _check_steps(table, time)
     _check_sampling(table, name, values)
+    if repeat:
+        _check_seam(table, name, values)
     step = float(time[-1] - time[0]) / (len(time) - 1)
-    return step, values if name == "displacement" else integrated_twice(step, values)
+    if name == "displacement":
+        return step, values
+    return step, integrated_twice_over_period(step, values) if repeat else integrated_twice(step, values)
 
 
 def _check_steps(table: TableFile, time: Floats) -> None:
@@ -98,10 +106,31 @@ def _check_steps(table: TableFile, time: Floats) -> None:
 
 def _check_sampling(table: TableFile, name: str, values: Floats) -> None:
     """Raise InputError if a sample can't be guessed from its neighbours: the values jump, or are too coarse for what they show."""
-    between = np.convolve(values, [-1.0 / 6.0, 2.0 / 3.0, 0.0, 2.0 / 3.0, -1.0 / 6.0], mode="valid")  # the cubic through four neighbours
-    wrong = np.abs(values[2:-2] - between)
+    wrong = _off_neighbours(values)
     worst = int(wrong.argmax())
     if wrong[worst] > _UNKNOWN * float(np.ptp(values)):
-        unit = "m" if name == "displacement" else "m/s^2"
-        words = f"the {name} {values[worst + 2]:.6g} {unit} is {wrong[worst]:.3g} {unit} away from the curve through its neighbours"
-        raise InputError(f"{table.path}, line {table.lines[worst + 2]}: {words}; it jumps, or the samples are too coarse for the motion")
+        words = f"{_off(name, values[worst + 2], wrong[worst])}; it jumps, or the samples are too coarse for the motion"
+        raise InputError(f"{table.path}, line {table.lines[worst + 2]}: {words}")
+
+
+def _check_seam(table: TableFile, name: str, values: Floats) -> None:
+    """Raise InputError if the samples at both ends of a period follow each other less evenly than those between."""
+    usual = max(float(_off_neighbours(values).max()), _ROUNDING * float(np.abs(values).max()))
+    wrong = _off_neighbours(np.concatenate([values[-4:], values[:4]]))
+    worst = int(wrong.argmax())  # the last two samples, then the first two
+    if wrong[worst] > _SEAM * usual:
+        row = worst - 2
+        words = f"{_off(name, values[row], wrong[worst])} where the period repeats, and at most {usual:.3g} within it"
+        remedy = "give one whole period, without the sample at its end that is the first of the next"
+        raise InputError(f"{table.path}, line {table.lines[row]}: {words}; {remedy}")
+
+
+def _off_neighbours(values: Floats) -> Floats:
+    """Return how far samples are from the cubic through four neighbours (samples - 4,)."""
+    return np.abs(values[2:-2] - np.convolve(values, [-1.0 / 6.0, 2.0 / 3.0, 0.0, 2.0 / 3.0, -1.0 / 6.0], mode="valid"))
+
+
+def _off(name: str, value: float, wrong: float) -> str:
+    """Return in words how far a sample is from its neighbours."""
+    unit = "m" if name == "displacement" else "m/s^2"
+    return f"the {name} {value:.6g} {unit} is {wrong:.3g} {unit} away from the curve through its neighbours"

@@ -85,6 +85,7 @@ def rigid_problem(case: CaseTable) -> Problem:
         oblique=oblique_of(case),
         motion=motion_of(case),
         air=None if case.drop.air is None else case.drop.air.air(),
+        sensors=tuple(sensor.sensor() for sensor in case.sensors),
         impacts=impact_limit(case),
         duration=run_duration(case),
         rest_speed=case.run.rest_speed,

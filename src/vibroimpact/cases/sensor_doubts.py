@@ -84,10 +84,10 @@ def _remedy(signal: Signal, highest: float) -> str:
 
 
 def _distance_in_thicknesses(case: ResolvedCase, place: Any) -> float:
-    """Return the in-plane distance of a sensor from the contact over the plate thickness; infinite if not known."""
-    size = case.get("plate", {}).get("size")
-    mesh = case.get("plate", {}).get("mesh", {})
-    if size is None or place is None or isinstance(place, str) or "file" in mesh:
+    """Return the in-plane distance of a sensor from the contact over the plate thickness; infinite if not known, or the plate is rigid."""
+    plate = case.get("plate", {})
+    size, mesh = plate.get("size"), plate.get("mesh", {})
+    if plate.get("model") == "rigid" or size is None or place is None or isinstance(place, str) or "file" in mesh:
         return math.inf
     return math.dist(place, case["drop"]["position"]) / float(size[2])
 

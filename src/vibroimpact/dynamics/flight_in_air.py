@@ -14,7 +14,7 @@ keeps it.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal
 
@@ -152,6 +152,12 @@ class AirFlight(Flight):
         motion = (self.start[which], self.gap[which], self.velocity[which], self.gravity[which])
         along = self.along[0][:, which], self.along[1][:, which]
         return AirFlight(*motion, self.radius[which], self.density[which], self.air.take(which), along)
+
+    def after(self, time: Floats) -> AirFlight:
+        """Return the flights from times on [s] (B,)."""
+        moving = self._moving(time)
+        along = moving.velocity[:-1], self.along[1]
+        return replace(self, start=time, gap=moving.place[-1], velocity=moving.velocity[-1], along=along)
 
     def at(self, time: Floats) -> tuple[Floats, Floats]:
         """Return gap [m] and upward velocity [m/s] at times [s] (..., B)."""

@@ -268,7 +268,7 @@ class Response:
         Raises
         ------
         InputError
-            If the plate is rigid or has no such point, there would be too many samples, or the response is of several drops or
+            If the plate is rigid and at rest or has no such point, there would be too many samples, or the response is of several drops or
             without histories.
         """
         from vibroimpact.dynamics.sensors.record import record

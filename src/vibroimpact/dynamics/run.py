@@ -204,7 +204,7 @@ class Run:
         with np.errstate(divide="ignore", invalid="ignore"):
             rise = np.where(self.gravity[drops] > 0.0, 0.5 * rising**2 / self.gravity[drops], np.nan)
         if self.problem.air is not None:
-            rise = np.where(np.isnan(rise), rise, self.flights(drops).apex()[1] - self.gap[drops])
+            rise = np.where(rising > 0.0, self.flights(drops).apex()[1] - self.gap[drops], rise)
         row["rebound_height_m"][drops] = self.radius[drops] + self.gap[drops] + rise
         if self.oblique is not None:
             self.leave_dents(drops, row)

@@ -11,12 +11,13 @@ from vibroimpact.contact.law import ContactLaw
 from vibroimpact.dynamics.oblique.statement import Oblique
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.sensors.recording import Signal
+from vibroimpact.dynamics.shaken.statement import PlateMotion
 from vibroimpact.materials import Material
 
 
 @dataclass(frozen=True, kw_only=True)
 class Drop:
-    """A sphere that falls on a plate which is held, and the computed response, as they are exported.
+    """A sphere that falls on a plate which is held, or moved, and the computed response, as they are exported.
 
     Parameters
     ----------
@@ -38,6 +39,8 @@ class Drop:
         Acceleration of gravity [m/s^2]; with an inclined plate its part along the normal.
     oblique : Oblique, optional
         Motion along the plate, spin, friction and gravity along the plate; none by default.
+    motion : PlateMotion, optional
+        Motion of the plate's supports, above whose mean position heights are told; at rest by default.
     in_air : bool, default False
         Does air slow the sphere down in flight?
     laws : tuple of ContactLaw
@@ -80,6 +83,7 @@ class Drop:
     speed: float = 0.0
     gravity: float
     oblique: Oblique | None = None
+    motion: PlateMotion | None = None
     in_air: bool = False
     laws: tuple[ContactLaw, ...]
     function: tuple[str, SpeedFunction] | None = None

@@ -9,6 +9,7 @@ from typing import Any
 from vibroimpact.calibration.file_contents import CALIBRATION
 from vibroimpact.calibration.speed_function import SpeedFunction
 from vibroimpact.cases.case import Case
+from vibroimpact.cases.motion import motion_of
 from vibroimpact.cases.oblique import normal_motion_of, oblique_of
 from vibroimpact.cases.reader import load_case, read_case
 from vibroimpact.cases.rigid import contact_laws_of, deforms, elastic_names, mass_of_sphere, rigid_problem
@@ -77,6 +78,7 @@ def drop_of_result(result: Result, case: Case, function: tuple[str, SpeedFunctio
         speed=float(motion.get("speed", 0.0 - motion.get("velocity", 0.0))),
         gravity=float(motion["gravity"]),
         oblique=oblique_of(case),
+        motion=motion_of(case),
         in_air=case.drop.air is not None,
         laws=contact_laws_of(case),
         function=function,
@@ -93,11 +95,9 @@ def drop_of_result(result: Result, case: Case, function: tuple[str, SpeedFunctio
 
 
 def _check_flat(case: Case) -> None:
-    """Raise if the sphere falls on another sphere, or on a plate that moves, which no export format supports."""
+    """Raise if the sphere falls on another sphere, which no export format supports."""
     if case.plate.radius is not None:
         raise InputError("what is exported falls on a flat plate, and this sphere falls on another", "plate.radius")
-    if case.plate.motion is not None:
-        raise InputError("what is exported falls on a plate at rest, and this one moves", "plate.motion")
 
 
 def _of_calibration(folder: Path) -> Drop:

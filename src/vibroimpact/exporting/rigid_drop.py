@@ -29,8 +29,10 @@ def as_rigid(drop: Drop) -> Drop:
     Raises
     ------
     InputError
-        If the sphere flies through air.
+        If the sphere flies through air, or the plate is moved.
     """
+    if drop.motion is not None:
+        raise InputError("programs get a plate at rest; formats of data hold a drop on one that moves", "plate.motion")
     if drop.in_air:
         raise InputError("programs get drops in a vacuum; formats of data hold one in air", "drop.air")
     if drop.rigid is None:

@@ -201,11 +201,11 @@ def sensor_caption(result: Result, name: str) -> str:
     if len(values) < 4 or not np.any(values):
         return words
     found = amplitude_spectrum(values, sensor.rate)
-    top = 1 + int(found.amplitude[1:].argmax())
+    top, ticks = 1 + int(found.amplitude[1:].argmax()), "; ticks mark the plate's modes" if result.frequencies("plate") else ""
     return (
         f"{words} The spectrum is one-sided, of {text(found.span, 's', 3)} from the first touch on, faded out by the falling half of "
         f"Hann's window; a steady tone would read its amplitude. Its highest point lies at "
-        f"{digits(float(found.frequency[top]), 3)}\u00a0Hz; ticks mark the plate's modes."
+        f"{digits(float(found.frequency[top]), 3)}\u00a0Hz{ticks}."
     )
 
 

@@ -103,7 +103,8 @@ def _motion_rows(case: Case) -> list[tuple[str, str]]:
         return []
     along = f"along ({', '.join(f'{part:g}' for part in motion.direction)})"
     if motion.file is not None:
-        return [("motion of supports", f"as in {motion.file}, for {motion_length(case):.6g} s, {along}")]
+        lasts = "repeated" if motion.repeat else f"for {motion_length(case):.6g} s"
+        return [("motion of supports", f"as in {motion.file}, {lasts}, {along}")]
     strength = float(motion.amplitude or 0.0) * (2.0 * math.pi * float(motion.frequency or 0.0)) ** 2
     words = f"amplitude {motion.amplitude:g} m, frequency {motion.frequency:g} Hz, phase {motion.phase:g} rad, {along}"
     return [("motion of supports", f"{words}: up to {strength:.4g} m/s2, {strength / STANDARD_GRAVITY:.4g} times standard gravity")]

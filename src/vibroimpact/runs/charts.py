@@ -31,9 +31,8 @@ def chart_makers(result: Result) -> dict[str, Callable[[], Chart]]:
     -------
     dict of str to callable
         `position`, `force`, `velocity`, `acceleration`, `force_indentation`, `along_plate` and `path` where there is such a motion, and
-        `energy`;
-        where bodies vibrate also `sphere_energy`, `plate_motion`, `plate_energy`, `deflection` and one per sensor. Force, acceleration
-        and force over indentation exist only for contacts of finite duration, not with an instantaneous law.
+        `energy`; where bodies vibrate also `sphere_energy`, `plate_motion`, `plate_energy` and `deflection`; and one per sensor. Force,
+        acceleration and force over indentation exist only for contacts of finite duration, not with an instantaneous law.
     """
     history = drawn_history(result)
     in_contact = bool(len(contacts_with_duration(result)))
@@ -55,7 +54,7 @@ def chart_makers(result: Result) -> dict[str, Callable[[], Chart]]:
                 "plate_energy": partial(plate_energy_chart, result, history),
             }
             makers |= {"deflection": partial(deflection_chart, result)} if result.deflection is not None else {}
-            makers |= {name: partial(sensor_chart, result, name, sensor) for name, sensor in drawn_sensors(result).items()}
+    makers |= {name: partial(sensor_chart, result, name, sensor) for name, sensor in drawn_sensors(result).items()}
     return {name: partial(_with_caption, make, name, result) for name, make in makers.items()}
 
 

@@ -175,7 +175,7 @@ def setup_rows(result: Result) -> list[tuple[str, str]]:
 def _motion_words(motion: Mapping[str, Any]) -> str:
     """Return the motion of the plate's supports in words."""
     if (file := motion.get("file")) is not None:
-        words = [f"as in {shortened(visible(Path(file).name), 60)}"]
+        words = [f"as in {shortened(visible(Path(file).name), 60)}", *(["repeated"] if motion.get("repeat") else [])]
     else:
         words = [f"amplitude {as_given(float(motion['amplitude']), 'm')}, frequency {as_given(float(motion['frequency']), 'Hz')}"]
         words += [f"phase {np.degrees(float(motion['phase'])):.4g}°"] if motion.get("phase") else []

@@ -84,11 +84,13 @@ def _chart(result: Result, history: Mapping[str, Floats], words: tuple[str, str,
 def plate_span(result: Result, impact: int = 0) -> float:
     """Return the time after the first touch of an impact for which the plate is shown [s].
 
-    It is 1.5 periods of the lowest mode, but ends at the next impact or the end of the run, and is at least 1.2 contact durations.
+    It is 1.5 periods of the lowest mode, where the plate has one, but ends at the next impact or the end of the run, and is at least 1.2
+    contact durations.
     """
     touches, duration = result.impacts["time_s"], float(result.impacts["duration_s"][impact])
     until = float(touches[impact + 1]) if len(touches) > impact + 1 else float(result.history["time_s"][-1])
-    return max(min(resolved_span(1.0 / result.frequencies("plate")[0]), until - float(touches[impact])), 1.2 * duration)
+    spans = [resolved_span(1.0 / lowest) for lowest in result.frequencies("plate")[:1]]
+    return max(min([*spans, until - float(touches[impact])]), 1.2 * duration)
 
 
 def exceeds_rounding(result: Result, column: str) -> bool:

@@ -229,6 +229,7 @@
           controls.kept.drop = table.drop;
           const { height, ...others } = table.drop, speed = drop.speed ?? Math.sqrt(2 * drop.gravity * Math.max(drop.height - sphere.radius, 0));
           table.drop = { ...others, speed: Number(speed.toPrecision(6)), gravity: 0 };
+          delete table.plate.motion;
         } else if (value !== "free" && controls.kept.drop) {
           table.drop = controls.kept.drop;
           delete controls.kept.drop;
@@ -326,7 +327,7 @@
   const friction = (controls) => {
     const path = ["contact", "friction"], now = at(controls.resolved, path);
     if (!isFlat(controls.resolved)) return [];
-    const laws = controls.offer.friction.filter((name) => !vibrates(controls.resolved) || !IMPULSIVE.includes(name));
+    const laws = controls.offer.friction.filter((name) => !(vibrates(controls.resolved) || controls.resolved.plate.motion) || !IMPULSIVE.includes(name));
     const rows = [choice(controls, {
       path: [...path, "law"], label: "Friction", options: ["none", ...laws].map((name) => [name, name]),
       chosen: (table) => at(table, [...path, "law"]) ?? "none",
@@ -334,6 +335,35 @@
     })];
     if (now) rows.push(slider(controls, { path: [...path, "coefficient"], label: "Coefficient", low: 0, high: 1 }));
     return rows;
+  };
+
+  // The motion of the supports of a plate, where they hold it.
+  const motion = (controls) => {
+    const path = ["plate", "motion"];
+    if (!isFlat(controls.resolved) || controls.resolved.plate.supports === "free") return [];
+    const rows = [choice(controls, {
+      path, label: "Motion", options: [["rest", "at rest"], ["shaken", "shaken"]],
+      chosen: (table) => (table.plate.motion === undefined ? "rest" : "shaken"),
+      choose: (table, value) => {
+        if (value === "rest") { delete table.plate.motion; return; }
+        table.plate.motion = { amplitude: "1 mm", frequency: "25 Hz" };
+        const rubs = table.contact.friction;
+        if (rubs && IMPULSIVE.includes(rubs.law)) table.contact.friction = { law: "mdr", coefficient: rubs.coefficient };
+      },
+    })];
+    if (!controls.resolved.plate.motion) return rows;
+    const directions = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1] };
+    return [
+      ...rows,
+      slider(controls, { path: [...path, "amplitude"], label: "Amplitude", unit: "mm", size: 1e-3, low: 0.01, high: 20, log: true }),
+      slider(controls, { path: [...path, "frequency"], label: "Frequency", unit: "Hz", low: 1, high: 500, log: true }),
+      slider(controls, { path: [...path, "phase"], label: "Phase", unit: "deg", size: Math.PI / 180, low: -180, high: 180, otherwise: 0 }),
+      choice(controls, {
+        path: [...path, "direction"], label: "Direction", options: [["z", "along the normal"], ["x", "along x"], ["y", "along y"]],
+        chosen: (table, resolved) => Object.keys(directions).find((axis) => String(directions[axis]) === String(Array.from(resolved.plate.motion?.direction ?? []))) ?? "given",
+        choose: (table, value) => { if (value !== "given") table.plate.motion.direction = directions[value]; },
+      }),
+    ];
   };
 
   const drop = (controls) => {
@@ -409,7 +439,7 @@
       this.beginning = false;
       const shape = JSON.stringify([
         table.contact.law, Object.entries(resolved.contact).map(([name, value]) => [name, Array.isArray(value) ? "list" : typeof value]), resolved.sphere.model, resolved.plate.model, resolved.plate.material === "rigid", "height" in resolved.drop && !("speed" in table.drop),
-        "velocity" in resolved.drop, "friction" in resolved.contact, table.plate.supports && resolved.plate.supports, typeof resolved.plate.damping, typeof resolved.sphere.damping,
+        "velocity" in resolved.drop, "friction" in resolved.contact, "motion" in resolved.plate, table.plate.supports && resolved.plate.supports, typeof resolved.plate.damping, typeof resolved.sphere.damping,
         (table.sensors || []).map((sensor) => sensor.name), resolved.plate.size && resolved.plate.size.slice(0, 2), resolved.plate.radius === undefined,
       ]);
       if (shape !== this.shape) { this.shape = shape; this.build(); }
@@ -427,7 +457,7 @@
         group("Sphere", slider(this, { path: ["sphere", "radius"], label: "Radius", unit: "mm", size: 1e-3, low: 1, high: 100, log: true }), ...material(this, "sphere"), ...bodyRows(this, "sphere")),
         group("Drop", ...drop(this)),
         this.law = group("Contact", ...law(this), ...friction(this)),
-        group("Plate", ...below, ...inclination, ...size.map(([label, side, low, high]) => slider(this, { path: ["plate", "size", side], label, unit: "mm", size: 1e-3, low, high, log: true })), ...material(this, "plate"), ...bodyRows(this, "plate")),
+        group("Plate", ...below, ...inclination, ...size.map(([label, side, low, high]) => slider(this, { path: ["plate", "size", side], label, unit: "mm", size: 1e-3, low, high, log: true })), ...material(this, "plate"), ...bodyRows(this, "plate"), ...motion(this)),
         ...all,
         group("Run", slider(this, { path: ["run", "impacts"], label: "Impacts", low: 1, high: 30, whole: true })),
       );

@@ -281,7 +281,6 @@ def couple_bodies(
         **bodies,
         sphere_inside=treatment_of(case) == "consistent",
         quasi_static=coupling.quasi_static,
-        sensors=tuple(sensor.sensor() for sensor in case.sensors) if "plate" in coupling.modes else (),
         facts=coupling.facts,
         models=coupling.models,
     )

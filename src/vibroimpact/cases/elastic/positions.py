@@ -19,7 +19,7 @@ _RIGID = ("patch", "patches", "bar", "bars")  # the mesh follows their rims
 
 
 def check_positions(case: CaseTable) -> None:
-    """Check that the supports and sensors of an elastic plate with a generated mesh lie on it.
+    """Check that the sensors of a plate, and the supports of an elastic one with a generated mesh, lie on it.
 
     Raises
     ------
@@ -27,7 +27,7 @@ def check_positions(case: CaseTable) -> None:
         With the key of the first that does not.
     """
     plate = case.plate
-    if plate.model == "rigid" or plate.size is None or isinstance(plate.mesh, BroughtMeshTable):
+    if plate.size is None or isinstance(plate.mesh, BroughtMeshTable):
         return
     half = (0.5 * plate.size[0], 0.5 * plate.size[1])
     for number, sensor in enumerate(case.sensors):
@@ -38,7 +38,7 @@ def check_positions(case: CaseTable) -> None:
         except InputError as error:
             names = [{"name": sensor.name} for sensor in case.sensors]
             raise InputError(error.message, f"{item_label('sensors', names, number)}.position") from None
-    tables = plate.supports if isinstance(plate.supports, tuple) else ()
+    tables = plate.supports if plate.model == "elastic" and isinstance(plate.supports, tuple) else ()
     for number, table in enumerate(tables):
         try:
             _check_support(table, half)

@@ -19,6 +19,7 @@ class MotionTable(Section):
     frequency: Annotated[float, Quantity("Hz", "frequency of the motion", Range(above=0))] | None = None
     phase: Annotated[float, Quantity("rad", "phase at the start; at 0 the plate passes its mean position, upwards")] = 0.0
     file: str | None = Field(None, description="CSV file of the motion over time: time, and displacement or acceleration, with their units")
+    repeat: bool = Field(False, description="whether the file has one period of the motion, which repeats")
     direction: tuple[Annotated[float, Quantity("", "x")], Annotated[float, Quantity("", "y")], Annotated[float, Quantity("", "z")]] = Field(
         (0.0, 0.0, 1.0), description="direction of the motion along x, y and the normal z, of any length but 0"
     )
@@ -28,6 +29,8 @@ class MotionTable(Section):
         given = [name for name in ("amplitude", "frequency") if getattr(self, name) is not None]
         if self.file is not None and (given or "phase" in self.model_fields_set):
             raise InputError("give either a file or amplitude and frequency; both are given", "file")
+        if self.file is None and self.repeat:
+            raise InputError("only the motion of a file is repeated, and a harmonic one repeats by itself; leave this out", "repeat")
         if self.file is None and len(given) < 2:
             missing = "amplitude" if given == ["frequency"] else "frequency" if given else "amplitude and frequency"
             raise InputError(f"this key needs {missing}, or file in place of both")

@@ -3,25 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.sensors.antialias import HALF_LENGTH, AntiAlias, kernel, parallel
-from vibroimpact.dynamics.sensors.measuring_chain import MeasuringChain
-from vibroimpact.dynamics.sensors.ports import Ports
-from vibroimpact.dynamics.sensors.sampled import sample_filtered_chain
 from vibroimpact.dynamics.sensors.sensor import sample_count
-
-if TYPE_CHECKING:
-    from vibroimpact.dynamics.vibrating.segments import VibratingSegment
 
 _FINER, _PER_PERIOD = 8, 64.0
 """Least oversampling of a clipped signal, and least number of samples per period of a resonance."""
-_RINGING = 60
+RINGING = 60
 """Samples after which the response of a Butterworth filter has decayed."""
 
 
@@ -52,14 +44,11 @@ def finer_rate(rate: float, resonance: float | None) -> float:
     return rate * max(_FINER, math.ceil(_PER_PERIOD * (resonance or 0.0) / rate))
 
 
-def overload(
-    chain: MeasuringChain, ports: Ports, rate: float, segments: Sequence[VibratingSegment], end: float, ahead: float, limit: float
-) -> Overload:
-    """Return the excess of a chain of one output [m/s^2] over a limit, at a rate [Hz], until a time and a little `ahead` [s]."""
-    value = sample_filtered_chain(chain, ports, rate, segments, sample_count(end + ahead, rate), np.array([limit]))[0]
+def overload(value: Floats, rate: float, begin: int, end: float, limit: float) -> Overload:
+    """Return the excess of samples [m/s^2] over a limit, at a rate [Hz], of which one begins the run, and it ends at a time [s]."""
     excess = np.maximum(np.abs(value) - limit, 0.0) * np.sign(value)
-    within = sample_count(end, rate)
-    return Overload(rate, excess, float(np.abs(value[:within]).max(initial=0.0)), float(np.count_nonzero(excess[:within]) / rate))
+    within = slice(begin, begin + sample_count(end, rate))
+    return Overload(rate, excess, float(np.abs(value[within]).max(initial=0.0)), float(np.count_nonzero(excess[within]) / rate))
 
 
 def clipped_part(found: Overload, antialias: AntiAlias, rate: float, count: int) -> Floats:
@@ -86,7 +75,7 @@ def _through_poles(found: Overload, antialias: AntiAlias, finer: int, count: int
     from scipy.signal import cont2discrete, lfilter
 
     cut = np.flatnonzero(found.excess)
-    begin, end = cut[0], min(cut[-1] + 1 + _RINGING * finer, len(found.excess))
+    begin, end = cut[0], min(cut[-1] + 1 + RINGING * finer, len(found.excess))
     response = np.zeros(end)
     for (level, slope), (stiffness, damping) in parallel(antialias.sections):
         numerator, denominator, _ = cont2discrete(([slope, level], [1.0, damping, stiffness]), 1.0 / found.rate, method="foh")

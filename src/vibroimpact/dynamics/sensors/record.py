@@ -14,11 +14,18 @@ from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.sensors.antialias import Section, antialias_of
 from vibroimpact.dynamics.sensors.filtered_chain import filtered_chain
 from vibroimpact.dynamics.sensors.measuring_chain import MeasuringChain, measuring_chain
-from vibroimpact.dynamics.sensors.overload import clipped_part, finer_rate, overload
+from vibroimpact.dynamics.sensors.overload import RINGING, Overload, clipped_part, finer_rate, overload
 from vibroimpact.dynamics.sensors.ports import Ports, ports_of
 from vibroimpact.dynamics.sensors.recording import Signal
-from vibroimpact.dynamics.sensors.sampled import longest_span, outputs_around_first_contact, sample_at_instants, sample_filtered
+from vibroimpact.dynamics.sensors.sampled import (
+    longest_span,
+    outputs_around_first_contact,
+    sample_at_instants,
+    sample_filtered,
+    sample_filtered_chain,
+)
 from vibroimpact.dynamics.sensors.sensor import Sensor, sample_count
+from vibroimpact.dynamics.sensors.steady_outputs import steady_outputs
 from vibroimpact.dynamics.vibrating.bodies import bases_of_plate
 from vibroimpact.dynamics.vibrating.oscillators import Oscillators
 from vibroimpact.errors import InputError
@@ -36,8 +43,9 @@ _WIDER = 8
 def record(problem: Problem, segments: Sequence[VibratingSegment], sensors: Sequence[Sensor], end: float) -> dict[str, Signal]:
     """Return the signals of sensors over a run, by their names.
 
-    The chain is that of an instrument: the motion of the modes kept and the quasi-static response of those left out; the mounted resonance;
-    the range; the anti-alias filter; sampling with noise and resolution. All linear parts are computed in closed form, at the samples only.
+    The chain is that of an instrument: the motion of the modes kept and the quasi-static response of those left out, and the steady
+    motion of a plate on supports that move; the mounted resonance; the range; the anti-alias filter; sampling with noise and resolution.
+    All linear parts are computed in closed form, at the samples only.
 
     Parameters
     ----------
@@ -53,7 +61,7 @@ def record(problem: Problem, segments: Sequence[VibratingSegment], sensors: Sequ
     Raises
     ------
     InputError
-        If the plate does not vibrate, has no such point, or there would be too many samples.
+        If the plate neither vibrates nor moves, has no such point, or there would be too many samples.
     """
     _check(problem, sensors, end)
     ports = ports_of(segments)
@@ -67,12 +75,12 @@ def record(problem: Problem, segments: Sequence[VibratingSegment], sensors: Sequ
 
 
 def _check(problem: Problem, sensors: Sequence[Sensor], end: float) -> None:
-    """Raise InputError if the plate is rigid, lacks a point, or there would be too many samples."""
+    """Raise InputError if the plate is rigid and at rest, lacks a point, or there would be too many samples."""
     modes = problem.plate.modes
-    if modes is None:
+    if modes is None and problem.motion is None:
         raise InputError("the plate is rigid, so that its points do not move; give it modes", "sensors")
     for sensor in sensors:
-        if sensor.name not in modes.points:
+        if modes is not None and sensor.name not in modes.points:
             raise InputError(f'the modes of the plate do not know a point "{sensor.name}"', "sensors")
         meter = sensor.accelerometer
         rate = sensor.rate if meter is None or meter.range is None else finer_rate(sensor.rate, meter.resonance)
@@ -102,51 +110,86 @@ def _recorded(
     problem: Problem, ports: Ports, segments: Sequence[VibratingSegment], group: Sequence[Sensor], end: float
 ) -> dict[str, Signal]:
     """Return the signals of sensors with the same rate, resonance and filter."""
-    sensor, plate = group[0], _plate(problem, ports)
-    antialias, resonance, count = antialias_of(sensor), _resonance(sensor), sample_count(end, sensor.rate)
-    bases = bases_of_plate(problem)
-    shapes = np.stack([np.concatenate([basis.points[one.name] for basis in bases]) @ np.asarray(one.direction) for one in group])
-    compliance = np.array([[part.get(one.name, _NONE) @ np.asarray(one.direction) for one in group] for part in ports.residuals])
-    orders = [one.order for one in group]
-    # a converter's filter is applied in closed form; an analogue one is a part of the chain, sampled at instants
-    bare = measuring_chain(plate, shapes, compliance, orders, resonance)
-    if antialias.half_length:
-        known = filtered_chain(bare, sensor.rate, longest_span(segments, sensor.rate))
-        values = sample_filtered(known, ports, segments, count)
-    else:
-        chain = measuring_chain(plate, shapes, compliance, orders, (*resonance, *antialias.sections))
-        values = sample_at_instants(chain, ports, sensor.rate, segments, count)
-        rate = sensor.rate * (1 if antialias.sections else _WIDER)
-        known = filtered_chain(bare, rate, longest_span(segments, rate))
-    # the error by the modes left out, from a model of the next octave
-    left_out = filtered_chain(_next_octave_chain(plate, shapes, orders, resonance), known.rate, longest_span(segments, known.rate))
-    norm, left_out_norm = (np.linalg.norm(outputs_around_first_contact(one, ports, segments), axis=1) for one in (known, left_out))
-    uncertainties = left_out_norm / np.where(norm > 0.0, norm, np.inf)
+    sensor, motion, count = group[0], problem.motion, sample_count(end, group[0].rate)
+    antialias, poles = antialias_of(sensor), (*_resonance(sensor), *antialias_of(sensor).sections)
+    values, uncertainties = np.zeros((len(group), count)), np.zeros(len(group))
+    if problem.plate.modes is not None:
+        values, uncertainties = _excited(problem, ports, segments, group, count)
+    if motion is not None:
+        values += steady_outputs(motion, problem.plate.modes, group, poles, sensor.rate, range(count), bool(antialias.half_length))
+    before = 0 if motion is None else RINGING  # a filter still holds what was cut off before the run
     signals = {}
     for number, one in enumerate(group):
         value, meter, facts = values[number], one.accelerometer, {"uncertainty": float(uncertainties[number])}
         if meter is not None and meter.range is not None:
-            alone = measuring_chain(plate, shapes[[number]], compliance[:, [number]], [2], resonance)
-            found = overload(
-                alone, ports, finer_rate(one.rate, meter.resonance), segments, end, antialias.half_length / one.rate, meter.range
-            )
-            clipped = one.filter == "none"
-            value = np.clip(value, -meter.range, meter.range) if clipped else value - clipped_part(found, antialias, one.rate, count)
+            found = _overload(problem, ports, segments, one, before, end)
+            if one.filter == "none":
+                value = np.clip(value, -meter.range, meter.range)
+            else:
+                value = value - clipped_part(found, antialias, one.rate, before + count)[before:]
             facts |= {"peak": found.peak, "overload_time": found.time}
         signals[one.name] = Signal(one, _digitised(one, value), **facts)
     return signals
 
 
-def _next_octave_chain(plate: Oscillators, shapes: Floats, orders: Sequence[int], resonance: Sequence[Section]) -> MeasuringChain:
+def _excited(
+    problem: Problem, ports: Ports, segments: Sequence[VibratingSegment], group: Sequence[Sensor], count: int
+) -> tuple[Floats, Floats]:
+    """Return samples of the vibration that impacts excite (S, count), and how far the modes left out may change each (S,)."""
+    sensor, bare = group[0], _chain(problem, ports, group, _resonance(group[0]))
+    antialias, rate = antialias_of(sensor), sensor.rate
+    # a converter's filter is applied in closed form; an analogue one is a part of the chain, sampled at instants
+    if antialias.half_length:
+        known = filtered_chain(bare, rate, longest_span(segments, rate))
+        values = sample_filtered(known, ports, segments, count)
+    else:
+        chain = _chain(problem, ports, group, (*_resonance(sensor), *antialias.sections))
+        values = sample_at_instants(chain, ports, rate, segments, count)
+        rate *= 1 if antialias.sections else _WIDER
+        known = filtered_chain(bare, rate, longest_span(segments, rate))
+    # the error by the modes left out, from a model of the next octave
+    left_out = filtered_chain(_next_octave_chain(bare, _resonance(sensor)), rate, longest_span(segments, rate))
+    norm, left_out_norm = (np.linalg.norm(outputs_around_first_contact(one, ports, segments), axis=1) for one in (known, left_out))
+    return values, left_out_norm / np.where(norm > 0.0, norm, np.inf)
+
+
+def _overload(problem: Problem, ports: Ports, segments: Sequence[VibratingSegment], sensor: Sensor, before: int, end: float) -> Overload:
+    """Return what of the signal of a sensor lies beyond its range, from so many of its samples before the run on."""
+    meter, ahead = sensor.accelerometer, antialias_of(sensor).half_length / sensor.rate
+    assert meter is not None
+    assert meter.range is not None
+    rate = finer_rate(sensor.rate, meter.resonance)
+    begin, length, level = before * round(rate / sensor.rate), sample_count(end + ahead, rate), meter.range
+    value = np.zeros(begin + length)
+    if problem.motion is not None:
+        samples = range(-begin, length)
+        value += steady_outputs(problem.motion, problem.plate.modes, [sensor], _resonance(sensor), rate, samples, True)[0]
+        level = max(meter.range - float(np.abs(value).max()), 0.0)
+    if problem.plate.modes is not None:
+        alone = _chain(problem, ports, [sensor], _resonance(sensor))
+        value[begin:] += sample_filtered_chain(alone, ports, rate, segments, length, np.array([level]))[0]
+    return overload(value, rate, begin, end, meter.range)
+
+
+def _chain(problem: Problem, ports: Ports, group: Sequence[Sensor], sections: Sequence[Section]) -> MeasuringChain:
+    """Return the chain from the contact forces to sensors, through pairs of poles."""
+    bases = bases_of_plate(problem)
+    shapes = np.stack([np.concatenate([basis.points[one.name] for basis in bases]) @ np.asarray(one.direction) for one in group])
+    compliance = np.array([[part.get(one.name, _NONE) @ np.asarray(one.direction) for one in group] for part in ports.residuals])
+    return measuring_chain(_plate(problem, ports), shapes, compliance, [one.order for one in group], sections)
+
+
+def _next_octave_chain(chain: MeasuringChain, resonance: Sequence[Section]) -> MeasuringChain:
     """Return the chain of the modes left out of the next octave, beyond their quasi-static response, as an estimate.
 
     They are modelled on the last octave kept, at twice the frequencies; twice as many are assumed, as for the bending of a plate.
     """
+    plate = chain.plate
     last = np.flatnonzero(plate.angular_frequency > 0.5 * plate.angular_frequency.max())
-    above, shapes_above = plate.pick(last), 2.0 * shapes[:, last]
+    above, shapes_above = plate.pick(last), 2.0 * chain.shapes[:, last]
     above = replace(above, angular_frequency=2.0 * above.angular_frequency)
     static = -(shapes_above * above.shape[:, None] / above.angular_frequency**2).sum(axis=2)
-    return measuring_chain(above, shapes_above, static, orders, resonance)
+    return measuring_chain(above, shapes_above, static, chain.orders, resonance)
 
 
 def _digitised(sensor: Sensor, value: Floats) -> Floats:

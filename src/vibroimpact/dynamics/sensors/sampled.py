@@ -80,7 +80,7 @@ def sample_filtered(
         Free vibration whose magnitudes stay below these is left zero.
     """
     rate, values = filtered.rate, np.zeros((len(filtered.outputs[0]), count))
-    blocks = _blocks(filtered.chain.oscillators, filtered.outputs, rate)
+    blocks = blocks_of(filtered.chain.oscillators, filtered.outputs, rate)
     for span in _spans(filtered.chain, ports, segments, rate):
         if span.rest is not None:
             _add_rest(filtered, ports.of(span.rest.equilibrium.system), span.rest, span, values, levels)
@@ -118,7 +118,7 @@ def sample_filtered_chain(
 
 def sample_at_instants(chain: MeasuringChain, ports: Ports, rate: float, segments: Sequence[VibratingSegment], count: int) -> Floats:
     """Return the outputs of a chain at the sampling instants, (S, count), without a further filter."""
-    values, blocks = np.zeros((len(chain.shapes), count)), _blocks(chain.oscillators, chain.outputs, rate)
+    values, blocks = np.zeros((len(chain.shapes), count)), blocks_of(chain.oscillators, chain.outputs, rate)
     instrument_state = np.zeros((2, chain.oscillators.number - chain.modes))
     for segment in segments:
         first, last = _first_sample(segment.start, rate), min(_first_sample(segment.end, rate), count)
@@ -132,7 +132,7 @@ def sample_at_instants(chain: MeasuringChain, ports: Ports, rate: float, segment
             elif isinstance(segment.trajectory, RestMotion):
                 port = ports.of(segment.system)
                 chained = rest_chain(chain, port, segment.trajectory, instrument_state + _instrument_jump(chain, port, segments))
-                _blocks(chained.oscillators, chained.outputs, rate).sample(values[:, first:last], chained.initial, offset)
+                blocks_of(chained.oscillators, chained.outputs, rate).sample(values[:, first:last], chained.initial, offset)
                 values[:, first:last] += chained.constant[:, None]
             else:
                 blocks.sample(values[:, first:last], motion_state, offset)
@@ -162,7 +162,7 @@ def _add_rest(filtered: FilteredChain, port: int, rest: RestMotion, span: _Span,
     chained = rest_chain(chain, port, rest, span.initial[:, chain.modes :])
     pairs = PolePairs(chained.oscillators.angular_frequency**2, chained.oscillators.damping)
     outputs = pairs.product(chained.outputs, filter_gains(chained.oscillators, rate))
-    _blocks(chained.oscillators, outputs, rate).sample(later, chained.initial, first / rate - span.start, levels)
+    blocks_of(chained.oscillators, outputs, rate).sample(later, chained.initial, first / rate - span.start, levels)
     passed = float(kernel(np.arange(-HALF_LENGTH * FINENESS, HALF_LENGTH * FINENESS + 1) / FINENESS).sum()) / FINENESS
     later += passed * chained.constant[:, None]
 
@@ -347,7 +347,7 @@ class _Blocks:
         return np.asarray((np.abs(self.outputs[0]) / self.oscillators.angular_frequency + np.abs(self.outputs[1])) @ peak_speeds)
 
 
-def _blocks(oscillators: Oscillators, outputs: Floats, rate: float) -> _Blocks:
+def blocks_of(oscillators: Oscillators, outputs: Floats, rate: float) -> _Blocks:
     """Return oscillators with propagators over a block of samples, cached for few oscillators."""
     propagators = _kept_propagators if len(oscillators.angular_frequency) <= _KEPT else _kept_propagators.__wrapped__
     return _Blocks(oscillators, outputs, *propagators(oscillators.angular_frequency.tobytes(), oscillators.damping_ratio.tobytes(), rate))

@@ -12,6 +12,7 @@ from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.rigid.bodies import RigidBodies
 from vibroimpact.dynamics.rigid.solve_contact import SolvesContact
 from vibroimpact.dynamics.shaken.ride import Ride
+from vibroimpact.dynamics.vibrating.air_motion import free_motion
 from vibroimpact.dynamics.vibrating.bodies import system_of
 from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.vibrating.next_touch import next_touch
@@ -43,22 +44,21 @@ class ShakenBodies(RigidBodies):
 
     def next_touch(self, drops: Drops, flight: Flight, law: ContactLaw) -> tuple[Floats, Floats, Motions]:
         """Return times of touch [s], approach speeds relative to the plate [m/s], and no motions of bodies."""
-        touch = flight.start + np.array(
-            [self._time_to_touch(*one) for one in zip(drops, flight.start, flight.gap, flight.velocity, strict=True)]
-        )
+        flights = [flight.take(np.array([number])) for number in range(len(drops))]
+        touch = flight.start + np.array([self._time_to_touch(*one) for one in zip(drops, flights, strict=True)])
         when = np.where(np.isfinite(touch), touch, flight.start)
         return touch, self.problem.surface(when)[1] - flight.at(when)[1], ()
 
-    def _time_to_touch(self, drop: int, start: float, gap: float, velocity: float) -> float:
+    def _time_to_touch(self, drop: int, flight: Flight) -> float:
         system = self.systems[drop]
-        free = FreeMotion(system, self._state(system, start, gap, velocity))
+        free = free_motion(system, self._state(system, *(float(part[0]) for part in (flight.start, flight.gap, flight.velocity))), flight)
         later, fastest, reach = 0.0, float(system.angular_frequency.max()), float(np.abs(self.problem.surface_phasors).sum())
         approach, rate = (float(part[0]) for part in free.motion(np.array(0.0)))
         if max(abs(approach), abs(rate) / fastest) <= _GAP * reach:
             # a launch: the plate falls away with the third power of time, and the gap is rounding at first
             looks = _FIRST_LOOK / fastest * np.exp2(np.arange(20))
             later = float(looks[np.argmax(-free.motion(looks)[0][:, 0] > _GAP * reach)])
-            free = FreeMotion(system, free.state(np.array(later)))
+            free = free.after(later)
         return later + next_touch(free, 0.0, np.inf)
 
     def _state(self, system: LinearSystem, time: float, gap: float, velocity: float) -> State:

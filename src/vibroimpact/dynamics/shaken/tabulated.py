@@ -4,6 +4,8 @@ A displacement that is sampled at N + 1 equal steps over a time T is a sum of co
 transform of the first kind. Their sum goes on evenly beyond both ends, where it would have a kink. Six harmonic motions of the frequencies
 :math:`(m + 1/2)/(2T)` take the slopes and the third derivatives there, so that the coefficients of a smooth record fall with the sixth
 power of k. They are those that leave least in the upper quarter of the frequencies.
+
+One period of a motion that repeats is a trigonometric polynomial.
 """
 
 from __future__ import annotations
@@ -62,10 +64,43 @@ def tabulated_motion(step: float, displacement: Floats, direction: tuple[float, 
     frequency = np.concatenate([halves, halves, np.pi / length * places[1:]]) / (2.0 * np.pi)
     size = np.concatenate([sizes @ pairs, found[1:]])
     phase = np.where(np.arange(len(size)) < len(halves), 0.0, 0.5 * np.pi) + np.pi * (size < 0.0)
-    acceleration = np.abs(size) * frequency**2
+    return _motion(np.abs(size), frequency, phase, direction)
+
+
+def periodic_motion(step: float, displacement: Floats, direction: tuple[float, float, float] = (0.0, 0.0, 1.0)) -> PlateMotion:
+    """Return the motion through samples of one period of the displacement at equal steps, from its mean position.
+
+    It is the trigonometric polynomial of least degree through them.
+
+    Parameters
+    ----------
+    step : float
+        Time between samples [s], the first of which is at time zero, and comes again one step after the last.
+    displacement : array, shape (samples,)
+        Displacement along the direction [m].
+    direction : tuple of three floats, default (0, 0, 1)
+        Unit vector of the motion.
+
+    Examples
+    --------
+    >>> time = np.arange(100) * 0.001
+    >>> motion = periodic_motion(0.001, 0.002 * np.sin(2.0 * np.pi * 30.0 * time + 0.5))
+    >>> motion.frequency.round(9).tolist(), motion.amplitude.round(9).tolist(), motion.phase.round(9).tolist()
+    ([30.0], [0.002], [0.5])
+    """
+    number = len(displacement)
+    spectrum = np.fft.rfft(displacement)[1:] / number
+    size = np.abs(spectrum) * np.where(2 * np.arange(1, len(spectrum) + 1) == number, 1.0, 2.0)
+    frequency = np.arange(1, len(spectrum) + 1) / (number * step)
+    return _motion(size, frequency, np.angle(spectrum) + 0.5 * np.pi, direction)
+
+
+def _motion(amplitude: Floats, frequency: Floats, phase: Floats, direction: tuple[float, float, float]) -> PlateMotion:
+    """Return a motion without those of its harmonic parts that hardly add to its acceleration."""
+    acceleration = amplitude * frequency**2
     smallest = np.argsort(acceleration)
     kept = np.sort(smallest[np.cumsum(acceleration[smallest]) > _KEPT * acceleration.max()])
-    return PlateMotion(amplitude=np.abs(size[kept]), frequency=frequency[kept], phase=phase[kept], direction=direction)
+    return PlateMotion(amplitude=amplitude[kept], frequency=frequency[kept], phase=phase[kept], direction=direction)
 
 
 def integrated_twice(step: float, acceleration: Floats) -> Floats:
@@ -85,3 +120,21 @@ def integrated_twice(step: float, acceleration: Floats) -> Floats:
     time = step * np.arange(len(acceleration))
     moved = CubicSpline(time, acceleration).antiderivative(2)(time)
     return np.asarray(moved - np.polynomial.Polynomial.fit(time, moved, 2)(time))
+
+
+def integrated_twice_over_period(step: float, acceleration: Floats) -> Floats:
+    """Return the displacement [m] of samples of one period of an acceleration at equal steps [s], (samples,).
+
+    The means of acceleration, velocity and displacement are taken for zero, as they are for a motion that stays where it is.
+
+    Examples
+    --------
+    >>> time = np.arange(50) / 50.0
+    >>> found = integrated_twice_over_period(0.02, -((6.0 * np.pi) ** 2) * np.cos(6.0 * np.pi * time))
+    >>> bool(np.allclose(found, np.cos(6.0 * np.pi * time)))
+    True
+    """
+    spectrum = np.fft.rfft(acceleration)
+    spectrum[0] = 0.0
+    spectrum[1:] /= -((2.0 * np.pi * np.fft.rfftfreq(len(acceleration), step)[1:]) ** 2)
+    return np.fft.irfft(spectrum, len(acceleration))

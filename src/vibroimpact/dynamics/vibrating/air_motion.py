@@ -7,8 +7,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from vibroimpact.arrays import Floats
+from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.flight_in_air import AirFlight
-from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, State
+from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
 
 
 @dataclass(frozen=True)
@@ -25,6 +26,10 @@ class AirMotion(FreeMotion):
         displacement[..., 0], speed[..., 0] = -root * gap, -root * velocity
         return replace(vibrating, displacement=displacement, velocity=speed)
 
+    def after(self, time: float) -> AirMotion:
+        """Return the motion from a time on [s]."""
+        return AirMotion(self.system, self.state(np.array(time)), self.flight.after(self._when(np.array(time))))
+
     def pull(self, time: float) -> Floats:
         """Return a bound of the acceleration of the approach by what acts on the sphere [m/s^2] (contacts,), from a time on [s].
 
@@ -35,3 +40,8 @@ class AirMotion(FreeMotion):
 
     def _when(self, time: Floats) -> Floats:
         return np.asarray(self.flight.start + np.asarray(time, dtype=float)[..., None])
+
+
+def free_motion(system: LinearSystem, state: State, flight: Flight) -> FreeMotion:
+    """Return the motion without contact force of a system whose sphere is on a flight, from the state at its start."""
+    return AirMotion(system, state, flight) if isinstance(flight, AirFlight) else FreeMotion(system, state)

@@ -15,7 +15,6 @@ from vibroimpact.dynamics.columns import VIBRATING_IMPACT_COLUMNS
 from vibroimpact.dynamics.contact import CAPTURED, RIDING, SETTLED, Contact, Piece
 from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.flight import Flight
-from vibroimpact.dynamics.flight_in_air import AirFlight
 from vibroimpact.dynamics.leg import Leg
 from vibroimpact.dynamics.lockstep import Coroutine, run_in_lockstep
 from vibroimpact.dynamics.oblique.motion import ObliqueMotion
@@ -23,7 +22,7 @@ from vibroimpact.dynamics.oblique.state import ObliqueContacts
 from vibroimpact.dynamics.oblique.statement import Oblique
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.shaken.steady import steady_surface
-from vibroimpact.dynamics.vibrating.air_motion import AirMotion
+from vibroimpact.dynamics.vibrating.air_motion import free_motion
 from vibroimpact.dynamics.vibrating.carried_motion import carry
 from vibroimpact.dynamics.vibrating.carried_oscillations import carry_oscillating, steady_response
 from vibroimpact.dynamics.vibrating.contact_equilibrium import ContactEquilibrium
@@ -202,10 +201,7 @@ class VibratingBodies:
 
     def _free(self, drop: int, flight: Flight) -> FreeMotion:
         """Return the free motion of a drop whose sphere is on a flight."""
-        state = self.state(drop, float(flight.gap[0]), float(flight.velocity[0]))
-        if isinstance(flight, AirFlight):
-            return AirMotion(self.systems[drop], state, flight)
-        return FreeMotion(self.systems[drop], state)
+        return free_motion(self.systems[drop], self.state(drop, float(flight.gap[0]), float(flight.velocity[0])), flight)
 
     def _touch(self, drop: int, flight: Flight, level: float, guess: float) -> tuple[FreeMotion, float]:
         """Return the free motion of a drop and the time until it touches [s], where it then is over the plate; `guess`: about that time."""

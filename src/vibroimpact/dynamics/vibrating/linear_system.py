@@ -253,6 +253,10 @@ class FreeMotion:
             start.local * np.exp(-system.rate * later),
         )
 
+    def after(self, time: float) -> FreeMotion:
+        """Return the motion from a time on [s]."""
+        return FreeMotion(self.system, self.state(np.array(time)))
+
     def lost_by(self, time: Floats) -> Floats:
         """Return the energy lost since the start [J], (..., n + 1): in each coordinate, and last in the massless elements."""
         return self.lost_at(self.state(time))

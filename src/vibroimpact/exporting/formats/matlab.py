@@ -120,6 +120,13 @@ def _facts(drop: Drop) -> tuple[dict[str, Any], dict[str, Any]]:
             "spin": (along["spin"], "rad/s"),
             "gravity_along_plate": (along["gravity"], "m/s2"),
         }
+    if drop.motion is not None:
+        stated |= {
+            "motion_amplitude": (drop.motion.amplitude, "m"),
+            "motion_frequency": (drop.motion.frequency, "Hz"),
+            "motion_phase": (drop.motion.phase, "rad"),
+            "motion_direction": (np.array(drop.motion.direction), "1"),
+        }
     facts = {name: value for name, (value, _) in stated.items()}
     units: dict[str, Any] = {name: unit for name, (_, unit) in stated.items() if unit}
     for name in ("sphere", "plate"):

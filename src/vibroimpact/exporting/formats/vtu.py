@@ -25,7 +25,7 @@ _QUADRILATERAL, _BRICK = 9, 12
 
 
 def write(drop: Drop) -> dict[str, bytes]:
-    """Return `sphere.pvd` and `plate.pvd`, with one file per frame; a plate without deflection is `plate.vtu`.
+    """Return `sphere.pvd` and `plate.pvd`, with one file per frame; a plate without deflection that stands still is `plate.vtu`.
 
     Raises
     ------
@@ -39,9 +39,13 @@ def write(drop: Drop) -> dict[str, bytes]:
     if drop.surface:
         points, cells, on_plate = _surface(drop)
         lifted = np.zeros((len(times), len(points), 3), dtype=np.float32)
+        lifted[:, :, :2] = _plate_path(drop, times)[:, None, :2]
         lifted[:, :, 2] = drop.surface["height"].reshape(len(times), -1)[:, on_plate]
         return files | _series("plate", times, [_text(points, cells, one) for one in lifted])
-    return files | ({"plate.vtu": _box(drop.plate_size)} if drop.plate_size else {})
+    if drop.plate_size is None:
+        return files
+    boxes = [_box(drop.plate_size, at) for at in _plate_path(drop, times)]
+    return files | ({"plate.vtu": boxes[0]} if drop.motion is None else _series("plate", times, boxes))
 
 
 def _sphere_path(drop: Drop) -> tuple[Floats, Floats]:
@@ -57,6 +61,12 @@ def _sphere_path(drop: Drop) -> tuple[Floats, Floats]:
         motion = motion_at(drop.history, times)
         path[:, :2] = np.stack([motion["position_x_m"], motion["position_y_m"]], axis=1) - drop.position
     return times, path
+
+
+def _plate_path(drop: Drop, times: Floats) -> Floats:
+    """Return how far the supports of the plate have moved at times [s] (frames, 3) [m]."""
+    moved = np.zeros_like(times) if drop.motion is None else drop.motion.at(times)[0]
+    return np.outer(moved, (0.0, 0.0, 1.0) if drop.motion is None else drop.motion.direction)
 
 
 def _times(drop: Drop) -> Floats:
@@ -119,15 +129,16 @@ def _corners(grid: NDArray[np.generic]) -> Iterator[NDArray[np.generic]]:
     yield from (grid[:-1, :-1], grid[:-1, 1:], grid[1:, 1:], grid[1:, :-1])
 
 
-def _box(size: tuple[float, float, float]) -> bytes:
-    """Return a plate at rest as one brick; its upper surface is z = 0."""
+def _box(size: tuple[float, float, float], moved: Floats) -> bytes:
+    """Return a rigid plate as one brick that has moved (3,) [m]; at rest its upper surface is z = 0."""
     corners = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)]
-    points = np.array([(x, y, z) for z in (-1.0, 0.0) for x, y in corners]) * np.array(size)
+    points = np.array([(x, y, z) for z in (-1.0, 0.0) for x, y in corners]) * np.array(size) + moved
     return _file(points.astype(np.float32), np.arange(8, dtype=np.int32)[None, :], _BRICK, {})
 
 
 def _notes(drop: Drop) -> list[str]:
-    notes = ["The sphere is drawn round, wherever it deforms, at its true height above the plate at rest (z = 0)."]
+    place = "at rest" if drop.motion is None else "in its mean position"
+    notes = [f"The sphere is drawn round, wherever it deforms, at its true height above the plate {place} (z = 0)."]
     if drop.oblique is not None:
         notes.append("It moves along the plate, and does not turn; its spin is in the history.")
     if drop.surface:
@@ -143,7 +154,7 @@ def _notes(drop: Drop) -> list[str]:
 FORMAT = ExportFormat(
     name="vtu",
     program="ParaView, VTK, PyVista",
-    files="sphere.pvd and plate.pvd with a .vtu file each frame; a rigid plate is plate.vtu",
+    files="sphere.pvd and plate.pvd with a .vtu file each frame; a rigid plate at rest is plate.vtu",
     tested="read back with meshio 5.3: points, cells and displacements the same",
     write=write,
     notes=_notes,

@@ -1,0 +1,78 @@
+r"""What sensors read of the steady motion of a plate on supports that move.
+
+Each harmonic motion of the supports moves a point of the plate by a phasor C (`shaken/steady.py`), and for ever. It is the free motion of
+an undamped oscillator, :math:`q = \sin \omega t`, so that derivative, resonance and filter are transfer functions at its poles
+(`pole_pairs`): :math:`\mathrm{Im}\,C e^{i \omega t} = a q + b \dot q` with :math:`C = a + i \omega b`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vibroimpact.arrays import Complex, Floats
+from vibroimpact.dynamics.sensors.antialias import HALF_LENGTH, Section
+from vibroimpact.dynamics.sensors.filtered_chain import filter_gains
+from vibroimpact.dynamics.sensors.pole_pairs import PolePairs
+from vibroimpact.dynamics.sensors.sampled import blocks_of
+from vibroimpact.dynamics.sensors.sensor import Sensor
+from vibroimpact.dynamics.shaken.statement import PlateMotion
+from vibroimpact.dynamics.shaken.steady import steady_modes
+from vibroimpact.dynamics.vibrating.oscillators import Oscillators
+
+if TYPE_CHECKING:
+    from vibroimpact.structures.modal_model import ModalBasis  # which loads sparse matrices
+
+
+def steady_outputs(
+    motion: PlateMotion,
+    modes: ModalBasis | None,
+    sensors: Sequence[Sensor],
+    sections: Sequence[Section],
+    rate: float,
+    samples: range,
+    converted: bool,
+) -> Floats:
+    """Return the outputs of sensors with the same resonance and filter in the steady motion, (S, samples).
+
+    Parameters
+    ----------
+    motion : PlateMotion
+        Motion of the supports.
+    modes : ModalBasis or None
+        Modes of the plate.
+    sensors : sequence of Sensor
+        The sensors; they move with the plate, and read its motion in space.
+    sections : sequence of pairs of floats
+        The poles of the instruments.
+    rate : float
+        Samples per second [Hz].
+    samples : range
+        Numbers of the samples, from the start on; negative ones lie before it.
+    converted : bool
+        Whether the filter of a converter follows.
+    """
+    omega, still = motion.angular_frequency, np.zeros_like(motion.angular_frequency)
+    oscillators, poles = Oscillators(omega, still, still), PolePairs(omega**2, still)
+    passed = poles.low_pass(sections)
+    if converted:
+        passed = poles.product(passed, filter_gains(oscillators, rate))
+    phasors = [_phasors(motion, modes, sensor) for sensor in sensors]
+    moved = [
+        poles.product(np.stack([one.real, one.imag / omega]), poles.power(sensor.order))
+        for one, sensor in zip(phasors, sensors, strict=True)
+    ]
+    outputs = np.stack([poles.product(one, passed) for one in moved], axis=1)
+    values = np.zeros((len(sensors), len(samples)))
+    first = samples.start - (HALF_LENGTH if converted else 0)  # the gains of the filter are for its output so many samples later
+    blocks_of(oscillators, outputs, rate).sample(values, np.stack([still, omega]), first / rate)
+    return values
+
+
+def _phasors(motion: PlateMotion, modes: ModalBasis | None, sensor: Sensor) -> Complex:
+    """Return the phasors of the motion of a sensor in space along its direction [m] (k,): of the supports, and relative to them."""
+    along = np.asarray(sensor.direction)
+    supports = float(along @ motion.direction) * motion.phasors
+    return supports if modes is None else np.asarray(supports + modes.points[sensor.name] @ along @ steady_modes(motion, modes))
