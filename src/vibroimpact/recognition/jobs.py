@@ -1,12 +1,16 @@
-"""Runs independent computations on a few threads, with progress; scikit-learn releases the interpreter while it computes."""
+"""Runs independent computations in a few processes, with progress.
+
+In threads they would disturb each other: scikit-learn sets the filters of warnings, which all threads share.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from typing import TypeVar
 
 from threadpoolctl import threadpool_limits
+
+from vibroimpact.recognition.extra import needs_extra
 
 Done = TypeVar("Done")
 Progress = Callable[[str, int, int], None]
@@ -27,18 +31,16 @@ def run_jobs(what: str, jobs: Sequence[Callable[[], Done]], workers: int, progre
     jobs : sequence of callable
         The functions.
     workers : int
-        Number of threads.
+        Number of processes; with 1 they run in this one.
     progress : callable
         Called after each; what it raises ends the rest.
     """
+    with needs_extra():
+        from joblib import Parallel, delayed
     found: list[Done] = []
     progress(what, 0, len(jobs))
-    with threadpool_limits(1), ThreadPoolExecutor(workers) as pool:
-        try:
-            for one in pool.map(lambda job: job(), jobs):
-                found.append(one)
-                progress(what, len(found), len(jobs))
-        except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
-            raise
+    with threadpool_limits(1):
+        for one in Parallel(workers, return_as="generator")(delayed(job)() for job in jobs):
+            found.append(one)
+            progress(what, len(found), len(jobs))
     return found

@@ -133,7 +133,7 @@ def recognise(
     most : int, default 4000
         Largest number of signals used; of more, whole groups are drawn at random.
     workers : int, default 2
-        Number of threads.
+        Number of processes.
     progress : callable, optional
         Called with what is done, how many parts of it are done, and how many there are.
 
