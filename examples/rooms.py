@@ -34,6 +34,7 @@ FLOORS = {  # top to bottom: what a floor is, its colour, its rooms and what the
         {
             "cases": "the case file: sections,\nlimits, slips of units",
             "results": "the result of a run\nand its folder",
+            "signals": "records, packets,\nfeatures",
             "charts": "described once, drawn\nby plotly and matplotlib",
             "report": "pages, tables,\nprogress",
             "meshes": "mesh files in and out",

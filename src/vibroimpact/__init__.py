@@ -103,6 +103,19 @@ if TYPE_CHECKING:
     from vibroimpact.runs.notebook import plot_result as plot_result
     from vibroimpact.runs.notebook import result_html as result_html
     from vibroimpact.runs.save import save_result as save_result
+    from vibroimpact.signals.feature_table import FeatureTable as FeatureTable
+    from vibroimpact.signals.feature_table import feature_table as feature_table
+    from vibroimpact.signals.onset import from_onset as from_onset
+    from vibroimpact.signals.onset import onset_time as onset_time
+    from vibroimpact.signals.packets import Packets as Packets
+    from vibroimpact.signals.packets import find_packets as find_packets
+    from vibroimpact.signals.packets import packet_records as packet_records
+    from vibroimpact.signals.read_records import read_records as read_records
+    from vibroimpact.signals.record import Record as Record
+    from vibroimpact.signals.record_table import RecordTable as RecordTable
+    from vibroimpact.signals.record_table import record_table as record_table
+    from vibroimpact.signals.registry import features as features
+    from vibroimpact.signals.registry import find_feature as find_feature
     from vibroimpact.structures.mesh import Mesh as Mesh
     from vibroimpact.structures.modal_model import ModalBasis as ModalBasis
     from vibroimpact.studies.report.notebook import plot_study as plot_study
@@ -127,6 +140,7 @@ _HOME = {
     "Comparison": "comparison.comparison",
     "ComputationError": "errors",
     "ContactLaw": "contact.law",
+    "FeatureTable": "signals.feature_table",
     "FrictionCalibration": "calibration.friction.calibrate",
     "InputError": "errors",
     "Material": "materials",
@@ -138,9 +152,12 @@ _HOME = {
     "PointContact": "dynamics.system",
     "Oblique": "dynamics.oblique.statement",
     "ObliqueImpacts": "calibration.friction.measured",
+    "Packets": "signals.packets",
     "PlateMotion": "dynamics.shaken.statement",
     "Problem": "dynamics.problem",
     "QuasiStatic": "contact.quasi_static",
+    "Record": "signals.record",
+    "RecordTable": "signals.record_table",
     "Response": "dynamics.response",
     "Result": "results.result",
     "Sensor": "dynamics.sensors.sensor",
@@ -166,10 +183,15 @@ _HOME = {
     "convert_units": "units.reading",
     "export_formats": "exporting.export_format",
     "export_result": "exporting.export_result",
+    "feature_table": "signals.feature_table",
+    "features": "signals.registry",
     "find_contact_law": "contact.registry",
+    "find_feature": "signals.registry",
     "find_friction_law": "contact.registry",
     "friction_laws": "contact.registry",
     "find_material": "materials",
+    "find_packets": "signals.packets",
+    "from_onset": "signals.onset",
     "identify_local_element": "dynamics.local_element",
     "impacts_in_force": "calibration.force_record",
     "impacts_in_position": "calibration.position_record",
@@ -184,15 +206,19 @@ _HOME = {
     "material_library": "materials",
     "modal_damping": "calibration.tunables",
     "mode_charts": "modes.charts",
+    "onset_time": "signals.onset",
+    "packet_records": "signals.packets",
     "plotly_figure": "charts.notebook",
     "plot_study": "studies.report.notebook",
     "read_calibration": "calibration.calibrate_case",
     "plot_result": "runs.notebook",
     "read_case": "cases.reader",
     "read_mesh": "meshes.mesh_file",
+    "read_records": "signals.read_records",
     "read_result": "results.folder",
     "read_study": "studies.study",
     "read_sweep": "studies.sweep",
+    "record_table": "signals.record_table",
     "remake_report": "remake",
     "reproduce_paper": "paper.report.folder",
     "result_html": "runs.notebook",

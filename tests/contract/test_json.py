@@ -90,6 +90,14 @@ def test_every_command_that_prints_a_table_has_it() -> None:
     assert {name for name, there in takes.items() if not there} == {"report", "figures", "new", "serve", "schema"}  # one line each; JSON
 
 
+def test_features_are_their_table(printed: Printed) -> None:
+    lines = [f"{place / 1e4!r},{math.exp(-place / 40.0) * math.sin(place / 3.0)!r}" for place in range(300)]
+    Path("tap.csv").write_text("\n".join(["time_s,geophone_V", *lines]), encoding="utf-8")
+    document = printed("features", "tap.csv", "-o", "table.csv")
+    assert in_all_columns(document["signals"]) == rows(".", "table.csv")
+    assert list(printed("features", "--list")["features"]) == list(vi.features())
+
+
 def test_a_run_is_its_summary(printed: Printed) -> None:
     document = printed("run", case_file(ELASTIC, "plate.toml"), "-o", "out")
     assert document.pop("folder") == "out"

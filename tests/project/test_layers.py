@@ -28,6 +28,7 @@ LAYERS = [
     {"meshes", "measurements"},
     {"cases"},
     {"results"},
+    {"signals"},
     {"charts"},
     {"report"},
     # what people do, each whole

@@ -24,6 +24,7 @@ from vibroimpact.cases.elastic.modes import compute_modes
 from vibroimpact.cli import main
 from vibroimpact.cli.case_text import shipped_cases_table
 from vibroimpact.cli.doctor import diagnose, diagnosis_rows
+from vibroimpact.cli.feature_text import feature_list, table_summary
 from vibroimpact.cli.material_text import material_library_table, material_sheet
 from vibroimpact.cli.unit_table import converted, unit_table
 from vibroimpact.comparison.comparison import compare_laws
@@ -79,6 +80,8 @@ def commands(tmp_path_factory: pytest.TempPathFactory, variable: vi.Response) ->
     sweep = read_sweep(study_table())
     study = vi.read_study(compute_study(sweep, folder / "study"))
     drop = told_case("paper:type1-variable")
+    signals = [vi.Record(name, signal.value, signal.sensor.rate, signal.sensor.unit) for name, signal in rung.signals.items()]
+    table = vi.record_table([*signals, vi.Record("silence", [0.0] * 100, 20e3, "V")])
     return {
         "run": lambda width: result_summary(rigid, width),
         "run, elastic": lambda width: result_summary(rung, width),
@@ -90,6 +93,8 @@ def commands(tmp_path_factory: pytest.TempPathFactory, variable: vi.Response) ->
         "sweep": lambda width: study_summary(study, width),
         "export": lambda _: format_table(),
         "export, done": lambda _: export_summary(drop, find_export_format("lammps"), [folder / "drop.in"]),
+        "features": lambda _: table_summary(table),
+        "features --list": lambda _: feature_list(),
         "cases": lambda _: shipped_cases_table(),
         "laws": law_table,
         "laws NAME": lambda _: law_sheet("jackson-green-marghitu"),
@@ -112,6 +117,8 @@ NAMES = (
     "sweep",
     "export",
     "export, done",
+    "features",
+    "features --list",
     "cases",
     "laws",
     "laws NAME",

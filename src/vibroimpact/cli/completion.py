@@ -95,6 +95,11 @@ def complete_parts(incomplete: str) -> list[str]:
     return _lists(incomplete, _words()["parts"])
 
 
+def complete_features(incomplete: str) -> list[str]:
+    """Return what a list of features, separated by commas, may go on with."""
+    return _lists(incomplete, _words()["features"])
+
+
 def _laws() -> list[str]:
     from importlib.metadata import entry_points
 

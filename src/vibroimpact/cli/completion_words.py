@@ -17,6 +17,7 @@ from vibroimpact.contact.registry import contact_laws
 from vibroimpact.exporting.export_format import export_formats
 from vibroimpact.materials import RIGID, material_library
 from vibroimpact.paper.report.outline import PARTS
+from vibroimpact.signals.registry import features
 
 Schema = Mapping[str, Any]
 
@@ -45,6 +46,7 @@ def completion_words() -> dict[str, Any]:
         "materials": [*materials, RIGID.name],
         "formats": list(export_formats()),
         "parts": list(PARTS),
+        "features": list(features()),
     }
 
 

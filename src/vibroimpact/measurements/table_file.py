@@ -16,7 +16,7 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError, did_you_mean
-from vibroimpact.files.reading import FileKind, read_text
+from vibroimpact.files.reading import FileKind, beginning, decoded, read_text, read_text_bytes, with_path
 from vibroimpact.shown import shortened, shown
 from vibroimpact.units.reading import to_si
 
@@ -44,6 +44,9 @@ _ENDINGS = {
     "_um": "um",
     "_N": "N",
     "_kN": "kN",
+    "_V": "V",
+    "_mV": "mV",
+    "_Pa": "Pa",
 }
 
 
@@ -113,6 +116,25 @@ def read_table_file(path: str | PathLike[str], units: Mapping[str, str]) -> Tabl
         raise InputError(f"{file}: there are no rows under the header")
     columns = {name: np.array(values) for name, values in zip(places, found, strict=True)}
     return TableFile(file, columns, lines.tolist(), [number for number in empty if number < last])
+
+
+def header_of(path: str | PathLike[str]) -> list[str]:
+    """Return the cells of the header of a CSV file.
+
+    Raises
+    ------
+    InputError
+        If the file can't be read, or is empty.
+    """
+    file = Path(path)
+    try:
+        text = decoded(beginning(file, TABLE, _LONGEST).rpartition(b"\n")[0] or read_text_bytes(file, TABLE), TABLE)
+        number, first = next(_rows(text), (0, ""))
+        if not first:
+            raise InputError("the file is empty")
+        return _header(number, first)[0]
+    except InputError as error:
+        raise with_path(file, error) from None
 
 
 def strictly_increasing(table: TableFile, column: str) -> TableFile:

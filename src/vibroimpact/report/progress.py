@@ -43,8 +43,8 @@ def patient_progress(what: str, console: Console) -> Iterator[Callable[[float], 
 
 
 @contextmanager
-def counting_progress(what: str, console: Console) -> Iterator[Callable[[int, int], None]]:
-    """Yield a callback for the items done and their total; the bar shows rate and remaining time, and only on a terminal."""
+def counting_progress(what: str, console: Console) -> Iterator[Callable[[int, int | None], None]]:
+    """Yield a callback for the items done and their total, None if it is not known; the bar shows the rate, and only on a terminal."""
     columns = (
         TextColumn("{task.description}"),
         BarColumn(),
@@ -55,7 +55,7 @@ def counting_progress(what: str, console: Console) -> Iterator[Callable[[int, in
     bar = Progress(*columns, console=console, transient=True, disable=not console.is_terminal, speed_estimate_period=60.0)
     task = None
 
-    def update(done: int, total: int) -> None:
+    def update(done: int, total: int | None) -> None:
         nonlocal task
         if task is None:  # items of an earlier run must not count for the rate
             task = bar.add_task(what, total=total, completed=done)

@@ -1,0 +1,103 @@
+"""The command `features`, which describes signals by numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from vibroimpact.cli.completion import complete_features
+from vibroimpact.cli.shared import Json, app, console, exit_on_interrupt, names_in, say, show
+from vibroimpact.errors import InputError
+
+if TYPE_CHECKING:
+    from vibroimpact.signals.record import Record
+
+
+@app.command()
+def features(
+    paths: Annotated[
+        list[Path] | None,
+        typer.Argument(metavar="[DIR|FILE...]", help="Folders of results or data sets, or files: CSV, WAV, UFF, NetCDF-4."),
+    ] = None,
+    output: Annotated[Path | None, typer.Option("-o", "--output", metavar="CSV", help="Write the table into this file.")] = None,
+    only: Annotated[
+        str | None,
+        typer.Option("--only", metavar="NAMES", autocompletion=complete_features, help="Which features, separated by commas."),
+    ] = None,
+    threshold: Annotated[
+        float | None,
+        typer.Option(
+            "--threshold", metavar="NUMBER", help="Of the envelope, in the SI unit of the signal; by default a tenth of its largest value."
+        ),
+    ] = None,
+    dead_time: Annotated[
+        str, typer.Option("--dead-time", metavar="TIME", help="How long the envelope is below the threshold before a packet is over.")
+    ] = "5 ms",
+    window: Annotated[
+        str | None, typer.Option("--window", metavar="TIME", help='Of each record only so much from its onset, such as "40 ms".')
+    ] = None,
+    packets: Annotated[bool, typer.Option("--packets", help="A row for each packet of a record, in place of one for the record.")] = False,
+    listed: Annotated[bool, typer.Option("--list", help="List the features: name, unit, equation, source.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
+    as_json: Json = False,
+) -> None:
+    """Describe signals by features: amplitudes, times, spectrum, packets; or list the features.
+
+    A row of the table is a signal. Where a feature has no number, the last column says why.
+    """
+    from vibroimpact.cli.feature_text import feature_list, features_document, table_document, table_summary
+
+    if listed:
+        if paths or output:
+            raise InputError("--list lists the features, and takes no files")
+        show(features_document, feature_list, as_json=as_json)
+        return
+    if not paths:
+        raise InputError("name the files or folders with signals: vibroimpact features DIR|FILE... -o table.csv; --list lists the features")
+    from vibroimpact.files.atomic_write import write_file
+    from vibroimpact.files.recover import recover
+    from vibroimpact.report.progress import counting_progress
+    from vibroimpact.signals.record_table import record_table
+    from vibroimpact.units.reading import to_si
+
+    if packets and window is not None:
+        raise InputError("a row is a packet with --packets, and a window with --window; give one of them")
+    if output is not None and output.exists() and not force:
+        raise InputError(f"{output} exists; take another name, or --force to replace it")
+    names = None if only is None else names_in(only)
+    if names == []:
+        raise InputError("--only names no feature; --list lists them")
+    silence, length = to_si(dead_time, "s"), None if window is None else to_si(window, "s")
+    records = _records(paths, threshold, silence, length, packets=packets)
+    screen = console(err=as_json)
+    with exit_on_interrupt(), counting_progress("signals", screen) as count:
+        table = record_table(records, names, threshold=threshold, dead_time=silence, progress=lambda done: count(done, None))
+    if not table.records:
+        raise InputError("there are no signals" + (" with a packet above the threshold" if packets else ""))
+    if output is not None:
+        recover(output)
+        write_file(output, table.csv_text())
+    show(lambda: table_document(table), lambda: table_summary(table), as_json=as_json)
+    if output is not None:
+        say(f"wrote {output}: {len(table.records)} signals, {len(table.names)} features", err=as_json)
+
+
+def _records(paths: list[Path], threshold: float | None, dead_time: float, window: float | None, *, packets: bool) -> Iterator[Record]:
+    """Yield the records of files and folders, or their windows from the onset, or their packets."""
+    from vibroimpact.files.reading import with_path
+    from vibroimpact.signals.onset import from_onset
+    from vibroimpact.signals.packets import packet_records
+    from vibroimpact.signals.read_records import read_records
+
+    for path in paths:
+        for record in read_records(path):
+            try:
+                if packets:
+                    yield from packet_records(record, threshold, dead_time)
+                else:
+                    yield record if window is None else from_onset(record, window, threshold=threshold)
+            except InputError as error:
+                raise with_path(record.source, error) from None

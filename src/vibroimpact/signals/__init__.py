@@ -1,0 +1,1 @@
+"""Signal processing of records, whatever their source: onset, packets, features."""

@@ -1,0 +1,71 @@
+"""Amplitudes of a signal in time, and their ratios."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.signals.block import Block
+from vibroimpact.signals.feature import Family, Feature
+
+_TEXTBOOK = "Brandt 2011, Noise and Vibration Analysis, Wiley, ch. 4"
+_FACTORS = "Lei, He, Zi & Hu 2007, Mech. Syst. Signal Process. 21:2280"
+
+
+def _of(block: Block) -> Floats:
+    value, magnitude, peak = block.value, block.magnitude, block.peak
+    mean_square, mean_magnitude = block.square_sum / block.samples, magnitude.mean(axis=1)
+    root = np.sqrt(magnitude).mean(axis=1) ** 2
+    rms = np.sqrt(mean_square)
+    largest, least = value.max(axis=1), value.min(axis=1)
+    # from the first sample, so that a constant has none at all
+    centred = value - value[:, :1]
+    deviation = np.sqrt(np.maximum((centred**2).mean(axis=1) - centred.mean(axis=1) ** 2, 0.0))
+    columns = (
+        peak,
+        largest - least,
+        value.mean(axis=1),
+        mean_magnitude,
+        rms,
+        deviation,
+        block.square_sum / block.rate,
+        peak / rms,
+        rms / mean_magnitude,
+        peak / mean_magnitude,
+        peak / root,
+    )
+    return np.stack(columns, axis=1)
+
+
+FAMILY = Family(
+    (
+        Feature(name="peak", meaning="largest magnitude", equation="max|x|", source=_TEXTBOOK, degree=1),
+        Feature(
+            name="peak_to_peak", meaning="span of the samples", equation="max(x) - min(x)", source=_TEXTBOOK, degree=1, offset_free=True
+        ),
+        Feature(name="mean", meaning="mean", equation="mean(x)", source=_TEXTBOOK, degree=1),
+        Feature(name="mean_magnitude", meaning="mean of the magnitude", equation="mean|x|", source=_TEXTBOOK, degree=1),
+        Feature(name="rms", meaning="root of the mean square", equation="sqrt(mean(x^2))", source=_TEXTBOOK, degree=1),
+        Feature(
+            name="standard_deviation",
+            meaning="root of the mean square about the mean",
+            equation="sqrt(mean((x - mean(x))^2))",
+            source=_TEXTBOOK,
+            degree=1,
+            offset_free=True,
+        ),
+        Feature(
+            name="energy", meaning="integral of the square over time", equation="sum(x^2) / rate", source=_TEXTBOOK, unit="s", degree=2
+        ),
+        Feature(name="crest_factor", meaning="peak over rms", equation="max|x| / sqrt(mean(x^2))", source=_TEXTBOOK),
+        Feature(name="shape_factor", meaning="rms over the mean magnitude", equation="sqrt(mean(x^2)) / mean|x|", source=_FACTORS),
+        Feature(name="impulse_factor", meaning="peak over the mean magnitude", equation="max|x| / mean|x|", source=_FACTORS),
+        Feature(
+            name="clearance_factor",
+            meaning="peak over the squared mean root of the magnitude",
+            equation="max|x| / mean(sqrt|x|)^2",
+            source=_FACTORS,
+        ),
+    ),
+    _of,
+)

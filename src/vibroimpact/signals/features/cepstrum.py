@@ -1,0 +1,48 @@
+"""Cepstral coefficients: the shape of the logarithmic spectrum, from coarse to fine, in bands of equal width.
+
+Bands of the mel scale follow the ear; a plate has none, so that the bands are linear.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+from scipy import fft
+
+from vibroimpact.arrays import Floats
+from vibroimpact.signals.block import Block
+from vibroimpact.signals.feature import Family, Feature
+
+_BANDS, _COEFFICIENTS = 20, 8
+_LEAST = 4 * _BANDS
+_FLOOR = 1e-10
+"""Energy of a band that counts as none, as a part of the whole: -100 dB."""
+
+
+def _of(block: Block) -> Floats:
+    energy = block.power @ _triangles(block.power.shape[1])
+    level = np.log(energy / block.power.sum(axis=1, keepdims=True) + _FLOOR)
+    return np.asarray(fft.dct(level, axis=1, norm="ortho")[:, 1 : _COEFFICIENTS + 1])
+
+
+@lru_cache(maxsize=8)
+def _triangles(frequencies: int) -> Floats:
+    """Return triangular windows that overlap by half and fill the range from zero to half the rate, (frequencies, bands)."""
+    place = np.linspace(0.0, _BANDS + 1.0, frequencies)[:, None]
+    return np.asarray(np.maximum(1.0 - np.abs(place - np.arange(1, _BANDS + 1)), 0.0))
+
+
+FAMILY = Family(
+    tuple(
+        Feature(
+            name=f"cepstrum_{number}",
+            meaning=f"cepstral coefficient {number} of 20 linear bands",
+            equation=f"sqrt(2/20) sum(ln(E[b]/sum(P) + 1e-10) cos(pi {number} (b - 1/2) / 20), b = 1..20), E of triangular bands",
+            source="Davis & Mermelstein 1980, IEEE Trans. Acoust. Speech Signal Process. 28:357, with linear bands",
+            least=_LEAST,
+        )
+        for number in range(1, _COEFFICIENTS + 1)
+    ),
+    _of,
+)

@@ -1,0 +1,39 @@
+"""The part of a signal that is clipped: a converter that is overdriven repeats its largest value."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.signals.block import Block
+from vibroimpact.signals.feature import Family, Feature
+
+_RUN = 3
+"""Samples in a row that make a clipping: a sampled tone can touch its extreme twice."""
+
+
+def _of(block: Block) -> Floats:
+    part = np.zeros(len(block.value))
+    for side in (block.value, -block.value):
+        extreme = side.max(axis=1, keepdims=True)
+        at_extreme = (side == extreme) & (extreme > 0.0)
+        if block.samples >= _RUN:
+            run = np.lib.stride_tricks.sliding_window_view(at_extreme, _RUN, axis=1).all(axis=2)
+            clipped = np.zeros_like(at_extreme)
+            for place in range(_RUN):
+                clipped[:, place : place + run.shape[1]] |= run
+            part += np.count_nonzero(clipped, axis=1) / block.samples
+    return part[:, None]
+
+
+FAMILY = Family(
+    (
+        Feature(
+            name="clipped_part",
+            meaning="part of the samples in runs of three or more at the largest positive or the most negative value",
+            equation="sum(x[i] = max(x) > 0 or x[i] = min(x) < 0, in runs of 3 and more) / samples",
+            source="of this program",
+        ),
+    ),
+    _of,
+)

@@ -1,0 +1,47 @@
+"""Skewness and kurtosis: the third and fourth moment of the samples about their mean."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.signals.block import Block
+from vibroimpact.signals.feature import Family, Feature
+from vibroimpact.signals.reasons import Reason
+
+
+def _of(block: Block) -> Floats:
+    # from the first sample, so that a constant has no deviation at all
+    centred = block.value - block.value[:, :1]
+    centred -= centred.mean(axis=1, keepdims=True)
+    span = np.abs(centred).max(axis=1, keepdims=True)
+    centred /= span  # small deviations of a large signal would underflow
+    square = centred * centred
+    variance = square.mean(axis=1)
+    third, fourth = np.einsum("ij,ij->i", square, centred), np.einsum("ij,ij->i", square, square)
+    return np.stack([third / block.samples / variance**1.5, fourth / block.samples / variance**2], axis=1)
+
+
+_SOURCE = "Joanes & Gill 1998, J. R. Stat. Soc. D 47:183"
+
+FAMILY = Family(
+    (
+        Feature(
+            name="skewness",
+            meaning="third standardized moment: 0 if symmetrical about the mean",
+            equation="mean((x - mean(x))^3) / mean((x - mean(x))^2)^1.5",
+            source=f"{_SOURCE}, g1",
+            offset_free=True,
+            lacking=Reason.CONSTANT,
+        ),
+        Feature(
+            name="kurtosis",
+            meaning="fourth standardized moment: 3 of normal noise, more of impulses",
+            equation="mean((x - mean(x))^4) / mean((x - mean(x))^2)^2",
+            source=f"{_SOURCE}, g2 + 3",
+            offset_free=True,
+            lacking=Reason.CONSTANT,
+        ),
+    ),
+    _of,
+)

@@ -1,0 +1,94 @@
+"""Shape of the energy spectrum."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.signals.block import Block
+from vibroimpact.signals.feature import Family, Feature
+from vibroimpact.signals.reasons import Reason
+
+_ROLL_OFF = 0.85
+_TINY = 1e-30
+"""Energy that counts as nothing beside that of the signal, so that its logarithm is finite."""
+
+
+def _of(block: Block) -> Floats:
+    frequency = block.frequency / block.rate  # whose squares stay in range
+    part = block.power / block.power.sum(axis=1, keepdims=True)
+    amplitude = np.abs(block.transform)
+    centroid = part @ frequency
+    bandwidth = np.sqrt(np.maximum(part @ frequency**2 - centroid**2, 0.0))
+    reached = np.count_nonzero(np.cumsum(part, axis=1) < _ROLL_OFF, axis=1)
+    roll_off = np.where(np.isnan(centroid), np.nan, frequency[np.minimum(reached, len(frequency) - 1)])
+    peak = np.where(np.isnan(centroid), np.nan, frequency[amplitude.argmax(axis=1)])
+    logarithm = np.log(part + _TINY)
+    flatness = np.exp(logarithm.mean(axis=1)) * len(frequency)
+    entropy = np.maximum(-np.einsum("ij,ij->i", part, logarithm), 0.0) / np.log(len(frequency))
+    amplitude_centroid = amplitude @ frequency / amplitude.sum(axis=1)
+    in_hertz = np.stack([centroid, amplitude_centroid, bandwidth, roll_off, peak, _cut_off(amplitude, frequency)], axis=1)
+    return np.concatenate([in_hertz * block.rate, np.stack([flatness, entropy], axis=1)], axis=1)
+
+
+def _cut_off(amplitude: Floats, frequency: Floats) -> Floats:
+    """Return the highest frequency at which the amplitude is 10 dB below its maximum, between the frequencies by its logarithm."""
+    row, level = np.arange(len(amplitude)), amplitude.max(axis=1, keepdims=True) / np.sqrt(10.0)
+    last = amplitude.shape[1] - 1 - (amplitude >= level)[:, ::-1].argmax(axis=1)
+    after = np.minimum(last + 1, len(frequency) - 1)
+    above, below = (np.log(amplitude[row, place] / level[:, 0] + _TINY) for place in (last, after))
+    found = frequency[last] + (frequency[after] - frequency[last]) * above / (above - below)
+    return np.asarray(np.where(last < after, found, np.nan))
+
+
+_PEETERS = "Peeters 2004, A large set of audio features, IRCAM, section 6.1, by the energy"
+
+FAMILY = Family(
+    (
+        Feature(name="spectral_centroid", meaning="mean frequency of the energy", equation="sum(f P) / sum(P)", source=_PEETERS, unit="Hz"),
+        Feature(
+            name="amplitude_centroid",
+            meaning="mean frequency of the amplitude spectrum, the centroid frequency of bedload measurement",
+            equation="sum(f |X|) / sum|X|",
+            source="Wyss et al. 2016, Water Resour. Res. 52:7744",
+            unit="Hz",
+        ),
+        Feature(
+            name="spectral_bandwidth",
+            meaning="standard deviation of the frequency of the energy",
+            equation="sqrt(sum((f - centroid)^2 P) / sum(P))",
+            source=_PEETERS,
+            unit="Hz",
+        ),
+        Feature(
+            name="spectral_roll_off",
+            meaning="frequency below which 85 % of the energy lie",
+            equation="least f with sum(P up to f) >= 0.85 sum(P)",
+            source="Tzanetakis & Cook 2002, IEEE Trans. Speech Audio Process. 10:293",
+            unit="Hz",
+        ),
+        Feature(name="peak_frequency", meaning="frequency of the largest amplitude", equation="argmax |X|", source=_PEETERS, unit="Hz"),
+        Feature(
+            name="cut_off_10_dB",
+            meaning="highest frequency at which the amplitude is 10 dB below its maximum: 1.16 over the contact time, of Hertz's force",
+            equation="largest f with |X| = max|X| / sqrt(10)",
+            source="ISO 7626-5, of hammers",
+            unit="Hz",
+            lacking=Reason.BROAD_BAND,
+        ),
+        Feature(
+            name="spectral_flatness",
+            meaning="geometric over arithmetic mean of the energy: 0 of tones, 0.56 of white noise",
+            equation="exp(mean(ln P)) / mean(P)",
+            source="Johnston 1988, IEEE J. Sel. Areas Commun. 6:314",
+        ),
+        Feature(
+            name="spectral_entropy",
+            meaning="entropy of the energy over the frequencies, of 1 at most",
+            equation="-sum(p ln p) / ln(number), p = P / sum(P)",
+            source="Misra et al. 2004, Proc. ICASSP 1:193",
+            least=2,
+        ),
+    ),
+    _of,
+)

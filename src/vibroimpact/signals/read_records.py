@@ -1,0 +1,90 @@
+"""Reading of records from files and folders."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from os import PathLike
+from pathlib import Path
+
+from vibroimpact.errors import InputError
+from vibroimpact.files.reading import with_path
+from vibroimpact.measurements.universal_file import is_universal
+from vibroimpact.signals.reading.netcdf import netcdf_records
+from vibroimpact.signals.reading.table import table_records
+from vibroimpact.signals.reading.universal import universal_records
+from vibroimpact.signals.reading.wave import wave_records
+from vibroimpact.signals.record import Record
+
+_READERS = {
+    ".csv": table_records,
+    ".txt": table_records,
+    ".wav": wave_records,
+    ".uff": universal_records,
+    ".unv": universal_records,
+    ".nc": netcdf_records,
+    ".nc4": netcdf_records,
+    ".h5": netcdf_records,
+}
+_WHOLE = ("result.nc", "dataset.nc", "study.nc")
+"""Files that hold all signals of a folder of this program."""
+
+
+def read_records(path: str | PathLike[str]) -> Iterator[Record]:
+    """Yield the records of a file, or of a folder.
+
+    Read are CSV tables with a column `time [s]` and a column with its unit for each channel, WAV files (8 to 32 bits, floating point),
+    functions of time in universal files (dataset 58) and NetCDF-4 files with a dimension of time; of a folder the signals of its
+    `result.nc`, `dataset.nc` or `study.nc`, else of all files of these formats in it. Values are in SI; those of WAV files are parts
+    of full scale, unless an export of this program says what full scale is.
+
+    Parameters
+    ----------
+    path : path
+        The file or the folder.
+
+    Yields
+    ------
+    Record
+        A channel of a file; or one of its signals, where a variable has several.
+
+    Raises
+    ------
+    InputError
+        If a file can't be read, or there is none.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     file = Path(folder, "hammer.csv")
+    ...     _ = file.write_text("time [ms],force [kN]\\n0,1\\n1,2\\n")
+    ...     [(one.name, one.value.tolist(), one.rate, one.unit) for one in read_records(file)]
+    [('force', [1000.0, 2000.0], 1000.0, 'N')]
+    """
+    for file in record_files(path):
+        reader = universal_records if is_universal(file) else _READERS[file.suffix.lower()]
+        yield from (replace(record, source=str(file)) for record in reader(file))
+
+
+def record_files(path: str | PathLike[str]) -> list[Path]:
+    """Return the files that hold the records of a file or a folder: the file itself, or those of the folder.
+
+    Raises
+    ------
+    InputError
+        If there is no such file or folder, none of a known format in it, or the format of the file is not known.
+    """
+    place = Path(path)
+    if place.is_dir():
+        for name in _WHOLE:
+            if (place / name).is_file():
+                return [place / name]
+        found = sorted(one for one in place.iterdir() if one.suffix.lower() in _READERS and one.is_file())
+        if not found:
+            raise with_path(place, InputError(f"there is no file of records in this folder; known are {', '.join(_READERS)}"))
+        return found
+    if place.suffix.lower() not in _READERS and not is_universal(place):
+        what = "its name does not say its format" if place.exists() else "there is no such file"
+        raise with_path(place, InputError(f"{what}; records are read from files ending in {', '.join(_READERS)}"))
+    return [place]

@@ -1,0 +1,97 @@
+"""Records from NetCDF-4 files: the sensors of a result, or every variable whose last dimension is time at equal steps."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import prod
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+
+from vibroimpact.errors import InputError
+from vibroimpact.files.hdf5 import read_array
+from vibroimpact.files.reading import FileKind, beginning, with_path
+from vibroimpact.signals.reading.equal_steps import rate_of
+from vibroimpact.signals.reading.si_units import in_si
+from vibroimpact.signals.record import Record
+
+NETCDF = FileKind("a NetCDF file holds variables with a dimension of time", 1_000_000_000_000, "split it")
+"""Requirements on a NetCDF file."""
+
+_SECONDS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "second": 1.0, "seconds": 1.0}
+_AT_ONCE = 2**22
+"""Samples that are read at once."""
+
+
+def netcdf_records(path: Path) -> Iterator[Record]:
+    """Yield the signals of a NetCDF-4 file; of a variable with further dimensions one for each place in them, in their order.
+
+    Raises
+    ------
+    InputError
+        If the file can't be read, or has no signal.
+    """
+    try:
+        mark = beginning(path, NETCDF, 4)
+    except InputError as error:
+        raise with_path(path, error) from None
+    if mark.startswith(b"CDF"):
+        raise InputError(f"{path}: this is a NetCDF file of the classic format; convert it to NetCDF-4: nccopy -k nc4 {path.name} new.nc")
+    try:
+        with h5py.File(path, "r") as file:
+            found = list(_signals(file))
+            if not found:
+                raise InputError("there is no variable whose last dimension is a time at equal steps, with the units s")
+            for data, rate, start in found:
+                yield from _records(data, rate, start)
+    except InputError as error:
+        raise with_path(path, error) from None
+    except Exception as error:  # of many types, by what is damaged
+        raise InputError(f"{path}: the NetCDF file can't be read ({' '.join(str(error).split())[:100] or type(error).__name__})") from None
+
+
+def _signals(file: h5py.File) -> Iterator[tuple[h5py.Dataset, float, float]]:
+    """Yield the variables with a time as their last dimension, with rate [Hz] and first time [s]."""
+    group = file.get("sensors", file)
+    names: list[str] = []
+    group.visit(names.append)  # returning None goes on
+    for name in names:
+        data = group[name]
+        if not isinstance(data, h5py.Dataset) or data.dtype.kind not in "fiu" or not data.ndim or data.is_scale:
+            continue
+        for scale in data.dims[data.ndim - 1].values():
+            second = _SECONDS.get(_text(scale.attrs.get("units", "")))
+            if second is None or len(scale) < 2:
+                continue
+            time = second * read_array(scale).astype(float)
+            try:
+                said = data.attrs.get("rate_Hz", data.parent.attrs.get("rate_Hz"))
+                rate = rate_of(time) if said is None else float(said)
+            except InputError:  # a history at unequal steps is no signal
+                continue
+            yield data, rate, float(time[0])
+
+
+def _records(data: h5py.Dataset, rate: float, start: float) -> Iterator[Record]:
+    name = data.name.rpartition("/")[2].removeprefix("signal_")
+    name = _text(data.parent.attrs.get("name", name)) if name == "value" else name
+    try:
+        factor, unit = in_si(_text(data.attrs.get("units", "1")))
+    except InputError as error:
+        raise InputError(f"variable {name}: {error.message}") from None
+    *outer, samples = data.shape
+    if not outer:
+        yield Record(name, factor * read_array(data), rate, unit, start)
+        return
+    step = max(1, _AT_ONCE // max(1, samples * prod(outer[1:])))
+    for first in range(0, outer[0], step):
+        for value in factor * read_array(data, slice(first, first + step)).astype(float).reshape(-1, samples):
+            # shorter signals of a table are filled with NaN at their ends
+            number = samples - int(np.argmin(np.isnan(value[::-1]))) if not np.isnan(value).all() else 0
+            yield Record(name, value[:number], rate, unit, start)
+
+
+def _text(value: Any) -> str:
+    return value.decode("utf-8", "replace") if isinstance(value, (bytes, np.bytes_)) else str(value)

@@ -1,0 +1,98 @@
+"""A record: the samples of one channel."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vibroimpact.arrays import Floats
+from vibroimpact.errors import InputError
+from vibroimpact.shown import shown
+
+
+@dataclass(frozen=True)
+class Record:
+    """Samples of one channel at equal steps.
+
+    Parameters
+    ----------
+    name : str
+        Name of the channel.
+    value : array, shape (samples,)
+        The samples, in `unit`.
+    rate : float
+        Sampling rate [Hz].
+    unit : str
+        Unit of the samples, in SI: "V", "m/s^2", "Pa", "N".
+    start : float, default 0
+        Time of the first sample [s].
+    source : str, default ""
+        The file that it was read from.
+
+    Raises
+    ------
+    InputError
+        If the samples are not a row of real numbers, or the rate is not a finite number above 0.
+
+    Examples
+    --------
+    >>> Record("geophone", [0.0, 0.2, -0.1], 10e3, "V").duration
+    0.0003
+    """
+
+    name: str
+    value: Floats
+    rate: float
+    unit: str
+    start: float = 0.0
+    source: str = ""
+
+    def __post_init__(self) -> None:
+        value = real_numbers(self.value).astype(np.float64, copy=False)
+        if value.ndim != 1:
+            raise InputError(f"the samples of {shown(self.name)} have {value.ndim} dimensions; a record has one")
+        object.__setattr__(self, "value", value)
+        object.__setattr__(self, "rate", checked_rate(self.rate))
+
+    @property
+    def duration(self) -> float:
+        """Number of samples over the rate [s]."""
+        return len(self.value) / self.rate
+
+    @property
+    def time(self) -> Floats:
+        """Times of the samples [s]."""
+        return self.start + np.arange(len(self.value)) / self.rate
+
+
+def real_numbers(values: object) -> NDArray[Any]:
+    """Return real numbers of any type as an array of that type.
+
+    Raises
+    ------
+    InputError
+        If they are not numbers, or not real.
+    """
+    try:
+        found = np.asarray(values)
+    except ValueError:
+        raise InputError("the samples are rows of different lengths; give an array") from None
+    if found.dtype.kind not in "fiub":
+        raise InputError(f"the samples are of the type {found.dtype}; they must be real numbers")
+    return found
+
+
+def checked_rate(rate: float) -> float:
+    """Return a sampling rate.
+
+    Raises
+    ------
+    InputError
+        If it is not a finite number above 0.
+    """
+    if not isinstance(rate, (int, float, np.integer, np.floating)) or not 0.0 < rate < np.inf:
+        raise InputError(f"the rate is {shown(rate)}; it must be a number of Hz above 0")
+    return float(rate)
