@@ -67,8 +67,11 @@ if TYPE_CHECKING:
     from vibroimpact.dynamics.restitution import achieved_restitution as achieved_restitution
     from vibroimpact.dynamics.restitution import integrated_restitution as integrated_restitution
     from vibroimpact.dynamics.restitution import law_achieving as law_achieving
+    from vibroimpact.dynamics.sensors.electronics import Amplifier as Amplifier
+    from vibroimpact.dynamics.sensors.electronics import Converter as Converter
+    from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer as Accelerometer
+    from vibroimpact.dynamics.sensors.instruments.geophone import Geophone as Geophone
     from vibroimpact.dynamics.sensors.recording import Signal as Signal
-    from vibroimpact.dynamics.sensors.sensor import Accelerometer as Accelerometer
     from vibroimpact.dynamics.sensors.sensor import Sensor as Sensor
     from vibroimpact.dynamics.shaken.statement import PlateMotion as PlateMotion
     from vibroimpact.dynamics.simulate import simulate as simulate
@@ -118,7 +121,8 @@ if TYPE_CHECKING:
 
 _HOME = {
     "Air": "dynamics.air",
-    "Accelerometer": "dynamics.sensors.sensor",
+    "Accelerometer": "dynamics.sensors.instruments.accelerometer",
+    "Amplifier": "dynamics.sensors.electronics",
     "Body": "bodies.body",
     "BodyModes": "cases.elastic.modes",
     "BodyMotion": "dynamics.simulate_system",
@@ -127,7 +131,9 @@ _HOME = {
     "Comparison": "comparison.comparison",
     "ComputationError": "errors",
     "ContactLaw": "contact.law",
+    "Converter": "dynamics.sensors.electronics",
     "FrictionCalibration": "calibration.friction.calibrate",
+    "Geophone": "dynamics.sensors.instruments.geophone",
     "InputError": "errors",
     "Material": "materials",
     "Mesh": "structures.mesh",

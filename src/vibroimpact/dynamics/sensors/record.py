@@ -11,10 +11,13 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.problem import Problem
-from vibroimpact.dynamics.sensors.antialias import Section, antialias_of
+from vibroimpact.dynamics.sensors.antialias import antialias_of, gain_at
+from vibroimpact.dynamics.sensors.electronics import amplified, seeds
 from vibroimpact.dynamics.sensors.filtered_chain import filtered_chain
+from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer
 from vibroimpact.dynamics.sensors.measuring_chain import MeasuringChain, measuring_chain
 from vibroimpact.dynamics.sensors.overload import clipped_part, finer_rate, overload
+from vibroimpact.dynamics.sensors.pole_pairs import Section
 from vibroimpact.dynamics.sensors.ports import Ports, ports_of
 from vibroimpact.dynamics.sensors.recording import Signal
 from vibroimpact.dynamics.sensors.sampled import longest_span, outputs_around_first_contact, sample_at_instants, sample_filtered
@@ -36,8 +39,9 @@ _WIDER = 8
 def record(problem: Problem, segments: Sequence[VibratingSegment], sensors: Sequence[Sensor], end: float) -> dict[str, Signal]:
     """Return the signals of sensors over a run, by their names.
 
-    The chain is that of an instrument: the motion of the modes kept and the quasi-static response of those left out; the mounted resonance;
-    the range; the anti-alias filter; sampling with noise and resolution. All linear parts are computed in closed form, at the samples only.
+    The chain is that of an instrument: the motion of the modes kept and the quasi-static response of those left out; the instrument; its
+    range; the anti-alias filter; sampling with noise and resolution; amplifier and converter. All linear parts are computed in closed form,
+    at the samples only.
 
     Parameters
     ----------
@@ -59,7 +63,7 @@ def record(problem: Problem, segments: Sequence[VibratingSegment], sensors: Sequ
     ports = ports_of(segments)
     groups: dict[tuple[float, str, float | None, tuple[Section, ...]], list[Sensor]] = {}
     for sensor in sensors:
-        groups.setdefault((sensor.rate, sensor.filter, sensor.corner, _resonance(sensor)), []).append(sensor)
+        groups.setdefault((sensor.rate, sensor.filter, sensor.corner, sensor.sections), []).append(sensor)
     signals: dict[str, Signal] = {}
     for group in groups.values():
         signals |= _recorded(problem, ports, segments, group, end)
@@ -74,8 +78,8 @@ def _check(problem: Problem, sensors: Sequence[Sensor], end: float) -> None:
     for sensor in sensors:
         if sensor.name not in modes.points:
             raise InputError(f'the modes of the plate do not know a point "{sensor.name}"', "sensors")
-        meter = sensor.accelerometer
-        rate = sensor.rate if meter is None or meter.range is None else finer_rate(sensor.rate, meter.resonance)
+        meter = _limited(sensor)
+        rate = sensor.rate if meter is None else finer_rate(sensor.rate, meter.resonance)
         count = sample_count(end, rate) * (len(sensors) if rate == sensor.rate else 1)
         if count > MOST_SAMPLES:
             why = "" if rate == sensor.rate else ", at which the clipping of its range is followed,"
@@ -89,44 +93,41 @@ def _plate(problem: Problem, ports: Ports) -> Oscillators:
     return Oscillators(frequencies, ratios, ports.shapes)
 
 
-def _resonance(sensor: Sensor) -> tuple[Section, ...]:
-    """Return the poles of the mounted resonance, if the sensor has one."""
-    meter = sensor.accelerometer
-    if meter is None or meter.resonance is None:
-        return ()
-    omega = 2.0 * np.pi * meter.resonance
-    return ((omega**2, 2.0 * meter.damping_ratio * omega),)
+def _limited(sensor: Sensor) -> Accelerometer | None:
+    """Return the accelerometer of a sensor if it has a range."""
+    meter = sensor.instrument
+    return meter if isinstance(meter, Accelerometer) and meter.range is not None else None
 
 
 def _recorded(
     problem: Problem, ports: Ports, segments: Sequence[VibratingSegment], group: Sequence[Sensor], end: float
 ) -> dict[str, Signal]:
-    """Return the signals of sensors with the same rate, resonance and filter."""
+    """Return the signals of sensors with the same rate, filter and poles of their instruments."""
     sensor, plate = group[0], _plate(problem, ports)
-    antialias, resonance, count = antialias_of(sensor), _resonance(sensor), sample_count(end, sensor.rate)
+    antialias, poles, count = antialias_of(sensor), sensor.sections, sample_count(end, sensor.rate)
     bases = bases_of_plate(problem)
     shapes = np.stack([np.concatenate([basis.points[one.name] for basis in bases]) @ np.asarray(one.direction) for one in group])
     compliance = np.array([[part.get(one.name, _NONE) @ np.asarray(one.direction) for one in group] for part in ports.residuals])
     orders = [one.order for one in group]
     # a converter's filter is applied in closed form; an analogue one is a part of the chain, sampled at instants
-    bare = measuring_chain(plate, shapes, compliance, orders, resonance)
+    bare = measuring_chain(plate, shapes, compliance, orders, poles)
     if antialias.half_length:
         known = filtered_chain(bare, sensor.rate, longest_span(segments, sensor.rate))
         values = sample_filtered(known, ports, segments, count)
     else:
-        chain = measuring_chain(plate, shapes, compliance, orders, (*resonance, *antialias.sections))
+        chain = measuring_chain(plate, shapes, compliance, orders, (*poles, *antialias.sections))
         values = sample_at_instants(chain, ports, sensor.rate, segments, count)
         rate = sensor.rate * (1 if antialias.sections else _WIDER)
         known = filtered_chain(bare, rate, longest_span(segments, rate))
     # the error by the modes left out, from a model of the next octave
-    left_out = filtered_chain(_next_octave_chain(plate, shapes, orders, resonance), known.rate, longest_span(segments, known.rate))
+    left_out = filtered_chain(_next_octave_chain(plate, shapes, orders, poles), known.rate, longest_span(segments, known.rate))
     norm, left_out_norm = (np.linalg.norm(outputs_around_first_contact(one, ports, segments), axis=1) for one in (known, left_out))
     uncertainties = left_out_norm / np.where(norm > 0.0, norm, np.inf)
     signals = {}
     for number, one in enumerate(group):
-        value, meter, facts = values[number], one.accelerometer, {"uncertainty": float(uncertainties[number])}
+        value, meter, facts = values[number], _limited(one), {"uncertainty": float(uncertainties[number])}
         if meter is not None and meter.range is not None:
-            alone = measuring_chain(plate, shapes[[number]], compliance[:, [number]], [2], resonance)
+            alone = measuring_chain(plate, shapes[[number]], compliance[:, [number]], [2], poles)
             found = overload(
                 alone, ports, finer_rate(one.rate, meter.resonance), segments, end, antialias.half_length / one.rate, meter.range
             )
@@ -137,7 +138,7 @@ def _recorded(
     return signals
 
 
-def _next_octave_chain(plate: Oscillators, shapes: Floats, orders: Sequence[int], resonance: Sequence[Section]) -> MeasuringChain:
+def _next_octave_chain(plate: Oscillators, shapes: Floats, orders: Sequence[int], poles: Sequence[Section]) -> MeasuringChain:
     """Return the chain of the modes left out of the next octave, beyond their quasi-static response, as an estimate.
 
     They are modelled on the last octave kept, at twice the frequencies; twice as many are assumed, as for the bending of a plate.
@@ -146,15 +147,19 @@ def _next_octave_chain(plate: Oscillators, shapes: Floats, orders: Sequence[int]
     above, shapes_above = plate.pick(last), 2.0 * shapes[:, last]
     above = replace(above, angular_frequency=2.0 * above.angular_frequency)
     static = -(shapes_above * above.shape[:, None] / above.angular_frequency**2).sum(axis=2)
-    return measuring_chain(above, shapes_above, static, orders, resonance)
+    return measuring_chain(above, shapes_above, static, orders, poles)
 
 
 def _digitised(sensor: Sensor, value: Floats) -> Floats:
-    """Return samples with the noise and the resolution of an accelerometer."""
-    meter = sensor.accelerometer
-    if meter is None:
-        return value
-    if meter.noise:
-        seed = [zlib.crc32(sensor.name.encode()), *np.atleast_1d(meter.seed).tolist()]
-        value = value + meter.noise * np.random.default_rng(seed).standard_normal(len(value))
-    return value if meter.resolution is None else meter.resolution * np.round(value / meter.resolution)
+    """Return samples with what is not linear: noise and resolution of an accelerometer; and with gain, amplifier and converter."""
+    meter, amplifier = sensor.instrument, sensor.amplifier
+    if isinstance(meter, Accelerometer):
+        if meter.noise:
+            seed = [zlib.crc32(sensor.name.encode()), *seeds(meter.seed)]
+            value = value + meter.noise * np.random.default_rng(seed).standard_normal(len(value))
+        value = value if meter.resolution is None else meter.resolution * np.round(value / meter.resolution)
+    if meter is not None:
+        value = meter.gain * value
+    if amplifier is not None:
+        value = amplified(amplifier, sensor.name, value, sensor.rate, gain_at(sensor, amplifier.mains))
+    return value if sensor.converter is None else sensor.converter.read(value)
