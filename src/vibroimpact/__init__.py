@@ -71,6 +71,7 @@ if TYPE_CHECKING:
     from vibroimpact.dynamics.sensors.electronics import Converter as Converter
     from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer as Accelerometer
     from vibroimpact.dynamics.sensors.instruments.geophone import Geophone as Geophone
+    from vibroimpact.dynamics.sensors.instruments.strain_gauge import StrainGauge as StrainGauge
     from vibroimpact.dynamics.sensors.recording import Signal as Signal
     from vibroimpact.dynamics.sensors.sensor import Sensor as Sensor
     from vibroimpact.dynamics.shaken.statement import PlateMotion as PlateMotion
@@ -152,6 +153,7 @@ _HOME = {
     "Sensor": "dynamics.sensors.sensor",
     "Signal": "dynamics.sensors.recording",
     "SpeedFunction": "calibration.speed_function",
+    "StrainGauge": "dynamics.sensors.instruments.strain_gauge",
     "Study": "studies.study",
     "Sweep": "studies.sweep",
     "System": "dynamics.system",

@@ -73,6 +73,7 @@ class ResolvedSensor(TypedDict, total=False):
     instrument: str
     accelerometer: Mapping[str, Any]
     geophone: Mapping[str, Any]
+    strain_gauge: Mapping[str, Any]
     amplifier: Mapping[str, Any]
     converter: Mapping[str, Any]
 

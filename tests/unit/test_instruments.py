@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from io import StringIO
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from rich.console import Console
 
 import vibroimpact as vi
 from vibroimpact.cases.build import resolved_case
@@ -14,6 +17,7 @@ from vibroimpact.dynamics.sensors.instruments.instrument import UNITS
 from vibroimpact.dynamics.sensors.recording import Signal
 from vibroimpact.exporting.formats.uff58 import _QUANTITIES
 from vibroimpact.results.csv_files import signal_csv
+from vibroimpact.runs.case_explained import case_explained
 
 GEOPHONE = {"natural_frequency": "10 Hz", "sensitivity": "27.6 V s/m"}
 
@@ -48,6 +52,10 @@ def case(**sensor: Any) -> vi.Case:
         ({"accelerometer": {}, "geophone": GEOPHONE}, "its instrument is an accelerometer; leave out this table"),
         ({"quantity": "velocity", "geophone": GEOPHONE}, "a geophone reads voltage; leave out quantity, or the geophone"),
         ({"quantity": "voltage"}, 'voltage is what an instrument puts out; name one, such as instrument = "geophone"'),
+        ({"instrument": "strain-gauge", "direction": "z"}, r'"a1"\.direction: a strain gauge lies in the face; give a direction along it'),
+        ({"instrument": "strain-gauge", "direction": [1, 0, 1]}, "a strain gauge lies in the face"),
+        ({"instrument": "strain-gauge", "quantity": "voltage"}, "a strain gauge reads strain; leave out quantity"),
+        ({"strain_gauge": {"sensitivty": 1}}, r'unknown key "sensitivty"; .* Did you mean "sensitivity"'),
         ({"amplifier": {"noise": "1 mV"}}, r'"a1"\.amplifier\.noise: "1 mV" is a voltage; what is wanted is an acceleration'),
         ({"amplifier": {"gain": 0}}, r'"a1"\.amplifier\.gain: 0 is not allowed'),
         ({"geophone": GEOPHONE, "converter": {"range": -1}}, r'"a1"\.converter\.range: -1 is not allowed; it must be greater than 0 V'),
@@ -65,6 +73,8 @@ def test_what_does_not_fit_is_named(sensor: dict[str, Any], message: str) -> Non
         {"geophone": GEOPHONE, "amplifier": {"noise": "1 uV", "hum": "1 mV", "mains": 60}, "converter": {"range": "10 V", "bits": 24}},
         {"accelerometer": {"sensitivity": "100 mV/g", "range": "50 g"}, "converter": {"range": "5 V"}},
         {"instrument": "accelerometer", "amplifier": {"noise": "1 g"}},
+        {"instrument": "strain-gauge", "face": "lower", "converter": {"range": 1e-3}},
+        {"strain_gauge": {"sensitivity": "2 V"}, "direction": [1, 2, 0], "amplifier": {"gain": 1000}},
         {"quantity": "velocity", "converter": {"range": "1 m/s", "bits": 12}},
     ],
 )
@@ -95,3 +105,33 @@ def test_a_converter_that_clips_or_reads_nothing_is_doubted() -> None:
 def test_every_quantity_has_a_type_in_universal_files_and_a_header() -> None:
     assert _QUANTITIES.keys() == UNITS.keys()
     assert signal_csv(Signal(vi.Sensor("a1", "voltage"), np.zeros(1))).startswith("time_s,voltage_V\n")
+
+
+def test_a_run_with_instruments_is_told_and_read_back(tmp_path: Path) -> None:
+    """In the folder, the page, universal files and the explanation of the case; voltage and strain are what the sensors' parts say."""
+    given = case(geophone=GEOPHONE, amplifier={"hum": "1 mV"}, converter={"range": "10 V", "bits": 16}, rate="10 kHz")
+    whole = dict(resolved_case(given))
+    whole["sensors"] = [*whole["sensors"], {"name": "e", "position": [0.1, 0.05], "instrument": "strain-gauge"}]
+    response = vi.simulate(vi.read_case(whole))
+    response.save(tmp_path / "run")
+    again = vi.read_result(tmp_path / "run")
+    assert {name: (one.sensor.quantity, one.sensor.unit) for name, one in again.signals.items()} == {
+        "a1": ("voltage", "V"),
+        "e": ("strain", "m/m"),
+    }
+    for name, signal in response.signals().items():
+        np.testing.assert_array_equal(again.signals[name].value, signal.value)
+        assert np.isfinite(signal.uncertainty)
+        assert signal.largest > 0.0
+    assert (tmp_path / "run" / "sensors" / "e.csv").read_text().startswith("time_s,strain_m_m\n")
+    words = case_text_of(whole)
+    assert "strain at (0.1, 0.05) m, upper face, by a strain gauge (ideal)" in words
+    assert "by a geophone (natural frequency 10 Hz; sensitivity 27.6 V s/m; damping ratio 0.6)" in words
+    assert "amplifier (gain 1; noise 0 V; hum of 0.001 V at 50 Hz), converter (range 10 V; 16 bits)" in words
+
+
+def case_text_of(table: dict[str, Any]) -> str:
+    """What `check` says of a case, without line breaks."""
+    console = Console(width=400, file=StringIO())
+    console.print(case_explained(vi.read_case(table)))
+    return " ".join(console.file.getvalue().split())  # type: ignore[attr-defined]

@@ -30,6 +30,7 @@ from vibroimpact.cases.fields.instruments import (
     AmplifierTable,
     ConverterTable,
     GeophoneTable,
+    StrainGaugeTable,
     read_in_unit,
 )
 from vibroimpact.cases.fields.material import MaterialField
@@ -42,6 +43,7 @@ from vibroimpact.cases.slips.lengths import likely_lengths
 from vibroimpact.dynamics.problem import MOST_IMPACTS, STANDARD_GRAVITY
 from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer
 from vibroimpact.dynamics.sensors.instruments.instrument import MOTIONS, Instrument
+from vibroimpact.dynamics.sensors.instruments.strain_gauge import StrainGauge
 from vibroimpact.dynamics.sensors.sensor import FILTERS, Sensor
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.materials import RIGID
@@ -184,10 +186,10 @@ class SensorSection(Section):
         description="x and y on the plate, from its centre [m]; or the name of a set of a mesh that was brought"
     )
     face: Literal["upper", "lower"] = Field("upper", description="the side of the plate that it is on")
-    instrument: Annotated[Literal["accelerometer", "geophone"] | None, _one_of(INSTRUMENTS)] = Field(
+    instrument: Annotated[Literal["accelerometer", "geophone", "strain-gauge"] | None, _one_of(INSTRUMENTS)] = Field(
         None, description="what reads it; by default that of the table that is given, or else the motion is read as it is"
     )
-    quantity: Literal["acceleration", "velocity", "displacement", "voltage"] | None = Field(
+    quantity: Literal["acceleration", "velocity", "displacement", "voltage", "strain"] | None = Field(
         None, description="what it takes: acceleration by default, or what the instrument puts out"
     )
     direction: Literal["x", "y", "z"] | tuple[float, float, float] = Field("z", description="along which it takes it; z is upwards")
@@ -198,6 +200,7 @@ class SensorSection(Section):
     corner: Annotated[float, Quantity("Hz", "corner of a Butterworth filter; 0.4 of the rate by default", Range(above=0))] | None = None
     accelerometer: AccelerometerTable | None = Field(None, description="resonance, range, noise, resolution and sensitivity of one")
     geophone: GeophoneTable | None = Field(None, description="natural frequency, sensitivity, damping and low-pass of one")
+    strain_gauge: StrainGaugeTable | None = Field(None, description="sensitivity of one")
     amplifier: AmplifierTable | None = Field(None, description="gain, noise and hum behind the instrument")
     converter: ConverterTable | None = Field(None, description="range and bits of what samples it")
 
@@ -206,6 +209,8 @@ class SensorSection(Section):
         if not isinstance(self.direction, str) and not any(self.direction):
             raise InputError("it has no length; give x, y and z of the direction, such as [0, 0, 1]", "direction")
         instrument = self._instrument()
+        if isinstance(instrument, StrainGauge):
+            self._lay_in_face()
         if instrument is None and self.quantity not in (None, *MOTIONS):
             raise InputError(f'{self.quantity} is what an instrument puts out; name one, such as instrument = "geophone"', "quantity")
         if instrument is not None and self.quantity not in (None, instrument.quantity):
@@ -221,6 +226,13 @@ class SensorSection(Section):
                     raise InputError(error.message, f"{name}.{error.key}") from None
         return self
 
+    def _lay_in_face(self) -> None:
+        """Let a strain gauge lie along x where its direction is not given; one that leaves the face is refused."""
+        if "direction" not in self.model_fields_set:
+            self.__dict__["direction"] = "x"
+        elif self.direction == "z" or (not isinstance(self.direction, str) and self.direction[2]):
+            raise InputError('a strain gauge lies in the face; give a direction along it, such as "x" or [1, 1, 0]', "direction")
+
     def _instrument(self) -> Instrument | None:
         """Return the instrument, which its table names where the key does not; None if the motion is read as it is."""
         tables = {name: getattr(self, name.replace("-", "_")) for name in INSTRUMENTS}
@@ -235,9 +247,9 @@ class SensorSection(Section):
         if (table := tables[kind]) is not None:
             found: Instrument = table.instrument()
             return found
-        if kind != "accelerometer":
+        if kind == "geophone":
             raise InputError(f"{INSTRUMENTS[kind]} has properties; give them in a table {kind} = {{ ... }}", kind)
-        return Accelerometer()
+        return Accelerometer() if kind == "accelerometer" else StrainGauge()
 
     def sensor(self) -> Sensor:
         """Return the sensor, with its direction as a unit vector."""

@@ -14,10 +14,11 @@ from vibroimpact.dynamics.sensors.electronics import Amplifier, Converter
 from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer
 from vibroimpact.dynamics.sensors.instruments.geophone import Geophone
 from vibroimpact.dynamics.sensors.instruments.instrument import Instrument
+from vibroimpact.dynamics.sensors.instruments.strain_gauge import StrainGauge
 from vibroimpact.errors import InputError
 from vibroimpact.ranges import Range
 
-INSTRUMENTS = {"accelerometer": "an accelerometer", "geophone": "a geophone"}
+INSTRUMENTS = {"accelerometer": "an accelerometer", "geophone": "a geophone", "strain-gauge": "a strain gauge"}
 """What instruments are called in a case, where the key of their table has "_" for "-", and in a sentence."""
 
 Seed = Annotated[int, Field(ge=0, strict=True)]
@@ -52,6 +53,16 @@ class GeophoneTable(Section):
     def instrument(self) -> Instrument:
         """Return the geophone."""
         return Geophone(**self.model_dump())
+
+
+class StrainGaugeTable(Section):
+    """A strain gauge on a face of the plate, along a direction in it."""
+
+    sensitivity: Annotated[float, Quantity("V", "voltage over strain, which it then puts out", Range(above=0))] | None = None
+
+    def instrument(self) -> Instrument:
+        """Return the strain gauge."""
+        return StrainGauge(**self.model_dump())
 
 
 @dataclass(frozen=True)

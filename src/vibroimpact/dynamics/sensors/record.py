@@ -106,8 +106,8 @@ def _recorded(
     sensor, plate = group[0], _plate(problem, ports)
     antialias, poles, count = antialias_of(sensor), sensor.sections, sample_count(end, sensor.rate)
     bases = bases_of_plate(problem)
-    shapes = np.stack([np.concatenate([basis.points[one.name] for basis in bases]) @ np.asarray(one.direction) for one in group])
-    compliance = np.array([[part.get(one.name, _NONE) @ np.asarray(one.direction) for one in group] for part in ports.residuals])
+    shapes = np.stack([np.concatenate([basis.points[one.name] for basis in bases]) @ np.asarray(one.components) for one in group])
+    compliance = np.array([[part.get(one.name, _NONE) @ np.asarray(one.components) for one in group] for part in ports.residuals])
     orders = [one.order for one in group]
     # a converter's filter is applied in closed form; an analogue one is a part of the chain, sampled at instants
     bare = measuring_chain(plate, shapes, compliance, orders, poles)
@@ -119,8 +119,9 @@ def _recorded(
         values = sample_at_instants(chain, ports, sensor.rate, segments, count)
         rate = sensor.rate * (1 if antialias.sections else _WIDER)
         known = filtered_chain(bare, rate, longest_span(segments, rate))
+    steeper = 2.0 ** np.array([[one.steepness] for one in group])
     # the error by the modes left out, from a model of the next octave
-    left_out = filtered_chain(_next_octave_chain(plate, shapes, orders, poles), known.rate, longest_span(segments, known.rate))
+    left_out = filtered_chain(_next_octave_chain(plate, steeper * shapes, orders, poles), known.rate, longest_span(segments, known.rate))
     norm, left_out_norm = (np.linalg.norm(outputs_around_first_contact(one, ports, segments), axis=1) for one in (known, left_out))
     uncertainties = left_out_norm / np.where(norm > 0.0, norm, np.inf)
     signals = {}

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 from vibroimpact.dynamics.sensors.electronics import Amplifier, Converter, seeds
 from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer
-from vibroimpact.dynamics.sensors.instruments.instrument import MOTIONS, UNITS, Instrument, Quantity
+from vibroimpact.dynamics.sensors.instruments.instrument import MOTIONS, UNITS, Direction, Instrument, Quantity
 from vibroimpact.dynamics.sensors.pole_pairs import Section
 from vibroimpact.errors import InputError, did_you_mean
 
@@ -49,7 +49,7 @@ class Sensor:
 
     name: str
     quantity: Quantity = "acceleration"
-    direction: tuple[float, float, float] = (0.0, 0.0, 1.0)
+    direction: Direction = (0.0, 0.0, 1.0)
     rate: float = 50e3
     instrument: Instrument | None = None
     filter: str = "sigma-delta"
@@ -86,6 +86,16 @@ class Sensor:
     def sections(self) -> tuple[Section, ...]:
         """The pairs of poles of the instrument."""
         return () if self.instrument is None else self.instrument.sections
+
+    @property
+    def components(self) -> Direction:
+        """Weights of the three numbers that a mode has at the sensor: displacements, or strains."""
+        return self.direction if self.instrument is None else self.instrument.components(self.direction)
+
+    @property
+    def steepness(self) -> float:
+        """Power of the frequency by which what it sees grows in modes of the same deflection."""
+        return 0.0 if self.instrument is None else self.instrument.steepness
 
     def of_drop(self, number: int) -> Sensor:
         """Return the sensor with noise and hum of its own for a drop of a study, by its number."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from vibroimpact.dynamics.sensors.instruments.instrument import Quantity
+from vibroimpact.dynamics.sensors.instruments.instrument import Direction, Quantity
 from vibroimpact.dynamics.sensors.pole_pairs import Section
 
 
@@ -66,3 +66,12 @@ class Accelerometer:
             return ()
         omega = 2.0 * math.pi * self.resonance
         return ((omega**2, 2.0 * self.damping_ratio * omega),)
+
+    @property
+    def steepness(self) -> float:
+        """It sees the deflection itself."""
+        return 0.0
+
+    def components(self, direction: Direction) -> Direction:
+        """Return the weights of the displacements along x, y and z."""
+        return direction

@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from vibroimpact.dynamics.sensors.instruments.instrument import Quantity
+from vibroimpact.dynamics.sensors.instruments.instrument import Direction, Quantity
 from vibroimpact.dynamics.sensors.pole_pairs import Section
 
 
@@ -68,3 +68,12 @@ class Geophone:
             return (coil,)
         corner = 2.0 * math.pi * self.low_pass
         return coil, (corner**2, math.sqrt(2.0) * corner)
+
+    @property
+    def steepness(self) -> float:
+        """It sees the deflection itself."""
+        return 0.0
+
+    def components(self, direction: Direction) -> Direction:
+        """Return the weights of the displacements along x, y and z."""
+        return direction
