@@ -67,8 +67,12 @@ if TYPE_CHECKING:
     from vibroimpact.dynamics.restitution import achieved_restitution as achieved_restitution
     from vibroimpact.dynamics.restitution import integrated_restitution as integrated_restitution
     from vibroimpact.dynamics.restitution import law_achieving as law_achieving
+    from vibroimpact.dynamics.sensors.electronics import Amplifier as Amplifier
+    from vibroimpact.dynamics.sensors.electronics import Converter as Converter
+    from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer as Accelerometer
+    from vibroimpact.dynamics.sensors.instruments.geophone import Geophone as Geophone
+    from vibroimpact.dynamics.sensors.instruments.strain_gauge import StrainGauge as StrainGauge
     from vibroimpact.dynamics.sensors.recording import Signal as Signal
-    from vibroimpact.dynamics.sensors.sensor import Accelerometer as Accelerometer
     from vibroimpact.dynamics.sensors.sensor import Sensor as Sensor
     from vibroimpact.dynamics.shaken.statement import PlateMotion as PlateMotion
     from vibroimpact.dynamics.simulate import simulate as simulate
@@ -130,8 +134,9 @@ if TYPE_CHECKING:
     from vibroimpact.units.reading import to_si as to_si
 
 _HOME = {
+    "Accelerometer": "dynamics.sensors.instruments.accelerometer",
     "Air": "dynamics.air",
-    "Accelerometer": "dynamics.sensors.sensor",
+    "Amplifier": "dynamics.sensors.electronics",
     "Body": "bodies.body",
     "BodyModes": "cases.elastic.modes",
     "BodyMotion": "dynamics.simulate_system",
@@ -140,20 +145,22 @@ _HOME = {
     "Comparison": "comparison.comparison",
     "ComputationError": "errors",
     "ContactLaw": "contact.law",
+    "Converter": "dynamics.sensors.electronics",
     "FeatureTable": "signals.feature_table",
     "FrictionCalibration": "calibration.friction.calibrate",
+    "Geophone": "dynamics.sensors.instruments.geophone",
     "InputError": "errors",
     "Material": "materials",
     "Mesh": "structures.mesh",
     "ModalBasis": "structures.modal_model",
     "MovingBody": "dynamics.system",
-    "Observations": "calibration.observations",
-    "Outcome": "dynamics.outcome",
-    "PointContact": "dynamics.system",
     "Oblique": "dynamics.oblique.statement",
     "ObliqueImpacts": "calibration.friction.measured",
+    "Observations": "calibration.observations",
+    "Outcome": "dynamics.outcome",
     "Packets": "signals.packets",
     "PlateMotion": "dynamics.shaken.statement",
+    "PointContact": "dynamics.system",
     "Problem": "dynamics.problem",
     "QuasiStatic": "contact.quasi_static",
     "Record": "signals.record",
@@ -163,6 +170,7 @@ _HOME = {
     "Sensor": "dynamics.sensors.sensor",
     "Signal": "dynamics.sensors.recording",
     "SpeedFunction": "calibration.speed_function",
+    "StrainGauge": "dynamics.sensors.instruments.strain_gauge",
     "Study": "studies.study",
     "Sweep": "studies.sweep",
     "System": "dynamics.system",
@@ -188,9 +196,9 @@ _HOME = {
     "find_contact_law": "contact.registry",
     "find_feature": "signals.registry",
     "find_friction_law": "contact.registry",
-    "friction_laws": "contact.registry",
     "find_material": "materials",
     "find_packets": "signals.packets",
+    "friction_laws": "contact.registry",
     "from_onset": "signals.onset",
     "identify_local_element": "dynamics.local_element",
     "impacts_in_force": "calibration.force_record",
@@ -208,10 +216,10 @@ _HOME = {
     "mode_charts": "modes.charts",
     "onset_time": "signals.onset",
     "packet_records": "signals.packets",
-    "plotly_figure": "charts.notebook",
-    "plot_study": "studies.report.notebook",
-    "read_calibration": "calibration.calibrate_case",
     "plot_result": "runs.notebook",
+    "plot_study": "studies.report.notebook",
+    "plotly_figure": "charts.notebook",
+    "read_calibration": "calibration.calibrate_case",
     "read_case": "cases.reader",
     "read_mesh": "meshes.mesh_file",
     "read_records": "signals.read_records",

@@ -17,12 +17,13 @@ from vibroimpact.calibration.section import CalibrateSection, SpeedsTable
 from vibroimpact.cases.build import check_case
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.fields.fault_messages import fault_messages
+from vibroimpact.cases.fields.instruments import AccelerometerTable, AmplifierTable, ConverterTable, GeophoneTable, StrainGaugeTable
 from vibroimpact.cases.fields.item_labels import path_in_words
 from vibroimpact.cases.fields.material import InlineMaterial
 from vibroimpact.cases.fields.motion import MotionTable
 from vibroimpact.cases.fields.size_limits import MOST_BYTES, check_bounds, check_text
 from vibroimpact.cases.keys import with_values
-from vibroimpact.cases.schema import SECTIONS, AccelerometerTable, SensorSection
+from vibroimpact.cases.schema import SECTIONS, SensorSection
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.files.reading import FileKind, read_text
 from vibroimpact.shown import shortened, shown
@@ -40,6 +41,10 @@ _SECTIONS: dict[tuple[str, ...], type[BaseModel]] = {
     ("sensors",): SensorSection,
     ("sweep",): SweepSection,
     ("sensors", "accelerometer"): AccelerometerTable,
+    ("sensors", "amplifier"): AmplifierTable,
+    ("sensors", "converter"): ConverterTable,
+    ("sensors", "geophone"): GeophoneTable,
+    ("sensors", "strain_gauge"): StrainGaugeTable,
     ("plate", "motion"): MotionTable,
 }
 

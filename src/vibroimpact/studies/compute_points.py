@@ -15,7 +15,7 @@ from vibroimpact.cases.oblique import is_oblique
 from vibroimpact.cases.rigid import deforms, rigid_problem
 from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.dynamics.response import Response
-from vibroimpact.dynamics.sensors.sensor import Sensor, sample_count
+from vibroimpact.dynamics.sensors.sensor import sample_count
 from vibroimpact.dynamics.simulate import simulate_together
 from vibroimpact.dynamics.tabulate import tabulate
 from vibroimpact.errors import ComputationError, InputError, lines_of
@@ -150,7 +150,7 @@ def _side_by_side(study: _Study, places: Indices) -> Iterator[_Part]:
         for place in some.tolist():
             try:
                 problem = study.case(place).to_problem()
-                noisy = tuple(_noise(sensor, study.first + place) for sensor in problem.sensors)
+                noisy = tuple(sensor.of_drop(study.first + place) for sensor in problem.sensors)
                 problems[place] = replace(problem, sensors=noisy)
             except Exception as error:
                 yield _failed(place, error)
@@ -179,15 +179,6 @@ def _part_of(study: _Study, place: int, response: Response) -> _Part:
         columns["left_in_vibration_J"] = response.rest.left
     columns |= limit_columns(drop_conditions(response, columns), 1)
     return _Part(np.array([place]), {**columns, **signals}, {})
-
-
-def _noise(sensor: Sensor, number: int) -> Sensor:
-    """Return a sensor whose noise is seeded by the number of the drop."""
-    meter = sensor.accelerometer
-    if meter is None:
-        return sensor
-    seed = meter.seed if isinstance(meter.seed, tuple) else (meter.seed,)
-    return replace(sensor, accelerometer=replace(meter, seed=(*seed, number)))
 
 
 def _columns(response: Response, keep: tuple[str, ...]) -> dict[str, NDArray[Any]]:
