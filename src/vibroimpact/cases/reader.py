@@ -31,6 +31,9 @@ from vibroimpact.studies.section import SweepSection
 
 Read = TypeVar("Read")
 
+GROUPS = ("paper", "signals")
+"""Groups of shipped cases: of the paper, and of data sets; a name is "GROUP:NAME"."""
+
 _CASE = FileKind('a case is a TOML file, or a shipped one such as "paper:type1-theory"', MOST_BYTES, "a case is a page of text")
 
 _SECTIONS: dict[tuple[str, ...], type[BaseModel]] = {
@@ -126,7 +129,7 @@ def case_text(source: str | PathLike[str]) -> str:
     InputError
         If it can't be read, or is too large for a case; the message does not name the source.
     """
-    return _shipped(str(source)) if str(source).startswith("paper:") else read_text(Path(source), _CASE)
+    return _shipped(str(source)) if str(source).partition(":")[0] in GROUPS else read_text(Path(source), _CASE)
 
 
 def parse_case(text: str) -> dict[str, Any]:
@@ -252,12 +255,12 @@ def _resolve_sweep_paths(inside: Any, folder: Path) -> None:
 def _names() -> list[str]:
     """Return the names of the shipped cases."""
     folder = files("vibroimpact").joinpath("cases/library")
-    return sorted(f"paper:{entry.name.removesuffix('.toml')}" for entry in folder.iterdir() if entry.name.endswith(".toml"))
+    found = [(group, entry.name) for group in GROUPS for entry in folder.joinpath(group).iterdir() if entry.name.endswith(".toml")]
+    return sorted(f"{group}:{name.removesuffix('.toml')}" for group, name in found)
 
 
 def _shipped(name: str) -> str:
     """Return the text of a shipped case."""
-    entry = files("vibroimpact").joinpath("cases/library", name.removeprefix("paper:") + ".toml")
     if name not in (known := _names()):
         raise InputError(f"there is no shipped case {shown(name)}; there are {', '.join(known)}.{did_you_mean(name, known)}")
-    return entry.read_text(encoding="utf-8")
+    return files("vibroimpact").joinpath("cases/library", *f"{name}.toml".split(":")).read_text(encoding="utf-8")
