@@ -19,6 +19,10 @@ if TYPE_CHECKING:
     from vibroimpact.bodies.body import Body as Body
     from vibroimpact.bodies.rigid import rigid_plate as rigid_plate
     from vibroimpact.bodies.rigid import rigid_sphere as rigid_sphere
+    from vibroimpact.bounds.bound import Bound as Bound
+    from vibroimpact.bounds.bound import bound_of as bound_of
+    from vibroimpact.bounds.folder import save_bound as save_bound
+    from vibroimpact.bounds.observations import Channel as Channel
     from vibroimpact.calibration.calibrate import calibrate as calibrate
     from vibroimpact.calibration.calibrate_case import calibrate_case as calibrate_case
     from vibroimpact.calibration.calibrate_case import calibrated_case as calibrated_case
@@ -134,14 +138,16 @@ if TYPE_CHECKING:
     from vibroimpact.units.reading import to_si as to_si
 
 _HOME = {
-    "Accelerometer": "dynamics.sensors.instruments.accelerometer",
+    "Accelerometer": "dynamics.sensors.sensor",
     "Air": "dynamics.air",
     "Amplifier": "dynamics.sensors.electronics",
     "Body": "bodies.body",
     "BodyModes": "cases.elastic.modes",
     "BodyMotion": "dynamics.simulate_system",
+    "Bound": "bounds.bound",
     "Calibration": "calibration.calibration",
     "Case": "cases.case",
+    "Channel": "bounds.observations",
     "Comparison": "comparison.comparison",
     "ComputationError": "errors",
     "ContactLaw": "contact.law",
@@ -177,6 +183,7 @@ _HOME = {
     "SystemResponse": "dynamics.simulate_system",
     "VibroimpactError": "errors",
     "achieved_restitution": "dynamics.restitution",
+    "bound_of": "bounds.bound",
     "calibrate": "calibration.calibrate",
     "calibrate_case": "calibration.calibrate_case",
     "calibrate_friction": "calibration.friction.calibrate",
@@ -234,6 +241,7 @@ _HOME = {
     "rigid_plate": "bodies.rigid",
     "rigid_sphere": "bodies.rigid",
     "run_sweep": "studies.run_sweep",
+    "save_bound": "bounds.folder",
     "save_calibration": "calibration.folder",
     "save_charts": "charts.files",
     "save_comparison": "comparison.folder",

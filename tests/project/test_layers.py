@@ -35,6 +35,7 @@ LAYERS = [
     {"modes"},
     {"runs"},
     {"comparison", "calibration", "studies", "laws"},
+    {"bounds"},
     {"exporting", "paper"},
     {"remake", "figures"},
     {"app"},
