@@ -19,6 +19,10 @@ if TYPE_CHECKING:
     from vibroimpact.bodies.body import Body as Body
     from vibroimpact.bodies.rigid import rigid_plate as rigid_plate
     from vibroimpact.bodies.rigid import rigid_sphere as rigid_sphere
+    from vibroimpact.bounds.bound import Bound as Bound
+    from vibroimpact.bounds.bound import bound_of as bound_of
+    from vibroimpact.bounds.folder import save_bound as save_bound
+    from vibroimpact.bounds.observations import Channel as Channel
     from vibroimpact.calibration.calibrate import calibrate as calibrate
     from vibroimpact.calibration.calibrate_case import calibrate_case as calibrate_case
     from vibroimpact.calibration.calibrate_case import calibrated_case as calibrated_case
@@ -67,8 +71,12 @@ if TYPE_CHECKING:
     from vibroimpact.dynamics.restitution import achieved_restitution as achieved_restitution
     from vibroimpact.dynamics.restitution import integrated_restitution as integrated_restitution
     from vibroimpact.dynamics.restitution import law_achieving as law_achieving
+    from vibroimpact.dynamics.sensors.electronics import Amplifier as Amplifier
+    from vibroimpact.dynamics.sensors.electronics import Converter as Converter
+    from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer as Accelerometer
+    from vibroimpact.dynamics.sensors.instruments.geophone import Geophone as Geophone
+    from vibroimpact.dynamics.sensors.instruments.strain_gauge import StrainGauge as StrainGauge
     from vibroimpact.dynamics.sensors.recording import Signal as Signal
-    from vibroimpact.dynamics.sensors.sensor import Accelerometer as Accelerometer
     from vibroimpact.dynamics.sensors.sensor import Sensor as Sensor
     from vibroimpact.dynamics.shaken.statement import PlateMotion as PlateMotion
     from vibroimpact.dynamics.simulate import simulate as simulate
@@ -140,31 +148,36 @@ if TYPE_CHECKING:
     from vibroimpact.units.reading import to_si as to_si
 
 _HOME = {
-    "Air": "dynamics.air",
     "Accelerometer": "dynamics.sensors.sensor",
+    "Air": "dynamics.air",
+    "Amplifier": "dynamics.sensors.electronics",
     "Body": "bodies.body",
     "BodyModes": "cases.elastic.modes",
     "BodyMotion": "dynamics.simulate_system",
+    "Bound": "bounds.bound",
     "Calibration": "calibration.calibration",
     "Case": "cases.case",
+    "Channel": "bounds.observations",
     "Comparison": "comparison.comparison",
     "ComputationError": "errors",
     "ContactLaw": "contact.law",
+    "Converter": "dynamics.sensors.electronics",
     "FeatureTable": "signals.feature_table",
     "FrictionCalibration": "calibration.friction.calibrate",
+    "Geophone": "dynamics.sensors.instruments.geophone",
     "InputError": "errors",
     "Material": "materials",
     "LabelledSignals": "recognition.labelled_signals",
     "Mesh": "structures.mesh",
     "ModalBasis": "structures.modal_model",
     "MovingBody": "dynamics.system",
-    "Observations": "calibration.observations",
-    "Outcome": "dynamics.outcome",
-    "PointContact": "dynamics.system",
     "Oblique": "dynamics.oblique.statement",
     "ObliqueImpacts": "calibration.friction.measured",
+    "Observations": "calibration.observations",
+    "Outcome": "dynamics.outcome",
     "Packets": "signals.packets",
     "PlateMotion": "dynamics.shaken.statement",
+    "PointContact": "dynamics.system",
     "Problem": "dynamics.problem",
     "QuasiStatic": "contact.quasi_static",
     "Record": "signals.record",
@@ -177,12 +190,14 @@ _HOME = {
     "Sensor": "dynamics.sensors.sensor",
     "Signal": "dynamics.sensors.recording",
     "SpeedFunction": "calibration.speed_function",
+    "StrainGauge": "dynamics.sensors.instruments.strain_gauge",
     "Study": "studies.study",
     "Sweep": "studies.sweep",
     "System": "dynamics.system",
     "SystemResponse": "dynamics.simulate_system",
     "VibroimpactError": "errors",
     "achieved_restitution": "dynamics.restitution",
+    "bound_of": "bounds.bound",
     "apply_recogniser": "recognition.apply",
     "calibrate": "calibration.calibrate",
     "calibrate_case": "calibration.calibrate_case",
@@ -203,9 +218,9 @@ _HOME = {
     "find_contact_law": "contact.registry",
     "find_feature": "signals.registry",
     "find_friction_law": "contact.registry",
-    "friction_laws": "contact.registry",
     "find_material": "materials",
     "find_packets": "signals.packets",
+    "friction_laws": "contact.registry",
     "from_onset": "signals.onset",
     "identify_local_element": "dynamics.local_element",
     "impacts_in_force": "calibration.force_record",
@@ -224,10 +239,10 @@ _HOME = {
     "mode_charts": "modes.charts",
     "onset_time": "signals.onset",
     "packet_records": "signals.packets",
-    "plotly_figure": "charts.notebook",
-    "plot_study": "studies.report.notebook",
-    "read_calibration": "calibration.calibrate_case",
     "plot_result": "runs.notebook",
+    "plot_study": "studies.report.notebook",
+    "plotly_figure": "charts.notebook",
+    "read_calibration": "calibration.calibrate_case",
     "read_case": "cases.reader",
     "read_labelled_signals": "recognition.read_dataset",
     "read_mesh": "meshes.mesh_file",
@@ -244,6 +259,7 @@ _HOME = {
     "rigid_plate": "bodies.rigid",
     "rigid_sphere": "bodies.rigid",
     "run_sweep": "studies.run_sweep",
+    "save_bound": "bounds.folder",
     "save_calibration": "calibration.folder",
     "save_charts": "charts.files",
     "save_comparison": "comparison.folder",

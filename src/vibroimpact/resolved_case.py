@@ -70,7 +70,12 @@ class ResolvedSensor(TypedDict, total=False):
     rate: float
     filter: str
     corner: float
+    instrument: str
     accelerometer: Mapping[str, Any]
+    geophone: Mapping[str, Any]
+    strain_gauge: Mapping[str, Any]
+    amplifier: Mapping[str, Any]
+    converter: Mapping[str, Any]
 
 
 class ResolvedCase(TypedDict, total=False):

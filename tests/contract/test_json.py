@@ -159,6 +159,13 @@ def test_modes_are_those_of_the_tables(printed: Printed) -> None:
     assert in_all_columns([row for _, points in tables for row in points]) == rows("out", "points.csv")
 
 
+def test_a_bound_is_its_summary_and_its_rows(printed: Printed) -> None:
+    document = printed("bound", "signals:coal-gangue", "--samples", "500", "-o", "out")
+    assert document.pop("folder") == "out"
+    assert document == summary("out")
+    assert in_all_columns(document["bound"]) == rows("out", "bound.csv")
+
+
 def test_a_comparison_is_its_summary_and_its_cases(printed: Printed) -> None:
     document = printed("compare", "paper:type1-theory", "--laws", "flores,newton", "--achieving", "0.7", "-o", "out")
     assert document.pop("folder") == "out"

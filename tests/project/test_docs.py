@@ -40,7 +40,7 @@ def commands(pages: list[Path]) -> list[str]:
 
 def is_quick(command: str) -> bool:
     """Modes of elastic bodies, and figures for print, take longer than all that the other commands do."""
-    return not {"paper:type3", "elastic.toml", "figures", "features"} & set(command.split())
+    return not {"paper:type3", "elastic.toml", "figures", "features", "dataset"} & set(command.split())
 
 
 @pytest.mark.parametrize(

@@ -35,6 +35,7 @@ LAYERS = [
     {"modes"},
     {"runs"},
     {"comparison", "calibration", "studies", "laws"},
+    {"bounds"},
     {"recognition"},
     {"exporting", "paper"},
     {"remake", "figures"},

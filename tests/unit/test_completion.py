@@ -77,7 +77,7 @@ def test_each_place_of_the_command_line(
     ("words", "expected"),
     [
         (["run", "paper", ":", "type1-t"], ["type1-theory"]),
-        (["sweep", "paper", ":"], sorted(name.removeprefix("paper:") for name in vi.shipped_cases())),
+        (["sweep", "paper", ":"], sorted(name.removeprefix("paper:") for name in vi.shipped_cases() if name.startswith("paper:"))),
         (["run", "paper", ":", "type3", "--set", "plate.size.th"], ["plate.size.thickness=", "plate.size.thickness=VALUE"]),
         (["run", "paper", ":", "type3", "--set", "contact.law", "="], LAWS),
         (["run", "paper", ":", "type3", "--set", "contact.law", "=", "flo"], ["flores"]),

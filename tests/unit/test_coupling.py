@@ -124,7 +124,8 @@ def test_too_few_modes_and_an_overdriven_accelerometer_are_doubted() -> None:
 
 def test_an_unknown_key_of_an_accelerometer_is_named_with_the_others() -> None:
     with pytest.raises(
-        vi.InputError, match=r'unknown key "nois"; .* takes resonance, damping_ratio, range, noise, resolution, seed\. Did you mean "noise"'
+        vi.InputError,
+        match=r'unknown key "nois"; .* takes resonance, damping_ratio, range, noise, resolution, seed, sensitivity\. Did you mean "noise"',
     ):
         vi.read_case(case(sensors=[{**SENSOR, "accelerometer": {"nois": 0.5}}]))
 

@@ -14,6 +14,7 @@ from vibroimpact.arrays import Floats
 from vibroimpact.cases.keys import with_values
 from vibroimpact.dynamics.columns import LEDGER, OBLIQUE_LEDGER, VIBRATION_LEDGER
 from vibroimpact.dynamics.oblique import compliant
+from vibroimpact.dynamics.rigid import bodies
 from vibroimpact.runs.tables import ledger_table
 
 RADIUS, MASS = 0.01, 0.02
@@ -414,6 +415,21 @@ def test_sliding_throughout_is_what_the_integration_finds(friction: str, monkeyp
     monkeypatch.setattr(compliant, "_ROUNDING", -1e9)
     whole = vi.tabulate(problem("hunt-crossley", oblique=oblique, impacts=1)).impacts["separation_velocity_x_m_s"]
     np.testing.assert_allclose(short, whole, atol=1e-5)
+
+
+@pytest.mark.parametrize("law", ["hertz", "hunt-crossley", "walton-braun"])
+@pytest.mark.parametrize("friction", ["mdr", "mindlin", "mindlin-rescale", "mindlin-force"])
+def test_more_steps_change_little(law: str, friction: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """From sticking to sliding throughout, so that contacts begin to stick at every point of the grid, and where its parts meet."""
+    laws = LAWS | {"walton-braun": vi.find_contact_law("walton-braun")(stiffness=1e6, restitution=0.6)}
+    slip = np.linspace(0.05, 6.0, 400)
+    oblique = vi.Oblique(velocity=(slip, 0.0), friction=FRICTION[friction])
+    ball, plate = vi.Body(mass=MASS, contact_offset=RADIUS), vi.rigid_plate()
+    drops = vi.Problem(sphere=ball, plate=plate, laws=(laws[law],), speed=2.0, gravity=0.0, impacts=1, oblique=oblique)
+    found = vi.tabulate(drops).impacts["separation_velocity_x_m_s"][:, 0]
+    monkeypatch.setattr(bodies, "OBLIQUE_STEPS", 48)
+    more = vi.tabulate(drops).impacts["separation_velocity_x_m_s"][:, 0]
+    assert (np.abs(found - more) < 1e-4 * slip).all()
 
 
 def test_values_at_keys_are_not_shared() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sqlite3
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,12 +13,14 @@ from scipy import stats
 import vibroimpact as vi
 from vibroimpact.studies.axes import Axis, Listed, Normal, Spaced
 from vibroimpact.studies.chunk_file import ChunkResult, checksum, read_chunk, write_chunk
-from vibroimpact.studies.design import designs, find_design
+from vibroimpact.studies.design import Asked, designs, find_design
 from vibroimpact.studies.ledger import LEDGER, Span, is_held, make_ledger, open_ledger
 from vibroimpact.studies.plan import Plan
+from vibroimpact.studies.population import Population
 
 PARTS = (np.arange(400) + 0.5) / 400
 AXES: dict[str, Axis] = {"a": Spaced(1.0, 3.0, 5), "b": Normal(10.0, 2.0, 4), "c": Listed((0.1, 0.2, 0.4))}
+POPULATION = Population({"x": 1.0, "y": 2.0}, {"x": {"sphere.d": Spaced(0.0, 1.0, 2)}, "y": {"sphere.d": Spaced(5.0, 6.0, 2)}}, 2, 3)
 
 
 @pytest.mark.parametrize(
@@ -63,10 +66,11 @@ def test_impossible_distributions_are_refused(make: object, words: str) -> None:
 def test_a_plan_has_the_size_that_its_design_said_and_is_the_same_again(name: str) -> None:
     design = find_design(name)
     axes = {"a": Spaced(1.0, 3.0, 4), "b": Spaced(1.0, 2.0, 4)} if name == "zip" else AXES
-    plan = design.plan(axes, 16, 7)
-    assert plan.size == design.size(axes, 16)
-    assert plan.digest() == design.plan(axes, 16, 7).digest()
-    assert (plan.digest() == design.plan(axes, 16, 8).digest()) is not design.is_drawn
+    asked = Asked(axes, 16, 7, POPULATION if name == "population" else None)
+    plan = design.plan(asked)
+    assert plan.size == design.size(asked)
+    assert plan.digest() == design.plan(asked).digest()
+    assert (plan.digest() == design.plan(replace(asked, seed=8)).digest()) is not design.is_drawn
     whole = plan.points(0, plan.size)
     for key, values in plan.points(3, 5).items():
         np.testing.assert_array_equal(values, whole[key][3:8])
@@ -79,20 +83,20 @@ def test_whole_numbers_stay_what_they_are() -> None:
 
 
 def test_a_grid_has_every_combination_once() -> None:
-    plan = find_design("grid").plan(AXES, 0, 0)
+    plan = find_design("grid").plan(Asked(AXES))
     points = plan.points(0, plan.size)
     assert len(set(zip(*(values.tolist() for values in points.values()), strict=True))) == plan.size == 5 * 4 * 3
 
 
 def test_a_latin_hypercube_has_one_point_in_every_part_of_every_axis() -> None:
-    plan = find_design("latin-hypercube").plan({"a": Spaced(0.0, 1.0, 2), "b": Spaced(0.0, 1.0, 2)}, 50, 1)
+    plan = find_design("latin-hypercube").plan(Asked({"a": Spaced(0.0, 1.0, 2), "b": Spaced(0.0, 1.0, 2)}, 50, 1))
     for values in plan.columns.values():
         assert sorted((values * 50).astype(int)) == list(range(50))
     assert abs(np.corrcoef(*plan.columns.values())[0, 1]) < 0.3
 
 
 def test_saltelli_takes_over_one_axis_of_the_second_block_at_a_time() -> None:
-    plan = find_design("saltelli").plan({"a": Spaced(0.0, 1.0, 2), "b": Spaced(0.0, 1.0, 2)}, 8, 1)
+    plan = find_design("saltelli").plan(Asked({"a": Spaced(0.0, 1.0, 2), "b": Spaced(0.0, 1.0, 2)}, 8, 1))
     a, b = (np.stack([plan.columns[key][block * 8 : block * 8 + 8] for block in range(4)]) for key in "ab")
     np.testing.assert_array_equal(a[2], a[1])
     np.testing.assert_array_equal(b[2], b[0])
@@ -103,11 +107,13 @@ def test_saltelli_takes_over_one_axis_of_the_second_block_at_a_time() -> None:
 @pytest.mark.parametrize(("name", "samples", "words"), [("sobol", 100, "take 64 or 128"), ("saltelli", 3, "take 2 or 4")])
 def test_sequences_want_powers_of_two(name: str, samples: int, words: str) -> None:
     with pytest.raises(vi.InputError, match=words):
-        find_design(name).size(AXES, samples)
+        find_design(name).size(Asked(AXES, samples))
 
 
 def test_an_unknown_design_is_named_with_the_closest() -> None:
-    with pytest.raises(vi.InputError, match='there is no design "latin"; there are grid, latin-hypercube, saltelli, sobol, zip'):
+    with pytest.raises(
+        vi.InputError, match='there is no design "latin"; there are grid, latin-hypercube, population, saltelli, sobol, zip'
+    ):
         find_design("latin")
 
 

@@ -245,7 +245,7 @@ def test_a_large_study_stays_light(tmp_path: Path) -> None:
 
 
 def test_signals_are_laid_over_each_other_at_first_touch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def ringing(table: Any, keep: Any, first: int, points: Mapping[str, Any]) -> ChunkResult:
+    def ringing(table: Any, keep: Any, first: int, points: Mapping[str, Any], window: Any) -> ChunkResult:
         touch = np.asarray(points["drop.height"], dtype=float) / 100.0
         since = np.arange(4001) / 50e3 - touch[:, None]
         signals = np.where(since >= 0.0, np.cos(6e3 * since) * np.exp(-300.0 * since), 0.0) * touch[:, None]

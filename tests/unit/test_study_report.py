@@ -184,7 +184,7 @@ def test_failures_are_told_with_their_points_and_left_out_of_the_numbers(tmp_pat
 
 
 def test_a_study_of_which_every_drop_failed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def failing(table: Any, keep: Any, first: int, points: Mapping[str, Any]) -> ChunkResult:
+    def failing(table: Any, keep: Any, first: int, points: Mapping[str, Any], window: Any) -> ChunkResult:
         count = len(next(iter(points.values())))
         codes = np.full(count, list(Outcome).index(Outcome.FAILED), dtype=np.int8)
         return ChunkResult({OUTCOME: codes}, dict.fromkeys(range(count), "no luck"))
@@ -211,7 +211,7 @@ def test_laws_without_restitution_and_without_force(tmp_path: Path) -> None:
 def test_signals_of_sensors_whatever_they_are_called(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     name = "left.a[1] $x$"
 
-    def ringing(table: Any, keep: Any, first: int, points: Mapping[str, Any]) -> ChunkResult:
+    def ringing(table: Any, keep: Any, first: int, points: Mapping[str, Any], window: Any) -> ChunkResult:
         height = np.asarray(points["drop.height"], dtype=float)
         time = np.arange(501) / 50e3
         signals = height[:, None] * np.where(time > 2e-3, np.sin(6e3 * time) * np.exp(-300.0 * time), 0.0)

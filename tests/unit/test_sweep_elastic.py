@@ -76,7 +76,7 @@ def test_the_noise_is_that_of_one_drop_alone(study: vi.Study) -> None:
     noise = []
     for speed in range(3):
         (sensor,) = (one for one in alone(0, speed).problem.sensors if one.name == "a1")
-        assert sensor.accelerometer is not None
+        assert sensor.instrument is not None
         quiet = vi.Sensor("a1", rate=sensor.rate)
         noise.append(study.values("signal_a1", 0, speed) - alone(0, speed).signals(quiet)["a1"].value)
     for number, values in enumerate(noise):

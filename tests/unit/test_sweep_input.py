@@ -30,7 +30,11 @@ FAULTS: list[tuple[object, str]] = [
     ({}, "sweep.over: this key is missing: by dotted keys of the case"),
     ({"over": {}}, "sweep.over: it is empty; it takes dotted keys of the case"),
     ({"over": [1]}, "sweep.over: [1] is not a table"),
-    ({"ovr": {}}, 'sweep.ovr: unknown key "ovr"; it takes design, over, samples, seed, keep. Did you mean "over"?'),
+    (
+        {"ovr": {}},
+        'sweep.ovr: unknown key "ovr"; it takes design, over, samples, seed, keep, window, classes, falls_per_rock, rocks_per_plate. '
+        'Did you mean "over"?',
+    ),
     (over(sphere__raduis=[0.01]), 'sweep.over."sphere.raduis": unknown key; it must be a key of [sphere]'),
     (over(sphere__raduis=[0.01]), 'Did you mean "sphere.radius"?'),
     (over(radius=[0.01]), 'sweep.over."radius": unknown key'),

@@ -17,7 +17,8 @@ import vibroimpact as vi
 from vibrating import STIFFNESS, drop_on, modes_of, random_modes
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
-from vibroimpact.dynamics.sensors.sensor import Accelerometer, Sensor
+from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer
+from vibroimpact.dynamics.sensors.sensor import Sensor
 
 HERTZ = Hertz(stiffness=STIFFNESS)
 QUANTITIES: tuple[Literal["displacement", "velocity", "acceleration"], ...] = ("displacement", "velocity", "acceleration")
@@ -103,7 +104,7 @@ def test_resonance_of_an_accelerometer(frequency: float) -> None:
     resonance, ratio, rate = 20e3, 0.05, 60e3
     response = vi.simulate(drop_on(HERTZ, modes_of([frequency], [0.3]), gravity=0.0, duration=0.04))
     plain = response.signals(Sensor("a", rate=rate))["a"]
-    read = response.signals(Sensor("a", rate=rate, accelerometer=Accelerometer(resonance, ratio)))["a"]
+    read = response.signals(Sensor("a", rate=rate, instrument=Accelerometer(resonance, ratio)))["a"]
     np.testing.assert_array_equal(plain.time, read.time)
     later = plain.time > 0.02  # its own ringing has died down
     waves = np.exp(2j * np.pi * frequency * plain.time[later])
@@ -121,7 +122,7 @@ def test_range_noise_and_resolution() -> None:
     plain = response.signals(Sensor("a", filter="none"))["a"].value
 
     def reads(**meter: float) -> np.ndarray:
-        return response.signals(Sensor("a", accelerometer=Accelerometer(**meter), filter="none"))["a"].value
+        return response.signals(Sensor("a", instrument=Accelerometer(**meter), filter="none"))["a"].value
 
     np.testing.assert_array_equal(reads(), plain)
     np.testing.assert_array_equal(reads(range=50.0), np.clip(plain, -50.0, 50.0))

@@ -15,7 +15,8 @@ from vibrating import STIFFNESS, drop_on, modes_of, random_modes
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
 from vibroimpact.dynamics.sensors.antialias import HALF_LENGTH, kernel
-from vibroimpact.dynamics.sensors.sensor import Accelerometer, Sensor
+from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer
+from vibroimpact.dynamics.sensors.sensor import Sensor
 
 RATE, FINER = 20e3, 64
 HERTZ = Hertz(stiffness=STIFFNESS)
@@ -88,7 +89,7 @@ def test_a_plate_that_carries_the_sphere(
         taps = signal.firwin(64 * HALF_LENGTH + 1, 0.5 * RATE, window=("kaiser", 10.4), fs=fine)
         value = signal.fftconvolve(value, taps, "same")
     quantity = ("displacement", "velocity", "acceleration")[order]
-    sensor = Sensor("a", quantity, rate=RATE, filter=kind, accelerometer=meter)  # type: ignore[arg-type]
+    sensor = Sensor("a", quantity, rate=RATE, filter=kind, instrument=meter)  # type: ignore[arg-type]
     found = response.signals(sensor)["a"].value[round(times[0] * RATE) :]
     begun = float(response.rest.time[0])
     windows = [(np.abs(times - begun - 0.02) < 0.03, 2e-3), (np.abs(times - begun - 0.04) < 0.03, 1e-4)]
@@ -103,11 +104,11 @@ def test_a_plate_that_carries_the_sphere(
 @pytest.mark.parametrize("kind", one_in(3, ["sigma-delta", "butterworth", "none"]))
 def test_an_overdriven_accelerometer(response: vi.Response, kind: str) -> None:
     meter, end = {"resonance": 30e3, "damping_ratio": 0.1}, 200.0
-    full = response.signals(Sensor("a", rate=FINER * RATE, filter="none", accelerometer=Accelerometer(**meter)))["a"].value
+    full = response.signals(Sensor("a", rate=FINER * RATE, filter="none", instrument=Accelerometer(**meter)))["a"].value
     assert np.abs(full).max() > 2.0 * end
     clipped = np.clip(full, -end, end)
     exact = clipped[::FINER] if kind == "none" else decimated(clipped, kind)
-    found = response.signals(Sensor("a", rate=RATE, filter=kind, accelerometer=Accelerometer(**meter, range=end)))["a"]
+    found = response.signals(Sensor("a", rate=RATE, filter=kind, instrument=Accelerometer(**meter, range=end)))["a"]
     heard = slice(0, -HALF_LENGTH) if kind == "sigma-delta" else slice(None)
     np.testing.assert_allclose(found.value[heard], exact[: len(found.value)][heard], rtol=0.0, atol=0.01 * end)
     assert found.peak == pytest.approx(np.abs(full).max(), rel=0.02)

@@ -14,7 +14,8 @@ import pytest
 import vibroimpact as vi
 from oracles.measuring_chain import RATE, Floats, SimplySupported, driven, rms, sampled, seismic
 from oracles.three_dimensional_plate import Elastic, thickness_modes
-from vibroimpact.dynamics.sensors.sensor import Accelerometer, Sensor
+from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer
+from vibroimpact.dynamics.sensors.sensor import Sensor
 
 SIZE, DENSITY, MODULUS, POISSON, RATIO = (0.18, 0.15, 0.006), 7850.0, 210e9, 0.3, 0.002
 SPOT, DURATION, SAMPLES = (-0.011, -0.0147), 2e-3, 50e3
@@ -90,7 +91,7 @@ def test_accelerometers(response: vi.Response, motion: dict[str, dict[str, Float
     """A resonance above half the rate, driven beyond its range too: what is cut off there is what comes through in band."""
     exact = seismic(motion["two"]["acceleration"], meter["resonance"], meter.get("damping_ratio", 0.02))
     end = meter.get("range", np.inf)
-    sensor = Sensor("two", filter=filtered, accelerometer=Accelerometer(**meter))
+    sensor = Sensor("two", filter=filtered, instrument=Accelerometer(**meter))
     assert compared(response, sensor, sampled(np.clip(exact, -end, end), SAMPLES, filtered)) < PROMISED
     signal = response.signals(sensor)["two"]
     if np.isfinite(end):

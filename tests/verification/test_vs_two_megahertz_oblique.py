@@ -10,7 +10,8 @@ import pytest
 
 import vibroimpact as vi
 from oracles.measuring_chain import RATE, Floats, SimplySupported, driven, rms, sampled, seismic
-from vibroimpact.dynamics.sensors.sensor import Accelerometer, Sensor
+from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer
+from vibroimpact.dynamics.sensors.sensor import Sensor
 
 SIZE, DENSITY, MODULUS, POISSON, RATIO = (0.18, 0.15, 0.006), 7850.0, 210e9, 0.3, 0.002
 SPOT, AWAY, DURATION, SAMPLES = (-0.041, -0.0147), (-0.06, 0.02), 3e-3, 50e3
@@ -79,7 +80,7 @@ def test_points(response: vi.Response, motion: dict[str, Floats], quantity: str)
 @pytest.mark.parametrize("filtered", ["sigma-delta", "butterworth"])
 def test_accelerometers(response: vi.Response, motion: dict[str, Floats], filtered: str) -> None:
     exact = seismic(motion["acceleration"], 30e3, 0.02)
-    sensor = Sensor("two", filter=filtered, accelerometer=Accelerometer(resonance=30e3))  # type: ignore[arg-type]
+    sensor = Sensor("two", filter=filtered, instrument=Accelerometer(resonance=30e3))  # type: ignore[arg-type]
     assert off(response, sensor, sampled(exact, SAMPLES, filtered)) < 0.01
 
 

@@ -96,7 +96,7 @@ def test_accelerometers(response: vi.Response, motion: dict[str, Floats], filter
     """The last is driven beyond its range by the supports alone, before the run too."""
     exact = seismic(motion["acceleration"], meter["resonance"], meter.get("damping_ratio", 0.02))
     end = meter.get("range", np.inf)
-    sensor = Sensor("one", rate=SAMPLES, filter=filtered, accelerometer=Accelerometer(**meter))
+    sensor = Sensor("one", rate=SAMPLES, filter=filtered, instrument=Accelerometer(**meter))
     assert off(response, sensor, sampled(np.clip(exact, -end, end), SAMPLES, filtered)) < 0.01
     signal, begin = response.signals(sensor)["one"], round(EARLIER * RATE / SAMPLES)
     within = np.abs(exact[begin : begin + round(DURATION * RATE)])

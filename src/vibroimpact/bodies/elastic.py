@@ -46,7 +46,9 @@ class ElasticBody:
     damping : Damping, optional
         Damping of its modes; none by default.
     watched : mapping of str to (spot, side), optional
-        Sensors by name.
+        Sensors of motion by name.
+    strained : mapping of str to (spot, side), optional
+        Sensors of strain by name.
     """
 
     recipe: Recipe
@@ -54,6 +56,12 @@ class ElasticBody:
     contact: Spot = None
     damping: Damping = ConstantRatio(0.0)
     watched: Mapping[str, tuple[Spot, Side]] = field(default_factory=dict)
+    strained: Mapping[str, tuple[Spot, Side]] = field(default_factory=dict)
+
+    @property
+    def sensors(self) -> dict[str, tuple[Spot, Side]]:
+        """All sensors by name."""
+        return {**self.watched, **self.strained}
 
     def basis(self, model: ModalModel) -> ModalBasis:
         """Return the modes of the recipe at the contact point and at the sensors.
@@ -63,11 +71,11 @@ class ElasticBody:
         InputError
             If a point is not on the body, or a set is not in its mesh.
         """
-        return modal_basis(model, self.damping, self.contact, self.side, self.watched)
+        return modal_basis(model, self.damping, self.contact, self.side, self.watched, self.strained)
 
     def rigid_motions(self, model: ModalModel) -> ModalBasis | None:
         """Return the rigid motions that the supports permit, at the same points, as modes of frequency zero; None if there are none."""
-        return rigid_basis(model, (self.contact, self.side), self.watched)
+        return rigid_basis(model, (self.contact, self.side), self.watched, self.strained)
 
 
 def sphere_recipe(radius: float, material: Material, reduction: Reduction, **mesh: Any) -> Recipe:

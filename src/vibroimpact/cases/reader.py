@@ -17,18 +17,22 @@ from vibroimpact.calibration.section import CalibrateSection, SpeedsTable
 from vibroimpact.cases.build import check_case
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.fields.fault_messages import fault_messages
+from vibroimpact.cases.fields.instruments import AccelerometerTable, AmplifierTable, ConverterTable, GeophoneTable, StrainGaugeTable
 from vibroimpact.cases.fields.item_labels import path_in_words
 from vibroimpact.cases.fields.material import InlineMaterial
 from vibroimpact.cases.fields.motion import MotionTable
 from vibroimpact.cases.fields.size_limits import MOST_BYTES, check_bounds, check_text
 from vibroimpact.cases.keys import with_values
-from vibroimpact.cases.schema import SECTIONS, AccelerometerTable, SensorSection
+from vibroimpact.cases.schema import SECTIONS, SensorSection
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.files.reading import FileKind, read_text
 from vibroimpact.shown import shortened, shown
 from vibroimpact.studies.section import SweepSection
 
 Read = TypeVar("Read")
+
+GROUPS = ("paper", "signals")
+"""Groups of shipped cases: of the paper, and of data sets; a name is "GROUP:NAME"."""
 
 _CASE = FileKind('a case is a TOML file, or a shipped one such as "paper:type1-theory"', MOST_BYTES, "a case is a page of text")
 
@@ -40,6 +44,10 @@ _SECTIONS: dict[tuple[str, ...], type[BaseModel]] = {
     ("sensors",): SensorSection,
     ("sweep",): SweepSection,
     ("sensors", "accelerometer"): AccelerometerTable,
+    ("sensors", "amplifier"): AmplifierTable,
+    ("sensors", "converter"): ConverterTable,
+    ("sensors", "geophone"): GeophoneTable,
+    ("sensors", "strain_gauge"): StrainGaugeTable,
     ("plate", "motion"): MotionTable,
 }
 
@@ -121,7 +129,7 @@ def case_text(source: str | PathLike[str]) -> str:
     InputError
         If it can't be read, or is too large for a case; the message does not name the source.
     """
-    return _shipped(str(source)) if str(source).startswith("paper:") else read_text(Path(source), _CASE)
+    return _shipped(str(source)) if str(source).partition(":")[0] in GROUPS else read_text(Path(source), _CASE)
 
 
 def parse_case(text: str) -> dict[str, Any]:
@@ -247,12 +255,12 @@ def _resolve_sweep_paths(inside: Any, folder: Path) -> None:
 def _names() -> list[str]:
     """Return the names of the shipped cases."""
     folder = files("vibroimpact").joinpath("cases/library")
-    return sorted(f"paper:{entry.name.removesuffix('.toml')}" for entry in folder.iterdir() if entry.name.endswith(".toml"))
+    found = [(group, entry.name) for group in GROUPS for entry in folder.joinpath(group).iterdir() if entry.name.endswith(".toml")]
+    return sorted(f"{group}:{name.removesuffix('.toml')}" for group, name in found)
 
 
 def _shipped(name: str) -> str:
     """Return the text of a shipped case."""
-    entry = files("vibroimpact").joinpath("cases/library", name.removeprefix("paper:") + ".toml")
     if name not in (known := _names()):
         raise InputError(f"there is no shipped case {shown(name)}; there are {', '.join(known)}.{did_you_mean(name, known)}")
-    return entry.read_text(encoding="utf-8")
+    return files("vibroimpact").joinpath("cases/library", *f"{name}.toml".split(":")).read_text(encoding="utf-8")

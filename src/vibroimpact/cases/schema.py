@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
+from collections.abc import Collection
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, Field, StrictBool, model_validator
@@ -23,6 +24,15 @@ from vibroimpact.cases.fields.elastic_body import (
     check_plate,
     check_sphere_below,
 )
+from vibroimpact.cases.fields.instruments import (
+    INSTRUMENTS,
+    AccelerometerTable,
+    AmplifierTable,
+    ConverterTable,
+    GeophoneTable,
+    StrainGaugeTable,
+    read_in_unit,
+)
 from vibroimpact.cases.fields.material import MaterialField
 from vibroimpact.cases.fields.motion import MotionTable
 from vibroimpact.cases.fields.quantities import Quantity
@@ -31,7 +41,10 @@ from vibroimpact.cases.fields.size_limits import MOST_ITEMS, Name, at_most
 from vibroimpact.cases.fields.supports import SupportsField
 from vibroimpact.cases.slips.lengths import likely_lengths
 from vibroimpact.dynamics.problem import MOST_IMPACTS, STANDARD_GRAVITY
-from vibroimpact.dynamics.sensors.sensor import FILTERS, Accelerometer, Sensor
+from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer
+from vibroimpact.dynamics.sensors.instruments.instrument import MOTIONS, Instrument
+from vibroimpact.dynamics.sensors.instruments.strain_gauge import StrainGauge
+from vibroimpact.dynamics.sensors.sensor import FILTERS, Sensor
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.materials import RIGID
 from vibroimpact.ranges import Range
@@ -150,26 +163,19 @@ def _read_impacts(value: Any) -> Any:
     raise InputError(f'{shown(value)} is not allowed; it must be a whole number from 1 to {MOST_IMPACTS}, or "all" to go on to rest')
 
 
-class AccelerometerTable(Section):
-    """What an accelerometer adds to the acceleration of its base: its resonance, then its range; its noise and its steps."""
-
-    resonance: Annotated[float, Quantity("Hz", "its mounted resonance", Range(above=0))] | None = None
-    damping_ratio: Annotated[float, Quantity("", "damping ratio of its resonance", Range(above=0))] = 0.02
-    range: Annotated[float, Quantity("m/s^2", "largest magnitude that it puts out", Range(above=0))] | None = None
-    noise: Annotated[float, Quantity("m/s^2", "standard deviation of the noise in its samples", Range(at_least=0))] = 0.0
-    resolution: Annotated[float, Quantity("m/s^2", "step of its readings", Range(above=0))] | None = None
-    seed: Annotated[int, Field(ge=0, strict=True)] = Field(0, description="of the noise")
-
-
 _DIRECTIONS = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
 
-def _read_filter(value: Any) -> Any:
-    """Return the name of a filter; a value that is no string is left to the type check of the field."""
-    if not isinstance(value, str) or value in FILTERS:
-        return value
-    known = ", ".join(f'"{name}"' for name in FILTERS)
-    raise InputError(f"{shown(value)} is not allowed; it must be one of {known}.{did_you_mean(value, FILTERS)}")
+def _one_of(names: Collection[str]) -> BeforeValidator:
+    """Return the check of a name, whose message has the likely one; a value that is no string is left to the type check of the field."""
+
+    def read(value: Any) -> Any:
+        if not isinstance(value, str) or value in names:
+            return value
+        known = ", ".join(f'"{name}"' for name in names)
+        raise InputError(f"{shown(value)} is not allowed; it must be one of {known}.{did_you_mean(value, names)}")
+
+    return BeforeValidator(read)
 
 
 class SensorSection(Section):
@@ -180,30 +186,80 @@ class SensorSection(Section):
         description="x and y on the plate, from its centre [m]; or the name of a set of a mesh that was brought"
     )
     face: Literal["upper", "lower"] = Field("upper", description="the side of the plate that it is on")
-    quantity: Literal["displacement", "velocity", "acceleration"] = Field("acceleration", description="what it takes")
+    instrument: Annotated[Literal["accelerometer", "geophone", "strain-gauge"] | None, _one_of(INSTRUMENTS)] = Field(
+        None, description="what reads it; by default that of the table that is given, or else the motion is read as it is"
+    )
+    quantity: Literal["acceleration", "velocity", "displacement", "voltage", "strain"] | None = Field(
+        None, description="what it takes: acceleration by default, or what the instrument puts out"
+    )
     direction: Literal["x", "y", "z"] | tuple[float, float, float] = Field("z", description="along which it takes it; z is upwards")
     rate: Annotated[float, Quantity("Hz", "samples per second", Range(above=0))] = 50e3
-    filter: Annotated[Literal["sigma-delta", "butterworth", "none"], BeforeValidator(_read_filter)] = Field(
+    filter: Annotated[Literal["sigma-delta", "butterworth", "none"], _one_of(FILTERS)] = Field(
         "sigma-delta", description="what keeps frequencies above half the rate from its samples"
     )
     corner: Annotated[float, Quantity("Hz", "corner of a Butterworth filter; 0.4 of the rate by default", Range(above=0))] | None = None
-    accelerometer: AccelerometerTable | None = Field(None, description="the resonance, range, noise and resolution of what reads it")
+    accelerometer: AccelerometerTable | None = Field(None, description="resonance, range, noise, resolution and sensitivity of one")
+    geophone: GeophoneTable | None = Field(None, description="natural frequency, sensitivity, damping and low-pass of one")
+    strain_gauge: StrainGaugeTable | None = Field(None, description="sensitivity of one")
+    amplifier: AmplifierTable | None = Field(None, description="gain, noise and hum behind the instrument")
+    converter: ConverterTable | None = Field(None, description="range and bits of what samples it")
 
     @model_validator(mode="after")
     def _check_sensor(self) -> SensorSection:
-        if self.accelerometer is not None and self.quantity != "acceleration":
-            raise InputError("an accelerometer reads acceleration; leave out quantity, or the accelerometer", "quantity")
         if not isinstance(self.direction, str) and not any(self.direction):
             raise InputError("it has no length; give x, y and z of the direction, such as [0, 0, 1]", "direction")
-        self.sensor()  # raises if the filter does not take a corner frequency
+        instrument = self._instrument()
+        if isinstance(instrument, StrainGauge):
+            self._lay_in_face()
+        if instrument is None and self.quantity not in (None, *MOTIONS):
+            raise InputError(f'{self.quantity} is what an instrument puts out; name one, such as instrument = "geophone"', "quantity")
+        if instrument is not None and self.quantity not in (None, instrument.quantity):
+            words = f"{INSTRUMENTS[str(self.instrument)]} reads {instrument.quantity}"
+            raise InputError(f"{words}; leave out quantity, or the {self.instrument}", "quantity")
+        sensor = self.sensor()  # raises if the filter does not take a corner frequency
+        self.__dict__["quantity"] = sensor.quantity
+        for name, table in (("amplifier", self.amplifier), ("converter", self.converter)):
+            if table is not None:
+                try:
+                    read_in_unit(table, sensor.unit.replace("2", "^2"))
+                except InputError as error:
+                    raise InputError(error.message, f"{name}.{error.key}") from None
         return self
+
+    def _lay_in_face(self) -> None:
+        """Let a strain gauge lie along x where its direction is not given; one that leaves the face is refused."""
+        if "direction" not in self.model_fields_set:
+            self.__dict__["direction"] = "x"
+        elif self.direction == "z" or (not isinstance(self.direction, str) and self.direction[2]):
+            raise InputError('a strain gauge lies in the face; give a direction along it, such as "x" or [1, 1, 0]', "direction")
+
+    def _instrument(self) -> Instrument | None:
+        """Return the instrument, which its table names where the key does not; None if the motion is read as it is."""
+        tables = {name: getattr(self, name.replace("-", "_")) for name in INSTRUMENTS}
+        given = [name for name, table in tables.items() if table is not None]
+        kind: str | None = self.instrument or next(iter(given), None)
+        if kind is None:
+            return None
+        wrong = next((name for name in given if name != kind), None)
+        if wrong is not None:
+            raise InputError(f'its instrument is {INSTRUMENTS[kind]}; leave out this table, or take instrument = "{wrong}"', wrong)
+        self.__dict__["instrument"] = kind
+        if (table := tables[kind]) is not None:
+            found: Instrument = table.instrument()
+            return found
+        if kind == "geophone":
+            raise InputError(f"{INSTRUMENTS[kind]} has properties; give them in a table {kind} = {{ ... }}", kind)
+        return Accelerometer() if kind == "accelerometer" else StrainGauge()
 
     def sensor(self) -> Sensor:
         """Return the sensor, with its direction as a unit vector."""
         along = _DIRECTIONS[self.direction] if isinstance(self.direction, str) else self.direction
         x, y, z = (part / math.hypot(*along) for part in along)
-        meter = Accelerometer(**self.accelerometer.model_dump()) if self.accelerometer else None
-        return Sensor(self.name, self.quantity, (x, y, z), self.rate, meter, self.filter, self.corner)
+        amplifier = None if self.amplifier is None else self.amplifier.amplifier()
+        converter = None if self.converter is None else self.converter.converter()
+        instrument = self._instrument()
+        quantity = self.quantity or ("acceleration" if instrument is None else instrument.quantity)
+        return Sensor(self.name, quantity, (x, y, z), self.rate, instrument, self.filter, self.corner, amplifier, converter)
 
 
 class RunSection(Section):

@@ -6,6 +6,9 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
+
+from vibroimpact.dynamics.sensors.electronics import Converter
 from vibroimpact.dynamics.sensors.recording import Signal
 from vibroimpact.resolved_case import ResolvedCase
 from vibroimpact.units.display import text
@@ -37,7 +40,9 @@ def sensor_doubts(case: ResolvedCase, signals: Mapping[str, Signal], highest: fl
     """
     places = {one["name"]: one["position"] for one in case.get("sensors", ())}
     ranges = {one["name"]: one.get("accelerometer", {}).get("range") for one in case.get("sensors", ())}
+    converters = {one["name"]: one["converter"] for one in case.get("sensors", ()) if "converter" in one}
     found = [doubt for name, signal in signals.items() for doubt in _range_doubts(signal, ranges.get(name))]
+    found += [doubt for name, signal in signals.items() if name in converters for doubt in _converter_doubts(signal, converters[name])]
     alike: dict[
         tuple[str, str], dict[str, float]
     ] = {}  # sensors with the same cause and remedy share a sentence: relative errors by their names
@@ -74,6 +79,21 @@ def _range_doubts(signal: Signal, end: float | None) -> list[str]:
         f"{signal.peak:.4g} m/s2: what lies beyond is cut off, and the signal around it is wrong; take one with a range of {least:g} m/s2 "
         "or so"
     ]
+
+
+def _converter_doubts(signal: Signal, converter: Mapping[str, Any]) -> list[str]:
+    """Return the doubts about a converter that clips its samples, or whose step is larger than all of them."""
+    read, unit = Converter(**converter), signal.sensor.unit
+    clipped = int(np.count_nonzero((signal.value >= read.range - read.step) | (signal.value <= -read.range)))
+    name, end = signal.sensor.name, text(read.range, unit)
+    if clipped:
+        part = f"{clipped} of {len(signal.value)} samples"
+        return [f'the converter of sensor "{name}" clips {part} at its range of {end}; give it a wider one, or the amplifier less gain']
+    if read.step and not signal.value.any():
+        return [
+            f'the converter of sensor "{name}" reads nothing: its step is {text(read.step, unit)}; give it more bits, or the amplifier gain'
+        ]
+    return []
 
 
 def _remedy(signal: Signal, highest: float) -> str:

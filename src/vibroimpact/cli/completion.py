@@ -35,7 +35,7 @@ def complete_case(incomplete: str) -> list[str]:
     >>> complete_case("paper:type1-t")
     ['paper:type1-theory']
     """
-    shipped = sorted(f"paper:{path.stem}" for path in _LIBRARY.glob("*.toml"))
+    shipped = sorted(f"{path.parent.name}:{path.stem}" for path in _LIBRARY.glob("*/*.toml"))
     return [*_starting(incomplete, shipped), *_files(incomplete)]
 
 

@@ -68,7 +68,7 @@ _LONGEST_STEM = 60  # leaves room, within the 255 bytes of a file name, for the 
 
 def stem(case: str) -> str:
     """Return the base name of folders for a case: its file name, shortened, without unprintable characters."""
-    name = Path(case.removeprefix("paper:")).stem[:_LONGEST_STEM]
+    name = Path(case.removeprefix("paper:").removeprefix("signals:")).stem[:_LONGEST_STEM]
     return "".join(character if character.isprintable() else "_" for character in name)
 
 

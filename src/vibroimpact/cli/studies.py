@@ -1,4 +1,4 @@
-"""The command `sweep`, which runs a study of many drops."""
+"""The commands `sweep` and `dataset`, which run a study of many drops."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import os
 import shlex
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -24,59 +24,91 @@ MOST_BYTES_UNCONFIRMED = 10e9
 """Size of the results on disk above which a study must be confirmed [byte]."""
 
 
+Output = Annotated[Path | None, typer.Option("-o", "--output", metavar="DIR", help="The folder to make; by default STUDY-sweep.")]
+Resume = Annotated[bool, typer.Option("--resume", help="Go on with the study in the folder; where there is none, begin.")]
+Force = Annotated[bool, typer.Option("--force", help="Replace the folder of a study that is there.")]
+Yes = Annotated[bool, typer.Option("--yes", help=f"Run also more than {MOST_DROPS_UNCONFIRMED:,} drops, or 10 GB of results.")]
+Processes = Annotated[
+    int | None, typer.Option("--processes", metavar="N", min=1, help="How many processes compute; by default one a core.")
+]
+Scheduler = Annotated[
+    str | None,
+    typer.Option("--scheduler", metavar="ADDRESS", help='A Dask scheduler, such as tcp://10.0.0.5:8786; "local" starts one here.'),
+]
+Memory = Annotated[str, typer.Option("--memory", metavar="SIZE", help="What each process may use for the drops that it computes at once.")]
+
+
 @app.command()
 def sweep(
     study: Annotated[str, typer.Argument(metavar="STUDY", autocompletion=complete_case, help="A case with a [sweep] section.")],
-    output: Annotated[
-        Path | None, typer.Option("-o", "--output", metavar="DIR", help="The folder to make; by default STUDY-sweep.")
-    ] = None,
-    resume: Annotated[bool, typer.Option("--resume", help="Go on with the study in the folder; where there is none, begin.")] = False,
-    force: Annotated[bool, typer.Option("--force", help="Replace the folder of a study that is there.")] = False,
-    yes: Annotated[bool, typer.Option("--yes", help=f"Run also more than {MOST_DROPS_UNCONFIRMED:,} drops, or 10 GB of results.")] = False,
-    processes: Annotated[
-        int | None, typer.Option("--processes", metavar="N", min=1, help="How many processes compute; by default one a core.")
-    ] = None,
-    scheduler: Annotated[
-        str | None,
-        typer.Option("--scheduler", metavar="ADDRESS", help='A Dask scheduler, such as tcp://10.0.0.5:8786; "local" starts one here.'),
-    ] = None,
-    memory: Annotated[
-        str, typer.Option("--memory", metavar="SIZE", help="What each process may use for the drops that it computes at once.")
-    ] = "500 MB",
+    output: Output = None,
+    resume: Resume = False,
+    force: Force = False,
+    yes: Yes = False,
+    processes: Processes = None,
+    scheduler: Scheduler = None,
+    memory: Memory = "500 MB",
     as_json: Json = False,
 ) -> None:
     """Run many drops: all points of a study, on all cores or on the workers of a Dask scheduler.
 
     The [sweep] section of the case says which keys run over what. What is done is kept, whatever stops the study: --resume goes on.
     """
-    target = Path(f"{stem(study)}-sweep") if output is None else output
-    options = "" if scheduler is None else f" --scheduler {shlex.quote(scheduler)}"
-    command = f"vibroimpact sweep {shlex.quote(study)} -o {shlex.quote(str(target))} --resume{options}"
-    message = f"interrupted; the drops that are done stay; go on with: {command}"
+    options = {"resume": resume, "force": force, "yes": yes, "processes": processes, "memory": memory}
+    _interruptible("sweep", study, output, None, scheduler, as_json=as_json, **options)
+
+
+@app.command()
+def dataset(
+    study: Annotated[
+        str, typer.Argument(metavar="STUDY", autocompletion=complete_case, help="A case with a [sweep] section that has classes.")
+    ],
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", metavar="DIR", help="The folder to make; by default STUDY-dataset.")
+    ] = None,
+    samples: Annotated[
+        int | None, typer.Option("--samples", metavar="N", min=1, help="How many falls; by default as many as the study says.")
+    ] = None,
+    resume: Resume = False,
+    force: Force = False,
+    yes: Yes = False,
+    processes: Processes = None,
+    scheduler: Scheduler = None,
+    memory: Memory = "500 MB",
+    as_json: Json = False,
+) -> None:
+    """Compute a data set of labelled signals: falls of rocks of several classes on several plates.
+
+    What is done is kept, whatever stops it: --resume goes on. "vibroimpact recognise" learns from it.
+    """
+    options = {"resume": resume, "force": force, "yes": yes, "processes": processes, "memory": memory}
+    _interruptible("dataset", study, output, samples, scheduler, as_json=as_json, **options)
+
+
+def _interruptible(
+    command: str, study: str, output: Path | None, samples: int | None, scheduler: str | None, *, as_json: bool, **options: Any
+) -> None:
+    """Run a study; after Ctrl-C tell the command that goes on."""
+    target = Path(f"{stem(study)}-{command}") if output is None else output
+    told = "" if scheduler is None else f" --scheduler {shlex.quote(scheduler)}"
+    told += "" if samples is None else f" --samples {samples}"
+    again = f"vibroimpact {command} {shlex.quote(study)} -o {shlex.quote(str(target))} --resume{told}"
+    message = f"interrupted; the drops that are done stay; go on with: {again}"
     try:
         with interrupt_flag(message) as stopped:  # entered first, so that no Ctrl-C is lost during imports
-            _run_sweep(
-                study,
-                target,
-                memory,
-                stopped,
-                resume=resume,
-                force=force,
-                yes=yes,
-                processes=processes,
-                scheduler=scheduler,
-                as_json=as_json,
-            )
+            _run_sweep(command, study, target, stopped, samples=samples, scheduler=scheduler, as_json=as_json, **options)
     except KeyboardInterrupt:
         fail(message, 130)
 
 
 def _run_sweep(
+    command: str,
     study: str,
     target: Path,
-    memory: str,
     stopped: Callable[[], bool],
     *,
+    samples: int | None,
+    memory: str,
     resume: bool,
     force: bool,
     yes: bool,
@@ -84,7 +116,7 @@ def _run_sweep(
     scheduler: str | None,
     as_json: bool,
 ) -> None:
-    """Run a study with the options of `sweep`.
+    """Run a study with the options of a command.
 
     Raises
     ------
@@ -107,7 +139,9 @@ def _run_sweep(
         raise InputError(error.message, "--memory") from None
     if size < 1e6:
         raise InputError(f"{memory} is too little; it must be 1 MB or more", "--memory")
-    found, screen = load_sweep(study), console(err=as_json)
+    found, screen = load_sweep(study, samples), console(err=as_json)
+    if command == "dataset":
+        _check_labelled(study, found)
     _check_confirmed(study, found, yes=yes or (resume and has_study(target)))
     for doubt in sweep_slips(found):
         note(f"doubt: {doubt}")  # before the computation, not only in the report
@@ -140,7 +174,17 @@ def _run_sweep(
         )
     done = read_study(folder)
     show(lambda: {"folder": str(folder), **study_document(done)}, lambda: study_summary(done, screen.width), as_json=as_json)
-    say(f"wrote {folder / 'study.nc'} and {folder / 'report.html'}", err=as_json)
+    written = ["study.nc", *(["card.md"] if done.labels else []), "report.html"]
+    say(f"wrote {', '.join(str(folder / name) for name in written[:-1])} and {folder / written[-1]}", err=as_json)
+
+
+def _check_labelled(study: str, found: Sweep) -> None:
+    """Raise InputError if a study has no classes, or does not keep signals."""
+    if found.population is None:
+        words = 'a data set has classes: give design = "population" and tables such as [sweep.classes.coal.over]'
+        raise InputError(f"{study}: sweep.design: {words}")
+    if "signals" not in found.section.keep:
+        raise InputError(f'{study}: sweep.keep: a data set has signals, and these are not kept; give keep = ["signals"]')
 
 
 def _check_confirmed(study: str, found: Sweep, *, yes: bool) -> None:

@@ -87,8 +87,8 @@ def point_rows(name: str, body: BodyModes) -> list[dict[str, Any]]:
     """Return the shapes of a body at the watched points as rows of `POINT_COLUMNS`."""
     return [
         dict(zip(POINT_COLUMNS, (name, point, mode + 1, float(body.basis.frequencies[mode]), *map(float, shape)), strict=True))
-        for point, shapes in body.basis.points.items()
-        for mode, shape in enumerate(shapes)
+        for point in body.body.watched
+        for mode, shape in enumerate(body.basis.points[point])
     ]
 
 

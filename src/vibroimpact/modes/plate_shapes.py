@@ -82,7 +82,7 @@ def _plate_marks(body: BodyModes) -> list[Mark]:
 
 def sensor_places(body: BodyModes) -> list[tuple[str, float, float]]:
     """Return name, x and y [m] of the sensors on a body."""
-    return [(name, *place_of(body.model.mesh, spot, side)) for name, (spot, side) in body.body.watched.items()]
+    return [(name, *place_of(body.model.mesh, spot, side)) for name, (spot, side) in body.body.sensors.items()]
 
 
 def _deformed_grid(grid: SurfaceGrid, moved: Floats) -> Line:

@@ -15,6 +15,8 @@ from vibroimpact.cases.costs import describe_costs
 from vibroimpact.cases.doubts import doubts
 from vibroimpact.cases.expected import expected_of, expected_restitution
 from vibroimpact.cases.fields.air import air_words
+from vibroimpact.cases.fields.instruments import INSTRUMENTS, AccelerometerTable
+from vibroimpact.cases.keys import quantity_of
 from vibroimpact.cases.motion import motion_length
 from vibroimpact.cases.oblique import friction_law_of, is_oblique
 from vibroimpact.cases.pair import contact_pair, is_free_sphere
@@ -136,24 +138,54 @@ def _coupling_rows(case: Case) -> list[tuple[str, str]]:
     rows = [("local compliance", "; ".join(words))] if words else []
     for sensor in case.sensors:
         place = sensor.position if isinstance(sensor.position, str) else f"({sensor.position[0]:g}, {sensor.position[1]:g}) m"
-        words = [f"{sensor.quantity} at {place}, {sensor.face} face", *_accelerometer(sensor), f"{sensor.rate:g} Hz", _filter(sensor)]
+        words = [
+            f"{sensor.quantity} at {place}, {sensor.face} face",
+            *_instrument(sensor),
+            f"{sensor.rate:g} Hz",
+            _filter(sensor),
+            *_electronics(sensor),
+        ]
         rows.append((f"sensor {sensor.name}", ", ".join(words)))
     return rows
 
 
-def _accelerometer(sensor: SensorSection) -> list[str]:
-    """Return a description of a sensor's accelerometer; empty without one."""
-    meter = sensor.accelerometer
-    if meter is None:
+def _instrument(sensor: SensorSection) -> list[str]:
+    """Return a description of a sensor's instrument; empty without one."""
+    if sensor.instrument is None:
         return []
+    words = "; ".join(_accelerometer(sensor.accelerometer) if sensor.accelerometer else _properties(sensor))
+    return [f"by {INSTRUMENTS[sensor.instrument]} ({words or 'ideal'})"]
+
+
+def _accelerometer(meter: AccelerometerTable) -> list[str]:
+    """Return the properties of an accelerometer in words."""
     given = [
         ("resonance", meter.resonance, f"Hz with a damping ratio of {meter.damping_ratio:g}"),
         ("range", meter.range, f"m/s2, {(meter.range or 0.0) / STANDARD_GRAVITY:.4g} times standard gravity"),
         ("noise", meter.noise or None, "m/s2"),
         ("resolution", meter.resolution, "m/s2"),
+        ("sensitivity", meter.sensitivity, "V s2/m"),
     ]
-    words = [f"{name} {value:g} {unit}" for name, value, unit in given if value is not None]
-    return [f"by an accelerometer ({'; '.join(words) or 'ideal'})"]
+    return [f"{name} {value:g} {unit}" for name, value, unit in given if value is not None]
+
+
+def _properties(sensor: SensorSection) -> list[str]:
+    """Return the properties of another instrument in words."""
+    table = getattr(sensor, str(sensor.instrument).replace("-", "_"))
+    given = [(name, getattr(table, name), quantity_of(info)) for name, info in type(table).model_fields.items()] if table else []
+    words = [(name.replace("_", " "), value, "" if quantity is None else quantity.unit.replace("^", "")) for name, value, quantity in given]
+    return [f"{name} {value:g} {unit}".rstrip() for name, value, unit in words if value is not None]
+
+
+def _electronics(sensor: SensorSection) -> list[str]:
+    """Return descriptions of a sensor's amplifier and converter."""
+    words, unit = [], sensor.sensor().unit
+    if (amplifier := sensor.amplifier) is not None:
+        heard = f"hum of {amplifier.hum:g} {unit} at {amplifier.mains:g} Hz" if amplifier.hum else "no hum"
+        words.append(f"amplifier (gain {amplifier.gain:g}; noise {amplifier.noise:g} {unit}; {heard})")
+    if (converter := sensor.converter) is not None:
+        words.append(f"converter (range {converter.range:g} {unit}; {converter.bits or 'unlimited'} bits)")
+    return words
 
 
 def _filter(sensor: SensorSection) -> str:

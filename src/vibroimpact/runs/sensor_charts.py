@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.marks import Level, Line, Rug
 from vibroimpact.files.plain_names import plain_names
+from vibroimpact.resolved_case import ResolvedSensor
 from vibroimpact.results.result import Result
 from vibroimpact.runs.chart_data import drawn_signal, spans_of_contact
 from vibroimpact.runs.spectrum import amplitude_spectrum, first_response
@@ -55,16 +58,25 @@ def sensor_chart(result: Result, chart: str, name: str, caption: str) -> Chart:
 
 
 def _range(result: Result, name: str) -> tuple[str, tuple[Level, ...]]:
-    """Return the part of the title that states the range of a sensor's accelerometer, and lines at its ends if the signal comes near."""
+    """Return the part of the title that states the range of a sensor, and lines at its ends if the signal comes near."""
     signal = result.signals[name]
-    given = {one["name"]: one.get("accelerometer", {}).get("range") for one in result.case.get("sensors", ())}
-    if (end := given.get(name)) is None:
+    end = min((end for one in result.case.get("sensors", ()) if one["name"] == name for end in _ends(one)), default=None)
+    if end is None:
         return "", ()
     scale = multiple(signal.sensor.unit, signal.largest)
     words = f" (range ±{digits(end / scale.size, 3)} {scale.unit}"
     if largest(signal.value) < _NEAR * end:  # drawn to the range, the signal would be too small to read
         return f"{words}, beyond the axes)", ()
     return f"{words})", (Level(-end, "range", "mark line"), Level(end, "range", "mark line"))
+
+
+def _ends(sensor: ResolvedSensor) -> Iterator[float]:
+    """Yield the largest readings that a sensor's accelerometer and its converter permit, in the unit of its samples."""
+    meter, gain = sensor.get("accelerometer", {}), sensor.get("amplifier", {}).get("gain", 1.0)
+    if "range" in meter:
+        yield meter["range"] * meter.get("sensitivity", 1.0) * gain
+    if "converter" in sensor:
+        yield sensor["converter"]["range"]
 
 
 def _spectrum(result: Result, name: str) -> Panel:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.cases.fields.air import air_words
+from vibroimpact.cases.fields.instruments import INSTRUMENTS
 from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.marks import Arrow, Label, Line, Mark, Outline
@@ -167,7 +168,8 @@ def setup_rows(result: Result) -> list[tuple[str, str]]:
     if (friction := case["contact"].get("friction")) is not None:
         rows.append(("Friction", _law_words(friction)))
     for one in case.get("sensors", ()):
-        words = f"{one['quantity']} at {_place(one['position'])}, {as_given(float(one['rate']), 'Hz')}"
+        by = f" by {INSTRUMENTS[one['instrument']]}" if "instrument" in one else ""
+        words = f"{one['quantity']}{by} at {_place(one['position'])}, {as_given(float(one['rate']), 'Hz')}"
         rows.append((f"Sensor {shortened(visible(one['name']), 60)}", words))
     return rows
 

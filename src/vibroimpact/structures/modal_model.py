@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, TypeVar
@@ -20,6 +20,7 @@ from vibroimpact.structures.mesh import Mesh
 from vibroimpact.structures.modes import Eigenmodes
 from vibroimpact.structures.supports.constraints import HeldStructure
 from vibroimpact.structures.surface import Side, Spot, place_of, surface_motion
+from vibroimpact.structures.surface_strain import surface_strain
 
 _CACHE_SIZE = 1e7  # bytes, of mode shapes at places and on the grid of a picture
 
@@ -140,6 +141,17 @@ class ModalModel:
     def _cache(self) -> MemoryCache[Any]:
         return MemoryCache(capacity=_CACHE_SIZE)
 
+    def strains(self, place: tuple[float, float], side: Side) -> Floats:
+        """Return the strains of a face at a place in each mode, along x and y and of shear, (modes, 3) [kg^-1/2 m^-1].
+
+        Raises
+        ------
+        InputError
+            If the place is not on the body.
+        """
+        rows = surface_strain(self.mesh, place, side, self.thickness)
+        return self.cached(f"strain {side} {place}", lambda: self.modal_values(rows))
+
     def modal_values(self, motion: csr_array) -> Floats:
         """Return linear functions of the degrees of freedom, the rows of a sparse array, evaluated for each mode, (modes, rows)."""
         dofs = np.unique(motion.indices)  # a few of many columns
@@ -204,7 +216,7 @@ class ModalBasis:
     participation : array, shape (modes, 3)
         Momentum of each mode [kg^1/2]; over the mass it is the displacement of the centre of mass.
     points : mapping of str to array, shape (modes, 3)
-        Displacements of the sensors in each mode [kg^-1/2].
+        Displacements of the sensors in each mode [kg^-1/2]; of strain gauges the strains along x and y and of shear [kg^-1/2 m^-1].
     mass : float, default NaN
         Mass of the body [kg].
     rotation : array, shape (modes, 3), optional
@@ -213,7 +225,7 @@ class ModalBasis:
         Estimated relative error of each frequency [-]; NaN where unknown.
     residuals : mapping of str to array, shape (3,)
         Residual compliances: static displacements of the sensors under a unit vertical force at the contact point, less those of these
-        modes [m/N].
+        modes [m/N]; of strain gauges the strains [1/N].
     along : array, shape (modes, 2), optional
         Displacement of the contact point along x and y in each mode [kg^-1/2], by which friction moves the body.
     turning : array, shape (modes, 3), optional
@@ -244,6 +256,7 @@ def modal_basis(
     contact: Spot,
     side: Side,
     points: Mapping[str, tuple[Spot, Side]] | None = None,
+    strained: Mapping[str, tuple[Spot, Side]] | None = None,
 ) -> ModalBasis:
     """Return the modes of a model at its contact point and at its sensors.
 
@@ -259,7 +272,9 @@ def modal_basis(
     side : str
         Side of the contact point: "upper" or "lower".
     points : mapping of str to (spot, side), optional
-        Sensors by name.
+        Sensors of motion by name.
+    strained : mapping of str to (spot, side), optional
+        Sensors of strain by name.
 
     Raises
     ------
@@ -270,13 +285,14 @@ def modal_basis(
     def seen(spot: Spot, face: Side, what: str = "the contact point") -> Floats:
         return model.at(np.array([place_of(model.mesh, spot, face)]), face, what)[0][:, 0]
 
+    strains = {name: model.strains(place_of(model.mesh, *point), point[1]) for name, point in (strained or {}).items()}
     touched = seen(contact, side)
     return ModalBasis(
         model.frequencies,
         damping.ratios(model.frequencies),
         touched[:, 2],
         model.participation[:, :3],
-        {name: seen(*point, f'sensor "{name}"') for name, point in (points or {}).items()},
+        {name: seen(*point, f'sensor "{name}"') for name, point in (points or {}).items()} | strains,
         model.properties.mass,
         _rotation(model.properties, model.participation[:, 3:]),
         model.frequency_errors,
@@ -284,7 +300,9 @@ def modal_basis(
     )
 
 
-def rigid_basis(model: ModalModel, contact: tuple[Spot, Side], points: Mapping[str, tuple[Spot, Side]]) -> ModalBasis | None:
+def rigid_basis(
+    model: ModalModel, contact: tuple[Spot, Side], points: Mapping[str, tuple[Spot, Side]], strained: Iterable[str] = ()
+) -> ModalBasis | None:
     """Return the rigid motions that the supports do not prevent as modes of frequency zero; None if there are none.
 
     Parameters
@@ -294,7 +312,9 @@ def rigid_basis(model: ModalModel, contact: tuple[Spot, Side], points: Mapping[s
     contact : (spot, side)
         Contact point.
     points : mapping of str to (spot, side)
-        Sensors by name.
+        Sensors of motion by name.
+    strained : iterable of str, optional
+        Names of sensors of strain, which rigid motions leave zero.
     """
     if not len(model.rigid_coefficients):
         return None
@@ -315,7 +335,7 @@ def rigid_basis(model: ModalModel, contact: tuple[Spot, Side], points: Mapping[s
         np.zeros(len(motions)),
         touched[:, 2],
         properties.mass * along,
-        {name: seen(*point) for name, point in points.items()},
+        {name: seen(*point) for name, point in points.items()} | {name: np.zeros((len(motions), 3)) for name in strained},
         properties.mass,
         _rotation(properties, turning @ properties.inertia),
         along=touched[:, :2],

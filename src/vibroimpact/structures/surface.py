@@ -218,16 +218,39 @@ def slope_divergence(mesh: Mesh, place: tuple[float, float]) -> csr_array:
     >>> (slope_divergence(mesh, (0.1, 0.05)) @ motion.ravel()).round(9).tolist()  # 2 x y + 2 y
     [0.11]
     """
-    places = np.array([place])
-    for faces in facing(_near_column(mesh, places), "upper"):
+    node, gradients = face_gradients(mesh, place)
+    columns = mesh.dofs_per_node * node + np.array([[3], [4]])
+    shape = (1, mesh.dofs_per_node * len(mesh.nodes))
+    return csr_array(coo_array((gradients.ravel(), (np.zeros(gradients.size, dtype=np.int64), columns.ravel())), shape=shape))
+
+
+def face_gradients(mesh: Mesh, place: tuple[float, float], side: Side = "upper") -> tuple[Integers, Floats]:
+    """Return nodes (k,), and the weights of their values in the gradient of a function along x and y on one side, (2, k).
+
+    On common edges of elements it is the mean over these. Of faces above one another the outermost is taken.
+
+    Raises
+    ------
+    InputError
+        If the place is not on the body.
+    """
+    places, sign, best = np.array([place]), 1.0 if side == "upper" else -1.0, -np.inf
+    found: tuple[Integers, Floats] | None = None
+    for faces in facing(_near_column(mesh, places), side):
         _, face, local = _locate(mesh.nodes, faces, places, _STARTS[0])
-        if len(face):
-            along, node = faces.shape_functions(local)[1], faces.connectivity[face]
-            slopes = np.linalg.solve(along @ mesh.nodes[node][:, :, :2], along) / len(face)
-            columns = mesh.dofs_per_node * node[:, None] + np.array([[3], [4]])
-            shape = (1, mesh.dofs_per_node * len(mesh.nodes))
-            return csr_array(coo_array((slopes.ravel(), (np.zeros(slopes.size, dtype=np.int64), columns.ravel())), shape=shape))
-    raise InputError(f"({place[0]:g}, {place[1]:g}) m is not on the body")
+        if not len(face):
+            continue
+        values, along = faces.shape_functions(local)
+        node = faces.connectivity[face]
+        height = sign * np.einsum("pk,pk->p", values, mesh.nodes[node][:, :, 2])
+        outermost = height > height.max() - 1e-9 * np.ptp(mesh.nodes[:, 0])
+        if height.max() > best:
+            best, node, along = height.max(), node[outermost], along[outermost]
+            gradients = np.linalg.solve(along @ mesh.nodes[node][:, :, :2], along) / len(node)
+            found = node.ravel(), gradients.transpose(1, 0, 2).reshape(2, -1)
+    if found is None:
+        raise InputError(f"({place[0]:g}, {place[1]:g}) m is not on the body")
+    return found
 
 
 def _near_column(mesh: Mesh, places: Floats) -> Mesh:

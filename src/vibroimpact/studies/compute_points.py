@@ -13,17 +13,20 @@ from vibroimpact.arrays import Indices
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.oblique import is_oblique
 from vibroimpact.cases.rigid import deforms, rigid_problem
+from vibroimpact.dynamics.first_touch import first_touch
 from vibroimpact.dynamics.outcome import Outcome
+from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.response import Response
-from vibroimpact.dynamics.sensors.sensor import Sensor, sample_count
+from vibroimpact.dynamics.sensors.sensor import sample_count
 from vibroimpact.dynamics.simulate import simulate_together
 from vibroimpact.dynamics.tabulate import tabulate
 from vibroimpact.errors import ComputationError, InputError, lines_of
 from vibroimpact.studies.axes import Values
 from vibroimpact.studies.chunk_file import ChunkResult
-from vibroimpact.studies.drop_variables import FIRST, LARGEST, OUTCOME, SENSOR_PEAK, SIGNAL, TOTAL
+from vibroimpact.studies.drop_variables import FIRST, LARGEST, OUTCOME, SENSOR_PEAK, SIGNAL, SIGNAL_START, TOTAL
 from vibroimpact.studies.limit_columns import batch_conditions, drop_conditions, limit_columns
 from vibroimpact.studies.swept_keys import case_at, is_array_key, with_arrays
+from vibroimpact.studies.window import Window
 
 _TOGETHER = 16
 """Drops with individual bodies that are computed together: enough for efficiency, few enough for their histories to fit in memory."""
@@ -36,6 +39,7 @@ class _Study(NamedTuple):
     keep: tuple[str, ...]
     first: int
     points: Mapping[str, Values]
+    window: Window | None
 
     def case(self, place: np.intp | int) -> Case:
         """Return the case of the drop at an index in the chunk."""
@@ -50,7 +54,9 @@ class _Part(NamedTuple):
     failures: dict[int, str]
 
 
-def compute_points(table: Mapping[str, Any], keep: tuple[str, ...], first: int, points: Mapping[str, Values]) -> ChunkResult:
+def compute_points(
+    table: Mapping[str, Any], keep: tuple[str, ...], first: int, points: Mapping[str, Values], window: Window | None = None
+) -> ChunkResult:
     """Return the results of the drops at some points of a study.
 
     Parameters
@@ -63,6 +69,8 @@ def compute_points(table: Mapping[str, Any], keep: tuple[str, ...], first: int, 
         Number in the study of the first of the drops; the numbers seed the noise of the sensors.
     points : mapping of str to array
         The values of the drops by swept key.
+    window : Window, optional
+        The part of the signals that is kept; by default all.
 
     Returns
     -------
@@ -79,7 +87,7 @@ def compute_points(table: Mapping[str, Any], keep: tuple[str, ...], first: int, 
     """
     from threadpoolctl import threadpool_limits  # imported late: it inspects all loaded libraries
 
-    study = _Study(table, keep, first, points)
+    study = _Study(table, keep, first, points, window)
     with threadpool_limits(1):  # small matrix products gain nothing from threads, and results must not depend on their number
         parts = [part for places in _alike(points) for part in _parts(study, places)]
     count = len(next(iter(points.values())))
@@ -150,8 +158,8 @@ def _side_by_side(study: _Study, places: Indices) -> Iterator[_Part]:
         for place in some.tolist():
             try:
                 problem = study.case(place).to_problem()
-                noisy = tuple(_noise(sensor, study.first + place) for sensor in problem.sensors)
-                problems[place] = replace(problem, sensors=noisy)
+                noisy = tuple(sensor.of_drop(study.first + place) for sensor in problem.sensors)
+                problems[place] = replace(problem, sensors=noisy, duration=_end(study, problem))
             except Exception as error:
                 yield _failed(place, error)
         for place, response in zip(problems, simulate_together(list(problems.values())), strict=True):
@@ -159,6 +167,13 @@ def _side_by_side(study: _Study, places: Indices) -> Iterator[_Part]:
                 yield _failed(place, response) if isinstance(response, Exception) else _part_of(study, place, response)
             except Exception as error:
                 yield _failed(place, error)
+
+
+def _end(study: _Study, problem: Problem) -> float | None:
+    """Return when the run of a drop ends [s]: at the latest with the window of its signals."""
+    if study.window is None or problem.duration is None:
+        return problem.duration
+    return min(problem.duration, first_touch(problem) - study.window.before + study.window.length)
 
 
 def _failed(place: int, error: Exception) -> _Part:
@@ -172,22 +187,17 @@ def _part_of(study: _Study, place: int, response: Response) -> _Part:
     if "signals" in study.keep:
         duration = problem.duration or 0.0  # required by the study if signals are kept; a contact in progress at that time was completed
         for name, signal in response.signals().items():
-            signals[f"{SIGNAL}{name}"] = signal.value[: sample_count(duration, signal.sensor.rate)].astype(np.float32)[None]
-            signals[f"{name}{SENSOR_PEAK}"] = np.array([np.abs(signal.value).max()])
+            value, rate = signal.value[: sample_count(duration, signal.sensor.rate)], signal.sensor.rate
+            if study.window is not None:
+                begin, end = study.window.samples(response.impacts["time_s"], rate, len(value))
+                value, signals[f"{name}{SIGNAL_START}"] = value[begin:end], np.array([begin / rate])
+            signals[f"{SIGNAL}{name}"] = value.astype(np.float32)[None]
+            signals[f"{name}{SENSOR_PEAK}"] = np.array([np.abs(value).max()])
     columns = _columns(response, study.keep)
     if problem.vibrates:
         columns["left_in_vibration_J"] = response.rest.left
     columns |= limit_columns(drop_conditions(response, columns), 1)
     return _Part(np.array([place]), {**columns, **signals}, {})
-
-
-def _noise(sensor: Sensor, number: int) -> Sensor:
-    """Return a sensor whose noise is seeded by the number of the drop."""
-    meter = sensor.accelerometer
-    if meter is None:
-        return sensor
-    seed = meter.seed if isinstance(meter.seed, tuple) else (meter.seed,)
-    return replace(sensor, accelerometer=replace(meter, seed=(*seed, number)))
 
 
 def _columns(response: Response, keep: tuple[str, ...]) -> dict[str, NDArray[Any]]:

@@ -176,7 +176,7 @@ def _run(ledger: Ledger, folder: Path, sweep: Sweep, workers: Workers, progress:
     def points(chunk: Span) -> Points:
         return sweep.plan.points(chunk.first, chunk.size)
 
-    run_chunks(partial(compute_points, sweep.table, sweep.section.keep), points, waiting, workers, keep)
+    run_chunks(partial(compute_points, sweep.table, sweep.section.keep, window=sweep.window), points, waiting, workers, keep)
 
 
 def _assemble(folder: Path, ledger: Ledger, sweep: Sweep) -> None:

@@ -12,6 +12,29 @@ from vibroimpact.arrays import Floats
 from vibroimpact.registry import find_named, modules_in
 from vibroimpact.studies.axes import Axis
 from vibroimpact.studies.plan import Plan
+from vibroimpact.studies.population import Population
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What a study asks of its design.
+
+    Parameters
+    ----------
+    axes : mapping of str to Axis
+        Values by swept key.
+    samples : int, default 0
+        Number of samples, of a design that draws points.
+    seed : int, default 0
+        Of the drawing.
+    population : Population, optional
+        Classes of rocks, and how many falls share a rock and a plate.
+    """
+
+    axes: Mapping[str, Axis]
+    samples: int = 0
+    seed: int = 0
+    population: Population | None = None
 
 
 @dataclass(frozen=True)
@@ -27,17 +50,16 @@ class Design:
     is_drawn : bool
         Whether it takes a number of samples and a seed.
     size : callable
-        Takes the axes by key and the number of samples, returns the number of points. Raises InputError if they do not suit the
-        design.
+        Takes what is asked of it, returns the number of points. Raises InputError if that does not suit the design.
     plan : callable
-        Takes the same and the seed, returns the points.
+        Takes the same, returns the points.
     """
 
     name: str
     meaning: str
     is_drawn: bool
-    size: Callable[[Mapping[str, Axis], int], int]
-    plan: Callable[[Mapping[str, Axis], int, int], Plan]
+    size: Callable[[Asked], int]
+    plan: Callable[[Asked], Plan]
 
 
 @cache
@@ -47,7 +69,7 @@ def designs() -> Mapping[str, Design]:
     Examples
     --------
     >>> list(designs())
-    ['grid', 'latin-hypercube', 'saltelli', 'sobol', 'zip']
+    ['grid', 'latin-hypercube', 'population', 'saltelli', 'sobol', 'zip']
     """
     found = [value for module in modules_in("vibroimpact.studies.designs") for value in vars(module).values() if isinstance(value, Design)]
     return {one.name: one for one in sorted(found, key=lambda one: one.name)}

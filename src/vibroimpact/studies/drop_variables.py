@@ -114,6 +114,9 @@ SENSOR_PEAK = "_max_magnitude"
 SIGNAL = "signal_"
 """Prefix of the signal of a sensor; the name of the sensor follows."""
 
+SIGNAL_START = "_start_s"
+"""Suffix of the time of the first sample that is kept of the signal of a sensor [s]; the name of the sensor precedes it."""
+
 DOUBTS = "doubts"
 """The limits of the theory that a drop exceeds, as a bit mask."""
 

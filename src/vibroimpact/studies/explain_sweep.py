@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from rich.console import Group, RenderableType
@@ -19,8 +20,14 @@ def explain_sweep(sweep: Sweep) -> RenderableType:
     drawn = f", drawn with seed {section.seed}" if section.samples else ""
     kept = " and ".join(dict.fromkeys(["peaks", *section.keep])) + f", about {sweep.bytes / 1e6:.3g} MB"
     units = _units(sweep)
-    over = [_words(axis, units[key], is_drawn=section.samples is not None) for key, axis in sweep.axes.items()]
-    table = TerminalTable([TerminalColumn("swept key", list(sweep.axes), text=True), TerminalColumn("over", over, text=True)])
+    axes = [("", key, axis) for key, axis in sweep.axes.items()]
+    if sweep.population is not None:
+        axes += [(name, key, axis) for name, own in sweep.population.own.items() for key, axis in own.items()]
+    over = [_words(axis, units[key], is_drawn=section.samples is not None) for _, key, axis in axes]
+    classes = [TerminalColumn("class", [name for name, _, _ in axes], text=True)] if sweep.population is not None else []
+    table = TerminalTable(
+        [*classes, TerminalColumn("swept key", [key for _, key, _ in axes], text=True), TerminalColumn("over", over, text=True)]
+    )
     return Group(
         Text(f"A study of {sweep.size:,} drops: {section.design}{drawn}; keeps {kept}.", style="bold"),
         table,
@@ -41,8 +48,21 @@ def sweep_document(sweep: Sweep) -> dict[str, Any]:
         "keep": list(dict.fromkeys(["peaks", *section.keep])),
         "size_byte": sweep.bytes,
         "over": {key: {"unit": units[key], **_data(axis)} for key, axis in sweep.axes.items()},
+        **_classes(sweep, units),
         "doubts": axis_slips(sweep),
     }
+
+
+def _classes(sweep: Sweep, units: Mapping[str, str]) -> dict[str, Any]:
+    """Return the classes of a population with the keys of a case file; nothing for another design."""
+    population = sweep.population
+    if population is None:
+        return {}
+    told = {
+        name: {"share": population.shares[name], "over": {key: {"unit": units[key], **_data(axis)} for key, axis in own.items()}}
+        for name, own in population.own.items()
+    }
+    return {"classes": told, "falls_per_rock": population.falls_per_rock, "rocks_per_plate": population.rocks_per_plate}
 
 
 def _units(sweep: Sweep) -> dict[str, str]:

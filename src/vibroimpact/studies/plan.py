@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from hashlib import sha256
 from math import prod
 
@@ -28,6 +28,8 @@ class Plan:
         By swept key the levels of a grid, with the last key varying fastest, else one value per point.
     is_grid : bool
         Whether the points are all combinations of the levels.
+    labels : mapping of str to array, optional
+        What else is known of each point, such as its class; it does not enter into the case.
 
     Examples
     --------
@@ -41,6 +43,7 @@ class Plan:
     design: str
     columns: Mapping[str, Values]
     is_grid: bool
+    labels: Mapping[str, Values] = field(default_factory=dict)
 
     @property
     def dimensions(self) -> dict[str, int]:
@@ -64,7 +67,7 @@ class Plan:
     def digest(self) -> str:
         """Return a fingerprint (SHA-256) of all points."""
         found = sha256(f"{self.design} {self.is_grid}".encode())
-        for key, values in self.columns.items():
+        for key, values in {**self.columns, **self.labels}.items():
             objects = values.dtype == object
             found.update(key.encode() + (json.dumps(values.tolist()).encode() if objects else np.ascontiguousarray(values).tobytes()))
         return found.hexdigest()

@@ -10,6 +10,7 @@ from pydantic import BeforeValidator, Field, WithJsonSchema
 
 from vibroimpact.cases.fields.quantities import Quantity, read_quantity
 from vibroimpact.cases.fields.section import Section, read_table
+from vibroimpact.cases.fields.size_limits import Name
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.measurements.table_file import TableFile, name_and_unit, read_table_file
 from vibroimpact.ranges import Range
@@ -30,6 +31,20 @@ def _read_design(value: Any) -> str:
     return find_design(value).name
 
 
+class WindowTable(Section):
+    """The part of a signal around the first touch."""
+
+    before: Annotated[float, Quantity("s", "kept before the first touch", Range(at_least=0))] = 0.0
+    length: Annotated[float, Quantity("s", "length of the part that is kept", Range(above=0))]
+
+
+class ClassTable(Section):
+    """A class of rocks of a population."""
+
+    share: Annotated[float, Quantity("", "share of the rocks, relative to those of the other classes", Range(above=0))] = 1.0
+    over: dict[str, Any] = Field(description="the distributions of this class by dotted keys, the same keys for all classes")
+
+
 class SweepSection(Section):
     """What `vibroimpact sweep` does with the case; a run takes no notice of it."""
 
@@ -45,6 +60,14 @@ class SweepSection(Section):
     keep: tuple[Literal["peaks", "impacts", "signals"], ...] = Field(
         ("impacts",),
         description="what is kept of each drop: its peaks, which are kept always, the impact table, the signals of the sensors",
+    )
+    window: WindowTable | None = Field(None, description="the part of the signals that is kept; by default all, from the start")
+    classes: dict[Name, ClassTable] | None = Field(None, description="of a population, by their names: the distributions of each class")
+    falls_per_rock: Annotated[int, Field(ge=1, le=MOST_DROPS, strict=True)] = Field(
+        1, description="how many falls of a population share a rock: all keys but those of [plate] and [drop]"
+    )
+    rocks_per_plate: Annotated[int, Field(ge=1, le=MOST_DROPS, strict=True)] | None = Field(
+        None, description="how many rocks of a population share a plate: the keys of [plate]; by default all"
     )
 
 

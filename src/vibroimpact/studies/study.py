@@ -6,7 +6,7 @@ import shlex
 import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import prod
 from os import PathLike
 from pathlib import Path
@@ -24,7 +24,8 @@ from vibroimpact.files.hdf5 import read_array, short_reason
 from vibroimpact.results.folder import SUMMARY
 from vibroimpact.studies.drop_variables import DOUBTS, LIMIT, SIGNAL
 from vibroimpact.studies.plan import SAMPLE
-from vibroimpact.studies.study_folder import DATASET, STUDY, recover_study
+from vibroimpact.studies.population import LABELS
+from vibroimpact.studies.study_folder import DATASET, STUDY, recover_study, swept_keys
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
@@ -78,6 +79,8 @@ class Study:
         Shape of every variable: that of `dimensions`, followed by impacts or samples in time.
     failures : dict of int to str
         Reason of each failed drop, by its number in the sequence of all points, from 0.
+    labels : dict of str to array
+        Of the falls of a population the `class`, by its name, and the numbers of `rock` and `plate`.
     """
 
     path: Path
@@ -89,6 +92,7 @@ class Study:
     meanings: dict[str, tuple[str, str]]
     shapes: dict[str, tuple[int, ...]]
     failures: dict[int, str]
+    labels: dict[str, NDArray[Any]] = field(default_factory=dict)
 
     @property
     def design(self) -> str:
@@ -214,17 +218,18 @@ def read_study(directory: str | PathLike[str]) -> Study:
         check_hdf5(path, _check_sum(path.parent))
     with _reported_damage(path), h5py.File(path, "r") as file:
         table = tomllib.loads(str(file.attrs["study"]))
-        over = list(table["sweep"]["over"])  # in the order of the dimensions
+        over = swept_keys(table)
         is_grid = _design(table) == "grid"
         coordinates = {key: _coordinate(file[key]) for key in over}
         dimensions = {key: len(coordinates[key]) for key in over} if is_grid else {SAMPLE: len(file[SAMPLE])}
-        names = [one for one in file if not file[one].is_scale and one not in (*over, FAILED_REASON)]
-        meanings = {one: (str(file[one].attrs["units"]), str(file[one].attrs["long_name"])) for one in [*over, *names]}
+        labels = {one: _label(file[one]) for one in LABELS if one in file and table["sweep"].get("classes")}
+        names = [one for one in file if not file[one].is_scale and one not in (*over, *labels, FAILED_REASON)]
+        meanings = {one: (str(file[one].attrs["units"]), str(file[one].attrs["long_name"])) for one in [*over, *labels, *names]}
         reasons = [reason.decode() for reason in read_array(file[FAILED_REASON])]
         failures = dict(zip(read_array(file[FAILED_POINT]).tolist(), reasons, strict=True))
         shapes = {one: tuple(file[one].shape) for one in names}
         name, version = str(file.attrs["title"]), str(file.attrs["version"])
-        return Study(path, name, table, version, dimensions, coordinates, meanings, shapes, failures)
+        return Study(path, name, table, version, dimensions, coordinates, meanings, shapes, failures, labels)
 
 
 def _check_sum(folder: Path) -> str | None:
@@ -260,6 +265,13 @@ def _reported_damage(path: Path) -> Iterator[None]:
 
 def _design(table: dict[str, Any]) -> str:
     return str(table["sweep"].get("design", "grid"))
+
+
+def _label(data: h5py.Dataset) -> NDArray[Any]:
+    """Return a label of each fall: a name, or a number."""
+    values = read_array(data)
+    names = str(data.attrs.get("flag_meanings", "")).split()
+    return np.array(names, dtype=object)[values] if names else np.asarray(values)
 
 
 def _coordinate(data: h5py.Dataset) -> NDArray[Any]:

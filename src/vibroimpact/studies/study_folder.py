@@ -59,6 +59,18 @@ def study_toml(table: Mapping[str, Any]) -> str:
     return "\n".join([tomli_w.dumps(rest).rstrip(), "", "[sweep.over]", *lines, ""])
 
 
+def swept_keys(table: Mapping[str, Any]) -> list[str]:
+    """Return the swept keys of a study in the order of its dimensions; of a population those of its classes come last.
+
+    Examples
+    --------
+    >>> swept_keys({"sweep": {"over": {"drop.height": [1.0]}, "classes": {"coal": {"over": {"sphere.radius": [0.01]}}}}})
+    ['drop.height', 'sphere.radius']
+    """
+    classes = table["sweep"].get("classes") or {}
+    return [*table["sweep"]["over"], *next(iter(classes.values()), {"over": {}})["over"]]
+
+
 def _inline(value: Any) -> str:
     """Return a value as inline TOML; the library would move tables behind the other keys and so change their order."""
     if isinstance(value, dict):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -18,7 +19,7 @@ from vibroimpact.cases.case import Case
 from vibroimpact.cases.fields.quantities import Quantity
 from vibroimpact.cases.fields.section import read_table
 from vibroimpact.cases.fields.size_limits import MOST_ITEMS, check_bounds, check_count
-from vibroimpact.cases.keys import find_quantity, holds_keys
+from vibroimpact.cases.keys import find_quantity, holds_keys, with_values
 from vibroimpact.cases.reader import load_table, prefix_errors
 from vibroimpact.cases.rigid import deforms, impact_limit
 from vibroimpact.dynamics.columns import ALL_IMPACT_COLUMNS, IMPACT_COLUMNS, meanings
@@ -27,12 +28,14 @@ from vibroimpact.files.reading import input_file_digest
 from vibroimpact.meshes.text_files import MESH
 from vibroimpact.shown import shortened, shown, visible
 from vibroimpact.studies.axes import Axis, Listed, Values
-from vibroimpact.studies.design import find_design
-from vibroimpact.studies.drop_variables import OUTCOME, PEAKS, SENSOR_PEAK, SIGNAL
+from vibroimpact.studies.design import Asked, find_design
+from vibroimpact.studies.drop_variables import OUTCOME, PEAKS, SENSOR_PEAK, SIGNAL, SIGNAL_START
 from vibroimpact.studies.limit_columns import limit_meanings
 from vibroimpact.studies.plan import Plan
+from vibroimpact.studies.population import LABELS, Population
 from vibroimpact.studies.section import MOST_DROPS, SweepSection, read_axis
 from vibroimpact.studies.swept_keys import case_at
+from vibroimpact.studies.window import Window
 
 MOST_KEYS = 100
 """Maximum number of swept keys."""
@@ -55,25 +58,33 @@ class Sweep:
     section : SweepSection
         The [sweep] section.
     axes : dict of str to Axis
-        Values of each swept key.
+        Values of each swept key; without those of the classes of a population.
     quantities : dict of str to Quantity or None
         Quantity of each swept key; None if it is not a quantity.
+    population : Population, optional
+        Classes of rocks, with the axes of their keys.
     """
 
     table: dict[str, Any]
     section: SweepSection
     axes: dict[str, Axis]
     quantities: dict[str, Quantity | None]
+    population: Population | None = None
 
     @cached_property
     def size(self) -> int:
         """The number of drops."""
-        return find_design(self.section.design).size(self.axes, self.section.samples or 0)
+        return find_design(self.section.design).size(self._asked)
 
     @cached_property
     def plan(self) -> Plan:
         """The points of the study."""
-        return find_design(self.section.design).plan(self.axes, self.section.samples or 0, self.section.seed)
+        return find_design(self.section.design).plan(self._asked)
+
+    @property
+    def _asked(self) -> Asked:
+        """What it asks of its design."""
+        return Asked(self.axes, self.section.samples or 0, self.section.seed, self.population)
 
     @cached_property
     def case(self) -> Case:
@@ -122,12 +133,17 @@ class Sweep:
         return self.case_at({**self.values_of(drop), **(changes or {})})
 
     @property
+    def window(self) -> Window | None:
+        """The part of the signals that is kept; None for all."""
+        return None if self.section.window is None else Window(self.section.window.before, self.section.window.length)
+
+    @property
     def bytes(self) -> float:
         """Approximate size of the results [bytes]."""
         impacts = (impact_limit(self.case) or LONG) if "impacts" in self.section.keep else 0
         kept = self.case.sensors if "signals" in self.section.keep else ()
-        samples = sum(sensor.rate * (self.case.run.duration or 0.0) for sensor in kept)
-        double, single = len(self.axes) + len(PEAKS) + impacts * len(IMPACT_COLUMNS), len(limit_meanings()) + samples
+        samples = sum(sensor.rate * (self.window.length if self.window else self.case.run.duration or 0.0) for sensor in kept)
+        double, single = len(self.quantities) + len(PEAKS) + impacts * len(IMPACT_COLUMNS), len(limit_meanings()) + samples
         return self.size * (8.0 * double + 4.0 * single)
 
     @property
@@ -147,33 +163,37 @@ class Sweep:
         keys = {key: (quantity.unit or "1", quantity.meaning) if quantity else ("1", key) for key, quantity in self.quantities.items()}
         largest = {f"{name}{SENSOR_PEAK}": (one.unit, f"largest magnitude that {name} reads") for name, one in sensors.items()}
         signals = {f"{SIGNAL}{name}": (one.unit, f"{one.quantity} that {name} reads") for name, one in sensors.items()}
+        starts = {f"{name}{SIGNAL_START}": ("s", f"time of the first sample of {name}") for name in sensors} if self.window else {}
         impacts = meanings(ALL_IMPACT_COLUMNS)
         del impacts["impact"]  # a dimension, not a variable
         ended = {OUTCOME: ("1", "why the run of the drop ended")}
-        return {**keys, **ended, **PEAKS, **largest, **limit_meanings(), **impacts, **signals}
+        return {**keys, **ended, **PEAKS, **largest, **limit_meanings(), **impacts, **starts, **signals}
 
     @cached_property
     def digest(self) -> str:
         """Fingerprint (SHA-256) of the case, its meshes, the points and the kept results."""
         meshes = [input_file_digest(file, MESH) for file in _meshes(self.table)]
         rest = json.dumps([self.table, meshes, self.section.keep], sort_keys=True, default=str)
-        return sha256(f"{self.plan.digest()} {rest}".encode()).hexdigest()
+        return sha256(f"{self.plan.digest()} {rest}{f' {self.window}' if self.window else ''}".encode()).hexdigest()
 
 
-def load_sweep(source: str | PathLike[str]) -> Sweep:
+def load_sweep(source: str | PathLike[str], samples: int | None = None) -> Sweep:
     """Return a study, read from a case file with a [sweep] section.
 
     Parameters
     ----------
     source : path or str
         A TOML file, or a shipped study such as "paper:sweep".
+    samples : int, optional
+        Number of samples in place of that of the study.
 
     Raises
     ------
     InputError
         If it can't be read or is not a valid study; the message names the key, the value and what is allowed.
     """
-    return prefix_errors(source, lambda: read_sweep(load_table(source)))
+    changes = {} if samples is None else {"sweep.samples": samples}
+    return prefix_errors(source, lambda: read_sweep(with_values(load_table(source), changes)))
 
 
 def load_drop(source: str | PathLike[str], drop: int, changes: Mapping[str, Any] | None = None) -> Case:
@@ -235,29 +255,25 @@ def read_sweep(table: Mapping[str, Any]) -> Sweep:
             raise InputError(f"it is missing; {design.name} needs to know how many points it draws", "samples")
         if not design.is_drawn and section.samples is not None:
             raise InputError(f"{design.name} has the points that its values give; leave this out", "samples")
-        keys = list(_flat(section.over))
-        over = dict(keys)
-        twice = next((key for number, (key, _) in enumerate(keys) if key in dict(keys[:number])), None)
-        if twice is not None:
-            raise InputError("this key stands there twice, in quotes and in a table", f'over."{twice}"')
-        if not over:
+        over, quantities, axes = _read_over(base, section.over)
+        section = section.model_copy(update={"over": over})
+        population = None
+        if section.classes is not None:
+            section, of_classes, population = _read_population(base, section)
+            quantities |= of_classes
+        elif not over:
             raise InputError("it is empty; it takes dotted keys of the case", "over")
-        check_count(len(over), MOST_KEYS, "swept keys")
-        quantities, axes = {}, {}
-        for key, value in over.items():
-            try:
-                quantities[key] = find_quantity(base, key)
-                axes[key] = read_axis(value, quantities[key])
-                _check_names(axes[key])
-            except InputError as error:
-                raise InputError(error.message, f'over."{key}".{error.key}'.rstrip(".")) from None
-        sweep = Sweep(base, section.model_copy(update={"over": over}), axes, quantities)
+        check_count(len(quantities), MOST_KEYS, "swept keys")
+        if section.window is not None and "signals" not in section.keep:
+            raise InputError('it is a part of the signals, which are not kept; give keep = ["signals"]', "window")
+        sweep = Sweep(base, section, axes, quantities, population)
         if sweep.size > MOST_DROPS:
             raise InputError(f"there would be {sweep.size} drops, and {MOST_DROPS} are the most; sweep in parts", "over")
-        if sweep.size * len(axes) > MOST_POINT_VALUES and section.design != "grid":
-            words = f"there would be {sweep.size} drops of {len(axes)} values each, and {MOST_POINT_VALUES} values are the most"
+        if sweep.size * len(quantities) > MOST_POINT_VALUES and section.design != "grid":
+            words = f"there would be {sweep.size} drops of {len(quantities)} values each, and {MOST_POINT_VALUES} values are the most"
             raise InputError(f"{words}; sweep in parts", "over")
-        for key, axis in axes.items() if section.design == "grid" else ():
+        plan = sweep.plan  # of a population without a rock of some class there is none
+        for key, axis in axes.items() if plan.is_grid else ():
             again = _twice(axis)
             if again is not None:
                 raise InputError(f"{again} stands there twice, and a grid has each value once", f'over."{key}"')
@@ -267,8 +283,12 @@ def read_sweep(table: Mapping[str, Any]) -> Sweep:
     # names of sensors become names of variables of the dataset, and must not collide with others
     if "signals" in section.keep:
         sensors = [sensor.name for sensor in sweep.case.sensors]
-        variables = [name for sensor in sensors for name in (f"{SIGNAL}{sensor}", f"{sensor}{SENSOR_PEAK}", f"time_{sensor}")]
-        taken = {*sweep.axes, OUTCOME, *PEAKS, *limit_meanings(), *ALL_IMPACT_COLUMNS}
+        variables = [
+            name
+            for sensor in sensors
+            for name in (f"{SIGNAL}{sensor}", f"{sensor}{SENSOR_PEAK}", f"{sensor}{SIGNAL_START}", f"time_{sensor}")
+        ]
+        taken = {*sweep.quantities, *LABELS, OUTCOME, *PEAKS, *limit_meanings(), *ALL_IMPACT_COLUMNS}
         for name in variables:
             if not name.isprintable() or "/" in name or variables.count(name) > 1 or name in taken:
                 words = f'"{name}" can\'t be the name of a variable of the dataset, or is that of another; call the sensor otherwise'
@@ -278,6 +298,58 @@ def read_sweep(table: Mapping[str, Any]) -> Sweep:
         if sweep.case.run.duration is None:
             raise InputError("it is missing; signals need it, so that those of all drops are of one length", "run.duration")
     return sweep
+
+
+def _read_over(base: Mapping[str, Any], table: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Quantity | None], dict[str, Axis]]:
+    """Return the entries of swept keys in dotted form, their quantities and their axes."""
+    keys = list(_flat(table))
+    over = dict(keys)
+    twice = next((key for number, (key, _) in enumerate(keys) if key in dict(keys[:number])), None)
+    if twice is not None:
+        raise InputError("this key stands there twice, in quotes and in a table", f'over."{twice}"')
+    quantities, axes = {}, {}
+    for key, value in over.items():
+        try:
+            quantities[key] = find_quantity(base, key)
+            axes[key] = read_axis(value, quantities[key])
+            _check_names(axes[key])
+        except InputError as error:
+            raise InputError(error.message, f'over."{key}".{error.key}'.rstrip(".")) from None
+    return over, quantities, axes
+
+
+def _read_population(base: Mapping[str, Any], section: SweepSection) -> tuple[SweepSection, dict[str, Quantity | None], Population]:
+    """Return the section with the keys of its classes in dotted form, the quantities of these, and the population."""
+    assert section.classes is not None
+    if section.design != "population":
+        raise InputError(f'{section.design} has no classes; give design = "population"', "design")
+    if len(section.classes) < 2:
+        raise InputError("there is one class alone, from which nothing can be told apart; give two or more", "classes")
+    quantities: dict[str, Quantity | None] = {}
+    tables, own = {}, {}
+    for name, table in section.classes.items():
+        where = f'classes."{name}"'
+        try:
+            over, quantities, own[name] = _read_over(base, table.over)
+        except InputError as error:
+            raise InputError(error.message, f"{where}.{error.key}") from None
+        first = next(iter(own.values()))
+        wrong = sorted(first.keys() ^ over.keys())
+        if wrong or not over:
+            words = f'"{wrong[0]}" is not there for all classes; give' if wrong else "it is empty; give"
+            raise InputError(f"{words} the same keys for all, or leave it to [sweep.over]", f"{where}.over")
+        for key in over:
+            if key in section.over or key.partition(".")[0] == "plate":
+                words = "it stands in [sweep.over] too" if key in section.over else "the plate is not of a class"
+                raise InputError(f"{words}; leave it out here", f'{where}.over."{key}"')
+        tables[name] = table.model_copy(update={"over": over})
+    for key in section.over:
+        if key == "plate":
+            raise InputError("a population draws single keys of [plate], one value a plate", 'over."plate"')
+    falls = section.falls_per_rock
+    shares = {name: table.share for name, table in tables.items()}
+    population = Population(shares, own, falls, section.rocks_per_plate or max(1, math.ceil((section.samples or 1) / falls)))
+    return section.model_copy(update={"classes": tables}), quantities, population
 
 
 def _check_names(axis: Axis) -> None:
@@ -316,7 +388,8 @@ def _check_points(sweep: Sweep) -> None:
             try:
                 quantity.allowed.check(values, quantity.unit)
             except InputError as error:
-                remedy = "; truncate the distribution with at_least and at_most" if sweep.axes[key].is_random else ""
+                random = key not in sweep.axes or sweep.axes[key].is_random
+                remedy = "; truncate the distribution with at_least and at_most" if random else ""
                 raise InputError(f"{error.message}{remedy}", f'sweep.over."{key}"') from None
     first = sweep.values_of(0)
     sweep.case_at(first)

@@ -24,6 +24,7 @@ from vibroimpact.studies.chunk_file import chunk_layout, read_chunk
 from vibroimpact.studies.drop_variables import DOUBTS, LIMIT, OUTCOME, SIGNAL
 from vibroimpact.studies.ledger import Span
 from vibroimpact.studies.plan import SAMPLE, Plan
+from vibroimpact.studies.population import LABELS
 from vibroimpact.studies.study import FAILED_POINT, FAILED_REASON
 from vibroimpact.studies.study_folder import DATASET, study_toml
 
@@ -84,6 +85,7 @@ def write_dataset(
             file.attrs["version"] = __version__
             file.attrs["study"] = study_toml(table)
             scales = _write_coordinates(file, plan, meanings)
+            _write_labels(file, plan, scales)
             data = {one: _new_variable(file, one, layout[one], scales, meanings, rates) for one in meanings if one in layout}
             failures: dict[int, str] = {}
             for chunk in chunks:
@@ -121,6 +123,18 @@ def _write_coordinates(file: h5py.File, plan: Plan, meanings: Meanings) -> list[
         else:
             _described(_values(file, key, shown), meanings[key], scales)
     return scales
+
+
+def _write_labels(file: h5py.File, plan: Plan, scales: Sequence[h5py.Dataset]) -> None:
+    """Write the labels of the points: names as flags, numbers as they are."""
+    for name, values in plan.labels.items():
+        if values.dtype != object:
+            _described(new_array(file, name, values.astype(np.int32)), LABELS[name], scales)
+            continue
+        names, codes = np.unique(values.astype(str), return_inverse=True)
+        data = _described(new_array(file, name, codes.astype(np.int16)), LABELS[name], scales)
+        data.attrs["flag_values"] = np.arange(len(names), dtype=np.int16)
+        data.attrs["flag_meanings"] = " ".join(one.replace(" ", "_") for one in names.tolist())
 
 
 def _scale(file: h5py.File, name: str, values: NDArray[Any], meaning: tuple[str, str]) -> h5py.Dataset:

@@ -45,6 +45,8 @@ _MULTIPLES: dict[str, tuple[Multiple, ...]] = {
     "N/m": (Multiple("GN/m", 1e9), Multiple("MN/m", 1e6), Multiple("kN/m", 1e3), Multiple("N/m", 1.0)),
     "N s/m": (Multiple("GN s/m", 1e9), Multiple("MN s/m", 1e6), Multiple("kN s/m", 1e3), Multiple("N s/m", 1.0)),
     "kg": (Multiple("kg", 1.0), Multiple("g", 1e-3)),
+    "V": (Multiple("V", 1.0), Multiple("mV", 1e-3), Multiple("µV", 1e-6), Multiple("nV", 1e-9)),
+    "m/m": (Multiple("m/m", 1.0), Multiple("mm/m", 1e-3), Multiple("µm/m", 1e-6), Multiple("nm/m", 1e-9)),
     "1": (Multiple("", 1.0),),
     "": (Multiple("", 1.0),),
 }

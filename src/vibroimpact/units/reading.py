@@ -36,6 +36,9 @@ _KIND = {
     "N s/m": "damping",
     "J/m^2": "work of adhesion",
     "1/m": "reciprocal length",
+    "V": "voltage",
+    "V s/m": "voltage over velocity",
+    "V s^2/m": "voltage over acceleration",
     "byte": "memory size",
     "": "plain number",
 }
@@ -54,11 +57,14 @@ _EXAMPLE = {
     "N s/m": "179.75 N s/m",
     "J/m^2": "50 mJ/m^2",
     "1/m": "0.5 1/mm",
+    "V": "10 mV",
+    "V s/m": "27.6 V s/m",
+    "V s^2/m": "100 mV/g",
     "byte": "500 MB",
 }
 
 _PREFIXES = {"G": 1e9, "M": 1e6, "k": 1e3, "c": 1e-2, "m": 1e-3, "u": 1e-6, "µ": 1e-6, "μ": 1e-6, "n": 1e-9}
-_PREFIXED = ("m", "s", "m/s", "m/s^2", "Pa", "Hz", "N", "N/m")
+_PREFIXED = ("m", "s", "m/s", "m/s^2", "Pa", "Hz", "N", "N/m", "V")
 """SI units whose multiples are read without pint, with the same factors."""
 
 
@@ -294,6 +300,8 @@ def _converted(given: str, unit: str, text: str) -> float:
     registry = _registry()
     try:
         spelled = _GRAVITIES.get(given, given) if unit == "m/s^2" else given  # of an acceleration, g is standard gravity and not the gram
+        if unit == "V s^2/m":  # as of what is told for an acceleration
+            spelled = re.sub(r"/ *g$", "/g0", given)
         have, want = registry.Quantity(1.0, _parse_unit(spelled)), registry.parse_units(unit)
         return float(have.to(want).magnitude)
     except pint.DimensionalityError:

@@ -298,12 +298,14 @@
       const place = Array.isArray(sensor.position)
         ? [["x", 0], ["y", 1]].map(([label, side]) => slider(controls, { path: ["sensors", index, "position", side], label, unit: "mm", size: 1e-3, low: -half(side), high: half(side) }))
         : [];
-      const quantity = choice(controls, {
-        path: ["sensors", index, "quantity"], label: "Reads", options: ["displacement", "velocity", "acceleration"].map((name) => [name, name]),
+      const motions = ["displacement", "velocity", "acceleration"];
+      // an instrument that puts out another quantity is kept as the case has it
+      const quantity = motions.includes(at(controls.resolved, ["sensors", index, "quantity"]) ?? "acceleration") ? [choice(controls, {
+        path: ["sensors", index, "quantity"], label: "Reads", options: motions.map((name) => [name, name]),
         chosen: (table) => at(table, ["sensors", index, "quantity"]) ?? "acceleration",
-        choose: (table, value) => { put(table, ["sensors", index, "quantity"], value); if (value !== "acceleration") delete table.sensors[index].accelerometer; },
-      });
-      const part = make("div", { class: "sensor", role: "group", "aria-label": `Sensor ${sensor.name}` }, textField(controls, { path: ["sensors", index, "name"], label: "Name" }), ...place, quantity, remove);
+        choose: (table, value) => { put(table, ["sensors", index, "quantity"], value); if (value !== "acceleration") { delete table.sensors[index].instrument; delete table.sensors[index].accelerometer; } },
+      })] : [];
+      const part = make("div", { class: "sensor", role: "group", "aria-label": `Sensor ${sensor.name}` }, textField(controls, { path: ["sensors", index, "name"], label: "Name" }), ...place, ...quantity, remove);
       return [part];
     });
     const add = make("button", { type: "button", text: "Add a sensor" });

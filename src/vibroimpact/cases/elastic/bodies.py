@@ -79,8 +79,10 @@ def _plate(case: CaseTable) -> ElasticBody:
     contact: Spot = case.drop.position
     if isinstance(section.mesh, BroughtMeshTable) and section.mesh.contact:
         contact = section.mesh.contact
-    watched = {sensor.name: (sensor.position, sensor.face) for sensor in case.sensors}
-    return ElasticBody(_plate_recipe(case, contact), "upper", contact, damping_of(section.damping, section.material.loss_factor), watched)
+    places = {sensor.name: (sensor.position, sensor.face) for sensor in case.sensors}
+    strained = {sensor.name: places.pop(sensor.name) for sensor in case.sensors if sensor.instrument == "strain-gauge"}
+    damping = damping_of(section.damping, section.material.loss_factor)
+    return ElasticBody(_plate_recipe(case, contact), "upper", contact, damping, places, strained)
 
 
 def _plate_recipe(case: CaseTable, contact: Spot) -> Recipe:

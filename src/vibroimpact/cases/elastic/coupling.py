@@ -18,7 +18,7 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.bodies.rigid import rigid_sphere
 from vibroimpact.cases.elastic.modes import BodyModes, compute_modes, contact_place
-from vibroimpact.cases.elastic.residuals import residual_key, with_residuals
+from vibroimpact.cases.elastic.residuals import residual_keys, with_residuals
 from vibroimpact.cases.fields.local import MeasuredImpact
 from vibroimpact.cases.pair import contact_pair, is_free_sphere
 from vibroimpact.cases.rigid import PLATE_FALLS, contact_laws_of, elastic_names, touch_speed
@@ -153,9 +153,9 @@ def carried_modes(
         if name == "plate" and treatment_of(case) != "superposed":
             _plate_compliance(body, tell)
             keys.append(compliance_key(body.body.recipe, *contact_place(body)))
-            if body.body.watched:
+            if body.body.sensors:
                 with_residuals(body, body.basis, tell)
-                keys.append(residual_key(body))
+                keys += residual_keys(body)
     return carry(keys)
 
 
@@ -203,10 +203,10 @@ def _basis_at_face(body: BodyModes) -> tuple[ModalBasis, float]:
     def at_face(place: tuple[float, float], deflection: Floats) -> Floats:
         return face_shapes(body.model, material, place, deflection)
 
-    points = {
-        name: np.column_stack([shapes[:, :2], at_face(place_of(body.model.mesh, *body.body.watched[name]), shapes[:, 2])])
-        for name, shapes in body.basis.points.items()
-    }
+    points = dict(body.basis.points)
+    for name, spot in body.body.watched.items():
+        at = at_face(place_of(body.model.mesh, *spot), points[name][:, 2])
+        points[name] = np.column_stack([points[name][:, :2], at])
     contact = at_face(contact_place(body)[0], body.basis.contact)
     return replace(body.basis, contact=contact, points=points), inertia_beyond_bending(body.model.thickness, material)
 

@@ -41,8 +41,8 @@ def meshes_of(case: CaseTable) -> dict[str, Mesh]:
         brought = getattr(getattr(case, name), "mesh", None)
         at = f"{name}.mesh.contact" if getattr(brought, "contact", None) else "drop.position" if name == "plate" else f"{name}.mesh"
         _check_spot(mesh, body.contact, body.side, at)
-        names = [{"name": one} for one in body.watched]
-        for number, (spot, face) in enumerate(body.watched.values()):
+        names = [{"name": one} for one in body.sensors]
+        for number, (spot, face) in enumerate(body.sensors.values()):
             _check_spot(mesh, spot, face, f"{item_label('sensors', names, number)}.position")
         if name == "plate":
             _check_supports(case, body, mesh)

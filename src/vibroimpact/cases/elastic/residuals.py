@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
+from vibroimpact.arrays import Floats
 from vibroimpact.cases.elastic.modes import BodyModes, contact_place
 from vibroimpact.structures.modal_model import ModalBasis
-from vibroimpact.structures.surface import place_of
+from vibroimpact.structures.surface import Side, Spot, place_of
 from vibroimpact.structures.transfer_compliance import Point, transfer_compliances, transfer_key
+from vibroimpact.structures.transfer_strain import strain_key, transfer_strains
 
 _FACES = 2
 """Number of points, out of contact and sensor, at which the mode shapes are those at the face of the plate."""
@@ -26,20 +28,26 @@ def with_residuals(body: BodyModes, basis: ModalBasis, tell: Callable[[str], Non
     tell : callable, optional
         Called with a warning if the mode store is faulty.
     """
-    if not body.body.watched:
+    if not body.body.sensors:
         return basis
-    compliances = transfer_compliances(body.body.recipe, *contact_place(body), _points(body), _FACES, tell)
+    recipe, (place, side) = body.body.recipe, contact_place(body)
+    found: dict[str, Floats] = {}
+    if body.body.watched:
+        moved = transfer_compliances(recipe, place, side, _points(body, body.body.watched), _FACES, tell)
+        found |= dict(zip(body.body.watched, moved, strict=True))
+    if body.body.strained:
+        found |= dict(zip(body.body.strained, transfer_strains(recipe, place, side, _points(body, body.body.strained), tell), strict=True))
     weights = basis.contact / basis.angular_frequencies**2
-    return replace(
-        basis, residuals={name: found - weights @ basis.points[name] for name, found in zip(body.body.watched, compliances, strict=True)}
-    )
+    return replace(basis, residuals={name: static - weights @ basis.points[name] for name, static in found.items()})
 
 
-def residual_key(body: BodyModes) -> str:
-    """Return the key of the compliances of `with_residuals` in the mode store."""
-    return transfer_key(body.body.recipe, *contact_place(body), _points(body), _FACES)
+def residual_keys(body: BodyModes) -> list[str]:
+    """Return the keys of the compliances of `with_residuals` in the mode store."""
+    recipe, (place, side), watched, strained = body.body.recipe, contact_place(body), body.body.watched, body.body.strained
+    moved = [transfer_key(recipe, place, side, _points(body, watched), _FACES)] if watched else []
+    return moved + ([strain_key(recipe, place, side, _points(body, strained))] if strained else [])
 
 
-def _points(body: BodyModes) -> list[Point]:
+def _points(body: BodyModes, sensors: Mapping[str, tuple[Spot, Side]]) -> list[Point]:
     """Return the position and face of each sensor."""
-    return [(place_of(body.model.mesh, spot, face), face) for spot, face in body.body.watched.values()]
+    return [(place_of(body.model.mesh, spot, face), face) for spot, face in sensors.values()]

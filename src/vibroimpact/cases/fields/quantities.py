@@ -57,5 +57,5 @@ def quantity_schema(unit: str, description: str) -> dict[str, Any]:
     """Return the JSON schema of a quantity."""
     if not unit:
         return {"type": "number", "description": description}
-    gravity = ', in which "g" is standard gravity, 9.80665 m/s^2' if unit == "m/s^2" else ""
+    gravity = ', in which "g" is standard gravity, 9.80665 m/s^2' if unit in ("m/s^2", "V s^2/m") else ""
     return {"type": ["number", "string"], "description": f"{description} [{unit}]; a string carries its own unit{gravity}"}

@@ -97,6 +97,12 @@ CHECKED_KEYS: tuple[CheckedKey, ...] = (
         _FREQUENCIES,
         between(100.0, 1e8, below="is lower than any accelerometer's", above="is higher than any accelerometer's"),
     ),
+    CheckedKey(
+        "sensors.#.geophone.natural_frequency",
+        "Hz",
+        _FREQUENCIES,
+        between(0.01, 500.0, below="is lower than any geophone's", above="is higher than any geophone's"),
+    ),
     CheckedKey("sensors.#.accelerometer.noise", "m/s^2", _ACCELERATIONS, rules.below_sensor_range),
     CheckedKey("sensors.#.accelerometer.resolution", "m/s^2", _ACCELERATIONS, rules.below_sensor_range),
 )

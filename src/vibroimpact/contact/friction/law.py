@@ -137,7 +137,14 @@ class Memory(Protocol):
     def slides(self) -> Floats | Bools:
         """Not zero where all of a contact slides (B,)."""
 
-    def turns(self, drops: Drops | slice, step: Step) -> tuple[Drops, Floats, Floats]:
+    def slide(self, drops: Drops, depth: Floats, displacement: Floats, integral: Floats) -> Floats:
+        """Let contacts begin that have slid from first touch on; return the force as `advance` does.
+
+        `depth`, `displacement`: value and rate now (2, b); `integral`: I (b,).
+        """
+        ...
+
+    def turns(self, drops: Drops, step: Step) -> tuple[Drops, Floats, Floats]:
         """Return which of b contacts change within a step, at which places in it, and how near these are to where the force is not smooth.
 
         What changes is whether they stick, slip or slide; nothing at the place 1, the end of the step. The last is the distance over that
@@ -152,7 +159,7 @@ class Memory(Protocol):
         """
         ...
 
-    def advance(self, drops: Drops | slice, step: Step) -> Floats:
+    def advance(self, drops: Drops, step: Step) -> Floats:
         """Take a step with contacts; return the integral I [m^1.5], and its derivatives by displacement and by depth (3, b)."""
         ...
 

@@ -17,11 +17,12 @@ cubic, and the straight lines that slip has left. On these the parameter rises w
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import ClassVar
 
 import numpy as np
 
-from vibroimpact.arrays import Drops, Floats
+from vibroimpact.arrays import Drops, Floats, put
 from vibroimpact.contact.friction.cubics import place_of_turn, place_of_value
 from vibroimpact.contact.friction.law import Step
 
@@ -37,7 +38,7 @@ part of the way is left to a further step, since the force is not smooth at its 
 
 
 class TurningPoints:
-    """Curves of contacts, each a chain of points from the middle of the contact to its rim; see the module.
+    """Curves of contacts, each a stack of points from the middle of the contact to its rim; see the module.
 
     Parameters
     ----------
@@ -59,37 +60,40 @@ class TurningPoints:
     power: ClassVar[int] = 1
 
     def __init__(self, size: int) -> None:
-        self.every = np.arange(size)
-        # points in the order in which they come; those of the middle of the contacts are the first
-        self.points, self.below, self.used = np.empty((9, 64 * size)), np.empty(64 * size, dtype=np.intp), size
-        self.points[:, :size], self.below[:size], self.top = 0.0, self.every, self.every.copy()
-        self.fresh = True
+        # layer upon layer, each with one point of every contact; those of the middle are the lowest
+        self.size, self.points, self.top, self.layers, self.fresh = size, np.empty((9, 64 * size)), np.arange(size), 1, True
+        self.points[:, :size] = 0.0
         self.rises = np.zeros((2, size), dtype=bool)  # do depth less displacement and depth plus displacement rise?
         self.slides = np.zeros(size, dtype=bool)  # does the middle of the contact slide?
         self.next = np.zeros(size, dtype=np.intp)  # which of these three changes next; 3 if none does
 
-    def turns(self, drops: Drops | slice, step: Step) -> tuple[Drops, Floats, Floats]:
+    def slide(self, drops: Drops, depth: Floats, displacement: Floats, integral: Floats) -> Floats:
+        """Let contacts begin that have slid so far; see `Memory`."""
+        ends = np.concatenate([depth, depth]), np.concatenate([displacement, displacement])
+        return self.advance(drops, Step(*ends, np.stack([integral, *np.zeros((2, len(drops)))])))
+
+    def turns(self, drops: Drops, step: Step) -> tuple[Drops, Floats, Floats]:
         """Return which contacts begin or cease to slip at the rim, or begin to slide in the middle, and where; see `Memory`."""
         (before, _, depth, deepening), (start, _, displacement, rate) = step.depth, step.displacement
-        every = self.every[drops]
-        middle = self.points[1, every]
+        middle, slides = self.points[1].take(drops), self.slides.take(drops)
         left, left_before = depth - np.abs(displacement - middle), before - np.abs(start - middle)
-        changes = np.stack([deepening > rate, deepening > -rate])
+        rises = deepening > rate, deepening > -rate
         if self.fresh:
-            self.rises, self.slides, self.fresh = changes.copy(), left < 0.0, False
-        changes ^= self.rises[:, every]
-        changes &= depth > _ROUNDING * before  # not in the step that ends the contact
+            self.rises, self.slides, self.fresh = np.stack(rises), left < 0.0, False
+            slides = self.slides
+        goes_on = depth > _ROUNDING * before  # not in the step that ends the contact
+        changes = np.array([(now ^ row.take(drops)) & goes_on for now, row in zip(rises, self.rises, strict=True)])
         comes = left * before < 0.5 * left_before * depth
-        comes &= (left_before > _ROUNDING * before) & ~self.slides[every]
+        comes &= (left_before > _ROUNDING * before) & ~slides
         some = np.flatnonzero(changes[0] | changes[1] | comes)
         if not some.size:
             return some, np.empty(0), np.empty(0)
-        changes, ends, moved, who = changes[:, some], step.depth[:, some], step.displacement[:, some], every[some]
+        changes, ends, moved, who = changes[:, some], step.depth.take(some, axis=1), step.displacement.take(some, axis=1), drops[some]
         places, near = np.full((3, len(some)), np.inf), np.ones(len(some))
         for row, sign in enumerate((-1.0, 1.0)):
             here = np.flatnonzero(changes[row])
             if here.size:
-                found = places[row, here] = place_of_turn(ends[:, here] + sign * moved[:, here])
+                found = places[row, here] = place_of_turn(ends.take(here, axis=1) + sign * moved.take(here, axis=1))
                 self.rises[row, who[here[found == 0.0]]] ^= True  # it changed before
         which = places.argmin(axis=0)
         here = np.flatnonzero(comes[some])
@@ -116,45 +120,44 @@ class TurningPoints:
         self.slides[drops[which == 2]] = True
         return force
 
-    def advance(self, drops: Drops | slice, step: Step) -> Floats:
+    def advance(self, drops: Drops, step: Step) -> Floats:
         """Take a step; return the integral and its derivatives. See `Memory`."""
         (before, deepening_before, depth, deepening), (start, rate_before, displacement, rate) = step.depth, step.displacement
-        every, found = self.every[drops], np.zeros((3, len(depth)))
-        integral, rim = found[:2]
-        np.add(step.integral[0], step.integral[2], out=integral)
-        np.sqrt(depth, out=rim)
-        new = self._more(len(depth))
-        values = (depth, displacement, integral, deepening_before, rate_before, step.integral[1], deepening, rate, rim * rate)
-        for row, value in zip(self.points, values, strict=True):
-            row[new] = value
-        self.below[new] = self.top[every]
-        self.top[every] = np.arange(new.start, new.stop)
-        offset = displacement - self.points[1, every]
-        slides = self.slides[every] = np.abs(offset) > depth
-        whole, part = np.flatnonzero(slides), np.flatnonzero((np.abs(displacement - start) > depth - before) & ~slides)
-        if whole.size:
-            middle, moved = every[whole], np.sign(offset[whole]) * depth[whole]
-            self.points[1, middle] = displacement[whole] - moved
-            found[:, whole] = self._close(new.start + whole, middle, np.zeros((3, len(whole))), moved, rim[whole], np.sign(moved))
-        if part.size:
-            found[:, part] = self._slip(new.start + part, depth[part], displacement[part], rim[part])
+        self.layers += 1  # by no more grows a stack
+        if self.layers * self.size > self.points.shape[1]:
+            self.points = np.concatenate([self.points, np.empty_like(self.points)], axis=1)
+        rim, offset = np.sqrt(depth), displacement - self.points[1].take(drops)
+        slides = self.slides[drops] = np.abs(offset) > depth
+        slips = np.abs(displacement - start) > depth - before
+        integral = step.integral[0] + step.integral[2]
+        found = np.array([integral, rim, np.zeros_like(rim)])
+        sticks, part, whole = (np.flatnonzero(which) for which in (~(slips | slides), slips & ~slides, slides))
+        if sticks.size:
+            rows = (depth, displacement, integral, deepening_before, rate_before, step.integral[1], deepening, rate, rim * rate)
+            self._push(drops[sticks], self.top[drops[sticks]], [row[sticks] for row in rows])
+        for here, close in ((part, self._slip), (whole, self._slide)):
+            if here.size:
+                put(found, here, close(drops[here], depth[here], displacement[here], rim[here]))
         return found
 
-    def _more(self, number: int) -> slice:
-        """Return the places of further points."""
-        new = slice(self.used, self.used + number)
-        self.used = new.stop
-        if new.stop > len(self.below):
-            self.points = np.concatenate([self.points, np.empty_like(self.points)], axis=1)
-            self.below = np.concatenate([self.below, np.empty_like(self.below)])
-        return new
+    def _push(self, drops: Drops, below: Drops, values: Sequence[Floats]) -> None:
+        """Put points on those below."""
+        new = self.top[drops] = below + self.size
+        for row, value in zip(self.points, values, strict=True):
+            row[new] = value
 
-    def _slip(self, new: Drops, depth: Floats, displacement: Floats, rim: Floats) -> Floats:
-        """Cut the curves below new points at the rim, close them by lines, and return integrals and derivatives."""
+    def _slide(self, drops: Drops, depth: Floats, displacement: Floats, rim: Floats) -> Floats:
+        """Close curves by lines from the middle to the rim, and return integrals and derivatives."""
+        sign = np.sign(displacement - self.points[1].take(drops))
+        low = np.zeros((3, len(drops)))
+        low[1] = self.points[1, drops] = displacement - sign * depth
+        return self._close(drops, drops, low, depth, displacement, rim, sign)
+
+    def _slip(self, drops: Drops, depth: Floats, displacement: Floats, rim: Floats) -> Floats:
+        """Cut curves where they reach beyond the rim, close them by lines, and return integrals and derivatives."""
         q, p = depth - displacement, depth + displacement
-        above = self._above(self.below[new], q, p)
-        below = self.below[above]
-        low, piece = self.points[_VALUES].take(below, axis=1), self.points.take(above, axis=1)
+        above = self._above(self.top[drops], q, p)
+        low, piece = self.points[_VALUES].take(above - self.size, axis=1), self.points.take(above, axis=1)
         high, first, last = piece[_VALUES], piece[_FIRST], piece[_LAST]
         change = high - low
         # of the two coordinates, the one that cuts lower
@@ -164,37 +167,31 @@ class TurningPoints:
         rise, slope, slope_there = (one[0] - sign * one[1] for one in (change, first, last))
         place = place_of_value(rise, slope, slope_there, np.where(forward, left_q, left_p))
         bend, twist = 3.0 * change - 2.0 * first - last, first + last - 2.0 * change
-        there = self._more(len(new))
-        cut = self.points[:, there]
-        cut[_VALUES] = low + place * (first + place * (bend + place * twist))
-        cut[_FIRST] = first * place
-        cut[_LAST] = (first + place * (2.0 * bend + 3.0 * place * twist)) * place
-        self.below[there] = below
-        return self._close(new, np.arange(there.start, there.stop), cut[_VALUES], displacement - cut[1], rim, sign)
+        cut = low + place * (first + place * (bend + place * twist))
+        last = (first + place * (2.0 * bend + 3.0 * place * twist)) * place
+        put(self.points, above, np.concatenate([cut, first * place, last]))
+        return self._close(drops, above, cut, depth, displacement, rim, sign)
 
-    def _close(self, new: Drops, below: Drops, low: Floats, moved: Floats, rim: Floats, sign: Floats) -> Floats:
-        """Close the curves by lines from points to the rim, and return integrals and derivatives.
+    def _close(self, drops: Drops, below: Drops, low: Floats, depth: Floats, displacement: Floats, rim: Floats, sign: Floats) -> Floats:
+        """Close curves by lines from points to the rim, and return integrals and derivatives.
 
-        `low`: values at these points (3, b); `moved`: change of the displacement along the lines; `sign`: the direction of slip.
+        `below`, `low`: these points, and the values there (3, b); `sign`: the direction of slip.
         """
         front = np.sqrt(np.maximum(low[0], 0.0))
         width, total = rim - front, rim + front
-        integral = low[2] + moved * (2.0 / 3.0) * (total - front * rim / (total + 1e-300))
-        self.below[new] = below
-        self.points[2, new] = integral
-        for rows, radius in ((_FIRST, front), (_LAST, rim)):
-            rise = 2.0 * radius * width
-            for row, value in zip(self.points[rows], (rise, sign * rise, radius * sign * rise), strict=True):
-                row[new] = value
-        return np.stack([integral, front, sign * width])
+        integral = low[2] + (displacement - low[1]) * (2.0 / 3.0) * (total - front * rim / (total + 1e-300))
+        rise, rise_there = 2.0 * front * width, 2.0 * rim * width
+        slopes = (rise, sign * rise, front * sign * rise, rise_there, sign * rise_there, rim * sign * rise_there)
+        self._push(drops, below, (depth, displacement, integral, *slopes))
+        return np.array([integral, front, sign * width])
 
     def _above(self, at: Drops, q: Floats, p: Floats) -> Drops:
         """Return the points, at or below those given, above which nothing is left of the curves."""
         left = np.arange(len(at))
         while left.size:
-            below = self.below[at[left]]
+            below = at[left] - self.size
             depth, displacement = self.points[0].take(below), self.points[1].take(below)
-            off = np.flatnonzero(((depth - displacement > q[left]) | (depth + displacement > p[left])) & (below >= len(self.every)))
+            off = np.flatnonzero(((depth - displacement > q[left]) | (depth + displacement > p[left])) & (below >= self.size))
             left = left[off]
             at[left] = below[off]
         return at

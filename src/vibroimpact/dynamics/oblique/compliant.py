@@ -8,6 +8,9 @@ for the effective mass :math:`m_t` of the tangential motion, 2/7 of that of a so
 normal motion with one evaluation of the force a step: the acceleration is the cubic with its values and slopes at both ends, for which the
 step is first taken with one that changes evenly (`step_weights`). A contact that begins or ceases to stick, to slip or to slide within a
 step takes it in parts, so that the method keeps its order of four.
+
+A contact that slides from first touch on is not integrated before it may stick: until then the normal impulse gives its velocity. From
+there on the contacts of a batch go on together, each at a place of its own, and leave when they are at the end.
 """
 
 from __future__ import annotations
@@ -16,7 +19,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibroimpact.arrays import Bools, Drops, Floats
+from vibroimpact.arrays import Bools, Drops, Floats, put
 from vibroimpact.contact.friction.law import CompliantFriction, Memory, Step
 from vibroimpact.contact.pair import hertz_stiffness
 from vibroimpact.dynamics.oblique.normal_motion import NormalMotion
@@ -34,8 +37,8 @@ _PRESSED = 1e-9
 _MOST_TURNING, _MOST_PARTS = 1.0, 16
 """Angle by which the free oscillation of a contact that sticks turns in a step at most [rad], and parts of a step for that at most."""
 
-_MOST_TURNS = 4
-"""Parts of a step at most, beside the last one."""
+_MOST_TURNS, _LEAST_PART = 4, 1e-6
+"""Parts of a step at most, beside the last one, and the least of them."""
 
 _CORRECTIONS = 2
 """How often the end of a step is mended by the force there."""
@@ -77,19 +80,30 @@ def slide_compliant(
     kappa[kappa == 0.0] = 1.0
     stiffness = np.where(asked < kappa, 0.0, 2.0 * shear * np.sqrt(radius))  # of the integral: none where friction is below the least
     path = _slide_throughout(normal, hertz, slip / kappa, stiffness / mass, pull / kappa)
-    least = np.where(depth_slope > 0.0, depth_slope, law.sliding_bound * depth_slope)
-    sticks = np.flatnonzero((stiffness > 0.0) & (path[0] * normal.pace < least - _ROUNDING * depth_slope.max(axis=0)).any(axis=0))
-    arrays, microslip = (slip / kappa, stiffness / mass, pull / kappa), np.zeros(len(slip))
-    turning = np.sqrt((arrays[1] * np.sqrt(depth) * normal.pace**2).max(axis=0))[sticks]
+    flow, least = path[0] * normal.pace, np.where(depth_slope > 0.0, depth_slope, law.sliding_bound * depth_slope)
+    sticks = np.flatnonzero((stiffness > 0.0) & (flow < least - _ROUNDING * depth_slope.max(axis=0)).any(axis=0))
+    # what begins by sliding is followed from the last point but one at which it does, and not from between two parts
+    first = np.maximum((flow < least).argmax(axis=0)[sticks] - 2, 0)
+    first -= normal.steps[first] == 0.0
+    turning = np.sqrt((stiffness / mass * np.sqrt(depth) * normal.pace**2).max(axis=0))[sticks]
+    microslip = np.zeros(len(slip))
     parts = 2 ** np.ceil(np.log2(np.clip(turning / _MOST_TURNING, 1.0, _MOST_PARTS))).astype(int)
     for number in np.unique(parts).tolist():
-        here = sticks[parts == number]
-        steps, pace, deep = normal.steps, (normal.pace[:, here], normal.pace_slope[:, here]), (depth[:, here], depth_slope[:, here])
+        some = parts == number
+        here = sticks[some]
+        pairs = [
+            (one.take(here, axis=1), slope.take(here, axis=1)) for one, slope in ((normal.pace, normal.pace_slope), (depth, depth_slope))
+        ]
+        steps, found = normal.steps, path.take(here, axis=2)
         if number > 1:
-            pace, deep = _refined(steps, pace, number), _refined(steps, deep, number)
-            steps, pace = np.repeat(steps, number), (pace[0] / number, pace[1] / number)
-        way = _Way(law.memory(len(here)), law.sliding_energy, *(values[here] for values in arrays))
-        path[:, :, here] = _integrate(way, steps, pace, deep)[:, ::number]
+            pairs = [_refined(steps, one, number) for one in pairs]
+            steps, found = np.repeat(steps, number), np.ascontiguousarray(np.repeat(found, number, axis=1)[:, number - 1 :])
+            pairs[0] = pairs[0][0] / number, pairs[0][1] / number
+        driven = (values[here] for values in (stiffness / mass, pull / kappa))
+        way = _Way(law.memory(len(here)), law.sliding_energy, steps, np.stack(pairs), found, first[some] * number, *driven)
+        while way.drops.size:
+            way.go()
+        put(path, here, found[:, ::number])
         microslip[here] = way.microslip
     return path[0] * kappa, path[1] * kappa, stiffness * kappa * path[2], mass * kappa**2 * microslip
 
@@ -124,127 +138,154 @@ def _refined(steps: Floats, known: Pair, number: int) -> Pair:
     return fine, fine_slopes / number
 
 
-def _integrate(way: _Way, steps: Floats, pace: Pair, depth: Pair) -> Floats:
-    """Return slip velocity, displacement and integral (3, G, B), of which the first two are over kappa.
-
-    `pace`, `depth`: values and slopes of dt by the parameter and of the depth (G, B); `steps`: of the parameter.
-    """
-    deep = depth[0]
-    if deep[0].any():  # the force begins with a jump
-        way.jump(np.zeros_like(deep[0]), deep[0])
-    found = np.empty((3, *deep.shape))
-    found[:, 0] = way.state[[1, 0, 2]]
-    paces, depths = np.stack(pace, axis=1), np.stack(depth, axis=1)
-    for point, length in enumerate(steps, start=1):
-        if length > 0.0:
-            way.go(np.concatenate(paces[point - 1 : point + 1]), np.concatenate(depths[point - 1 : point + 1]))
-        elif not np.allclose(deep[point - 1], deep[point], rtol=_SAME, atol=0.0):
-            way.jump(deep[point - 1], deep[point])
-        found[:, point] = way.state[[1, 0, 2]]
-    if deep[-1].any():  # what it stores then is lost, as it slides back
-        way.jump(deep[-1], np.zeros_like(deep[-1]))
-    return found
-
-
 class _Ahead(NamedTuple):
     """A step as it is with an acceleration that changes evenly.
 
-    `velocity`: at its end (b,). `acceleration`: at its end, and its change over the step (2, b).
+    `velocity`: at its end (b,). `acceleration`: at its end, and its change over the step (2, b). `corrections`: see `step_weights`.
     """
 
     step: Step
     velocity: Floats
     acceleration: Floats
+    corrections: Floats
 
 
 class _Way:
-    """The motion of B contacts along the plate, under way.
+    """The motion of B contacts along the plate, under way, each at a place of its own.
 
-    `state`: displacement and velocity, over kappa; integral, and its derivatives by displacement and by depth (5, B). `microslip`: energy
-    lost while a part of the contact sticks, over the mass and the square of kappa (B,). `stored`: the law's `sliding_energy`.
+    `grid`: pace above depth, each value above slope, at G points (2, 2, G B), where `path` is written (3, G B). `drops`: contacts that are
+    not at the end (b,). `at`: the last point that they passed; `turns`: how often they have changed since (b,). `left`: what is left then
+    of the step, values and slopes at both ends (2, 4, B). `state`: displacement and velocity, over kappa; integral, and its derivatives by
+    displacement and by depth (5, b). `microslip`: energy lost while a part of the contact sticks, over the mass and the square of kappa
+    (B,). `stored`: the law's `sliding_energy`.
     """
 
-    def __init__(self, memory: Memory, stored: float, slip: Floats, stiffness: Floats, pull: Floats) -> None:
-        self.memory, self.stiffness, self.pull, self.stored = memory, stiffness, pull, stored
-        self.state, self.microslip = np.zeros((5, len(slip))), np.zeros(len(slip))
-        self.state[1] = slip
+    def __init__(
+        self, memory: Memory, stored: float, steps: Floats, grid: Floats, path: Floats, first: Drops, stiffness: Floats, pull: Floats
+    ) -> None:
+        self.memory, self.stored, self.stiffness, self.pull, self.size = memory, stored, stiffness, pull, len(first)
+        self.grid, self.path = grid.reshape(2, 2, -1), path.reshape(3, -1)
+        self.last, self.joints = len(steps) * self.size, np.flatnonzero(steps == 0.0) * self.size
+        self.drops, self.turns, self.left = np.arange(self.size), np.zeros(self.size, dtype=np.intp), np.empty((2, 4, self.size))
+        self.at = first * self.size + self.drops
+        velocity, displacement, integral = self.path.take(self.at, axis=1)
+        self.state = np.stack([displacement, velocity, np.where(first > 0, integral, 0.0), *np.zeros((2, self.size))])
+        slide, start = np.flatnonzero(first), np.flatnonzero(first == 0)
+        at = self.at[slide]
+        moved = np.stack([displacement[slide], self.grid[0, 0, at] * velocity[slide]])
+        self.state[2:, slide] = memory.slide(slide, self.grid[1].take(at, axis=1), moved, integral[slide])
+        self.microslip = stored * stiffness * np.abs(self.state[2]) * self.grid[1, 0, self.at]
+        self._jump(start, np.zeros(len(start)), self.grid[1, 0, start])  # where the force begins with a jump
+        self._write(start)
+        self._pass_joints()
 
-    def jump(self, depth: Floats, depth_there: Floats) -> None:
-        """Change the depth at once."""
-        nothing, displacement, integral = np.zeros_like(depth), self.state[0], self.state[2]
-        ends = (depth, nothing, depth_there, nothing), (displacement, nothing, displacement, nothing), (integral, nothing, nothing)
-        before, slid = self.state[:3].copy(), self.memory.slides != 0
-        self.state[2:] = self.memory.advance(_ALL, Step(*(np.stack(one) for one in ends)))
-        self._lose(_ALL, before, slid, depth, depth_there)
+    def go(self) -> None:
+        """Take contacts to their next points, or to the places before where they change."""
+        step = np.concatenate([self.grid.take(self.at, axis=2), self.grid.take(self.at + self.size, axis=2)], axis=1)
+        within = np.flatnonzero(self.turns)
+        if within.size:
+            put(step, within, self.left.take(self.drops[within], axis=2))
+        pace, depth = step
+        ahead = self._ahead(_ALL, pace, depth)
+        some, places, near = self.memory.turns(self.drops, ahead.step)
+        turned = some
+        if some.size:
+            places = np.where(self.turns[some] < _MOST_TURNS, np.maximum(places, _LEAST_PART), 1.0)
+            (pace_to, pace_left), (depth_to, depth_left) = (before_and_after(one.take(some, axis=1), places) for one in step)
+            pace_to, pace_left = places * pace_to, (1.0 - places) * pace_left
+            depth_to[2] = depth_left[0] = np.maximum(depth_left[0], 0.0)
+            pace_to, depth_to = slowed(pace_to, depth_to, near)
+            part = self._ahead(some, pace_to, depth_to)
+            for whole, one in zip((pace, *ahead.step, *ahead[1:]), (pace_to, *part.step, *part[1:]), strict=True):
+                put(whole, some, one)
+            turns = places < 1.0
+            turned, depth_left = some[turns], depth_left.compress(turns, axis=1)
+            put(self.left, self.drops[turned], np.stack([pace_left.compress(turns, axis=1), depth_left]))
+        self._arrive(ahead, pace)
+        if turned.size:
+            put(self.state[2:], turned, self.memory.turn(self.drops[turned], depth_left[:2], self.state[2:].take(turned, axis=1)))
+        self._pass(turned)
 
-    def go(self, pace: Floats, depth: Floats) -> None:
-        """Take a step, from place to place with contacts that change within it; its pace and depth are changed to the last part."""
-        weights, corrections = step_weights(pace, depth, self.memory.power)
-        ahead = self._ahead(_ALL, pace, depth, weights)
-        drops, places, near = self.memory.turns(_ALL, ahead.step)
-        for _ in range(_MOST_TURNS):
-            if not drops.size:
-                break
-            turned, paces, depths = self._go_to(drops, pace[:, drops], depth[:, drops], places, near)
-            pace[:, drops], depth[:, drops] = paces, depths
-            weights, corrections[..., drops] = step_weights(paces, depths, self.memory.power)
-            left = self._ahead(drops, paces, depths, weights)
-            for whole, part in zip(
-                (*ahead.step, ahead.velocity, ahead.acceleration), (*left.step, left.velocity, left.acceleration), strict=True
-            ):
-                whole[..., drops] = part
-            some, places, near = self.memory.turns(drops, left.step)
-            again = turned[some]
-            drops, places, near = drops[some[again]], places[again], near[again]
-        self._arrive(_ALL, ahead, pace, corrections)
-
-    def _go_to(self, drops: Drops, pace: Floats, depth: Floats, places: Floats, near: Floats) -> tuple[Bools, Floats, Floats]:
-        """Take contacts to places within a step; return where there is something left of it, and pace and depth in what is left."""
-        (pace_to, pace_left), (depth_to, depth_left) = before_and_after(pace, places), before_and_after(depth, places)
-        pace_to, pace_left = places * pace_to, (1.0 - places) * pace_left
-        depth_to[2] = depth_left[0] = np.maximum(depth_left[0], 0.0)
-        pace_to, depth_to = slowed(pace_to, depth_to, near)
-        turned = places < 1.0
-        moves = np.flatnonzero(turned & (places > 0.0))
-        pace_moved, depth_moved = pace_to[:, moves], depth_to[:, moves]
-        weights, corrections = step_weights(pace_moved, depth_moved, self.memory.power)
-        self._arrive(drops[moves], self._ahead(drops[moves], pace_moved, depth_moved, weights), pace_moved, corrections)
-        self.state[2:, drops[turned]] = self.memory.turn(drops[turned], depth_left[:2, turned], self.state[2:, drops[turned]])
-        return turned, np.where(turned, pace_left, pace_to), np.where(turned, depth_left, depth_to)
-
-    def _ahead(self, drops: Drops | slice, pace: Floats, depth: Floats, weights: Floats) -> _Ahead:
+    def _ahead(self, here: Drops | slice, pace: Floats, depth: Floats) -> _Ahead:
         """Return a step with the acceleration that begins as it does now."""
-        displacement, velocity, integral, by_displacement, by_depth = self.state[:, drops]
-        stiffness, flow = self.stiffness[drops], pace[0] * velocity
+        weights, corrections = step_weights(pace, depth, self.memory.power)
+        displacement, velocity, integral, by_displacement, by_depth = (row[here] for row in self.state)
+        stiffness, flow = self.stiffness[here], pace[0] * velocity
         rate = by_displacement * flow + by_depth * depth[1]
-        known = np.stack([velocity, self.pull[drops] - stiffness * integral, -stiffness * rate])
+        known = np.array([velocity, self.pull[here] - stiffness * integral, -stiffness * rate])
         moved, swept, later = np.einsum("oib,ib->ob", weights, known)
         known[1] += known[2]
-        step = Step(depth, np.stack([displacement, flow, displacement + moved, pace[2] * later]), np.stack([integral, rate, swept]))
-        return _Ahead(step, later, known[1:])
+        step = Step(depth, np.array([displacement, flow, displacement + moved, pace[2] * later]), np.array([integral, rate, swept]))
+        return _Ahead(step, later, known[1:], corrections)
 
-    def _arrive(self, drops: Drops | slice, ahead: _Ahead, pace: Floats, corrections: Floats) -> None:
+    def _arrive(self, ahead: _Ahead, pace: Floats) -> None:
         """End a step with the force that acts there, and with that which acts where it so leads to."""
-        step, velocity, expected = ahead
-        stiffness, pull = self.stiffness[drops], self.pull[drops]
-        before, slid = self.state[:3, drops].copy(), self.memory.slides[drops] != 0
-        integral, by_displacement, by_depth = self.memory.advance(drops, step)
+        step, velocity, expected, corrections = ahead
+        before, slid = self.state, self.memory.slides[self.drops] != 0
+        integral, by_displacement, by_depth = self.memory.advance(self.drops, step)
         moved, faster = np.zeros((2, len(velocity)))
         for _ in range(_CORRECTIONS):
             rate = by_displacement * pace[2] * (velocity + faster) + by_depth * step.depth[3]
-            more = np.stack([pull - stiffness * (integral + by_displacement * moved), -stiffness * rate]) - expected
+            more = np.array([self.pull - self.stiffness * (integral + by_displacement * moved), -self.stiffness * rate]) - expected
             moved, faster = np.einsum("oib,ib->ob", corrections, more)
         integral = integral + by_displacement * moved
-        self.state[:, drops] = step.displacement[2] + moved, velocity + faster, integral, by_displacement, by_depth
-        self._lose(drops, before, slid, step.depth[0], step.depth[2])
+        self.state = np.array([step.displacement[2] + moved, velocity + faster, integral, by_displacement, by_depth])
+        self._lose(_ALL, before, slid, step.depth[0], step.depth[2])
 
-    def _lose(self, drops: Drops | slice, before: Floats, slid: Bools, depth: Floats, depth_there: Floats) -> None:
+    def _lose(self, here: Drops | slice, before: Floats, slid: Bools, depth: Floats, depth_there: Floats) -> None:
         """Count what contacts took on a way on which they did not slide throughout, less what they store then.
 
-        `before`: displacement, velocity and integral at its start (3, b); `slid`: do they slide there?
+        `before`: their state at its start; `slid`: do they slide there?
         """
-        start, velocity, integral = before
-        displacement, velocity_there, integral_there = self.state[:3, drops]
-        taken = 0.5 * (velocity - velocity_there) * (velocity + velocity_there) + self.pull[drops] * (displacement - start)
-        stored = self.stored * self.stiffness[drops] * (np.abs(integral_there) * depth_there - np.abs(integral) * depth)
+        start, velocity, integral = before[:3]
+        displacement, velocity_there, integral_there = (row[here] for row in self.state[:3])
+        taken = 0.5 * (velocity - velocity_there) * (velocity + velocity_there) + self.pull[here] * (displacement - start)
+        stored = self.stored * self.stiffness[here] * (np.abs(integral_there) * depth_there - np.abs(integral) * depth)
+        drops = self.drops[here]
         self.microslip[drops] += np.where(slid & (self.memory.slides[drops] != 0), stored, taken)
+
+    def _pass(self, turned: Drops) -> None:
+        """Let contacts pass the next points, but those that have changed before, and leave out those that came to the end."""
+        turns = np.zeros_like(self.turns)
+        turns[turned] = self.turns[turned] + 1
+        self.turns = turns
+        self.at += self.size
+        self._write(_ALL)  # what is too early is written again
+        self.at[turned] -= self.size
+        self._pass_joints()
+        goes = np.flatnonzero(self.at < self.last)
+        if goes.size < len(self.at):
+            ends = np.flatnonzero(self.at >= self.last)
+            depth = self.grid[1, 0, self.at[ends]]
+            self._jump(ends, depth, np.zeros_like(depth))  # what it stores then is lost, as it slides back
+            self.drops, self.at, self.turns = self.drops[goes], self.at[goes], self.turns[goes]
+            self.stiffness, self.pull = self.stiffness[goes], self.pull[goes]
+            self.state = self.state.take(goes, axis=1)
+
+    def _pass_joints(self) -> None:
+        """Take contacts at the end of a part to the beginning of the next one, where the depth may be another."""
+        for joint in self.joints:
+            here = np.flatnonzero((self.at >= joint) & (self.at < joint + self.size))
+            if here.size:
+                before = self.grid[1, 0, self.at[here]]
+                self.at[here] += self.size
+                self._jump(here, before, self.grid[1, 0, self.at[here]])
+                self._write(here)
+
+    def _write(self, here: Drops | slice) -> None:
+        """Write where contacts are into the path."""
+        at = self.at[here]
+        for row, value in zip(self.path, (1, 0, 2), strict=True):
+            row[at] = self.state[value, here]
+
+    def _jump(self, here: Drops, before: Floats, after: Floats) -> None:
+        """Change the depth of contacts at once, where it becomes another."""
+        jumps = np.abs(after - before) > _SAME * np.maximum(before, after)
+        if not jumps.any():
+            return
+        here, before, after = here[jumps], before[jumps], after[jumps]
+        drops, start, nothing = self.drops[here], self.state[:, here], np.zeros(len(here))
+        ends = (before, nothing, after, nothing), (start[0], nothing, start[0], nothing), (start[2], nothing, nothing)
+        slid = self.memory.slides[drops] != 0
+        self.state[2:, here] = self.memory.advance(drops, Step(*(np.array(one) for one in ends)))
+        self._lose(here, start, slid, before, after)

@@ -117,7 +117,8 @@ class ObliqueMotion:
         rubbed = sphere.tangential_mass * np.abs(sliding.slip[-1] - slip - pull * normal.time[-1])
         contact = contact.changed(_across(sphere, contact))
         contact = contact.changed(_rolling(law, sphere, contact.end, normal.impulse[-1], rubbed))
-        self.finish(drops, contact.end, energy_taken(sphere, before, contact.end), sliding.microslip, row)
+        after = contact.end
+        self.finish(drops, after, energy_taken(sphere, before, after), sliding.microslip, row)
         return contact
 
     def collide_at_once(self, drops: Drops, time: Floats, impulse: Floats, row: dict[str, Floats]) -> Floats:

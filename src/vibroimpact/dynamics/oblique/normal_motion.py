@@ -59,7 +59,9 @@ def normal_motions(leg: Leg, contact: Contact, encounter: Encounter, steps: int)
     member = np.zeros((len(pieces), size), dtype=bool)
     for number, piece in enumerate(pieces):
         member[number, piece.drops] = True
-    kinds, kind_of = np.unique(member, axis=1, return_inverse=True)
+    kinds, kind_of = member[:, :1], np.zeros(size, dtype=np.intp)
+    if not member.all():
+        kinds, kind_of = np.unique(member, axis=1, return_inverse=True)
     found, alone = [], []
     for kind in range(kinds.shape[1]):
         places, parts = np.flatnonzero(kind_of.ravel() == kind), [pieces[number] for number in np.flatnonzero(kinds[:, kind])]
@@ -70,6 +72,9 @@ def normal_motions(leg: Leg, contact: Contact, encounter: Encounter, steps: int)
     found.extend((np.array([place]), _read(leg.of(int(leg.contact_drops[place])), steps)) for place in alone)
     return found
 
+
+_BY_LENGTH = (1, 2, 0, 1)
+"""Powers of the length of a step with which pace, its slope, force and its slope go."""
 
 _ARRAYS = ("time", "pace", "pace_slope", "force", "force_slope", "impulse")
 
@@ -94,16 +99,15 @@ def _of_phase(piece: Piece, encounter: Encounter, places: Drops, steps: int) -> 
         nodes = (pace, rule.derivatives[0] @ pace, force, rule.derivatives[0] @ force)
         if (ends == 1.0).all():
             values, sums = rule.weights_at(grid).T, rule.weights_to_end(grid).T
-            series = [values @ one for one in nodes]
+            series = [(values / steps**power) @ one for one, power in zip(nodes, _BY_LENGTH, strict=True)]
             time, impulse = sums @ (rule.integral @ pace), sums @ (rule.integral @ (force * pace))
         else:  # released within the segment, each drop at a place of its own
             at = grid[:, None] * ends
             values, sums = (weights(at.ravel()).reshape(-1, *at.shape) for weights in (rule.weights_at, rule.weights_to_end))
-            series = [np.einsum("ngb,nb->gb", values, one) for one in nodes]
+            series = [np.einsum("ngb,nb->gb", values, one) * (ends / steps) ** power for one, power in zip(nodes, _BY_LENGTH, strict=True)]
             time, impulse = (np.einsum("ngb,nb->gb", sums, rule.integral @ one) for one in (pace, force * pace))
         time[0] = impulse[0] = 0.0
-        length = ends / steps
-        speed, change, strength, growth = (one * length**power for one, power in zip(series, (1, 2, 0, 1), strict=True))
+        speed, change, strength, growth = series
         found.append(NormalMotion(np.ones(steps), time, speed, change, np.maximum(strength, 0.0), growth, impulse))
         left = left - time[-1]
     return [_reversed(one) for one in reversed(found)] if compressing else found

@@ -30,7 +30,7 @@ _PLACES, _SHARES = 0.5 * (_PLACES + 1.0), 0.5 * _SHARES
 _AT = _PLACES[:, None] ** np.arange(4) @ _HERMITE.T
 _SO_FAR, _RAMP_SO_FAR = _weigh(np.ones(1), np.zeros(3), _PLACES), _weigh(np.array([0.0, 1.0]), np.zeros(3), _PLACES)
 _WHOLE = np.concatenate([_weigh(factor, np.zeros(1), np.ones(1)) for factor in (np.ones(1), np.array([0.0, 1.0]), *_HERMITE[2:])])
-_LATER = np.stack([_PLACES, *_AT.T[2:]]) * _SHARES
+_LATER = np.array([_PLACES, *_AT.T[2:]]) * _SHARES
 
 
 def step_weights(pace: Floats, depth: Floats, power: int) -> tuple[Floats, Floats]:
@@ -84,7 +84,7 @@ def before_and_after(ends: Floats, place: Floats) -> tuple[Floats, Floats]:
     `ends`: those of the step (4, B); `place`: where the first part ends, between 0 and 1 (B,).
     """
     (value, slope), rest = cubic_at(ends, place), 1.0 - place
-    return np.stack([ends[0], ends[1] * place, value, slope * place]), np.stack([value, slope * rest, ends[2], ends[3] * rest])
+    return np.array([ends[0], ends[1] * place, value, slope * place]), np.array([value, slope * rest, ends[2], ends[3] * rest])
 
 
 def slowed(pace: Floats, depth: Floats, near: Floats) -> tuple[Floats, Floats]:
@@ -102,5 +102,5 @@ def slowed(pace: Floats, depth: Floats, near: Floats) -> tuple[Floats, Floats]:
     root = np.sqrt(near)
     first = 2.0 / (1.0 + root)
     last, bend = first * root, -first * (1.0 - root)
-    slower = np.stack([pace[0] * first, pace[1] * first**2 + pace[0] * bend, pace[2] * last, pace[3] * last**2 + pace[2] * bend])
-    return slower, np.stack([depth[0], depth[1] * first, depth[2], depth[3] * last])
+    slower = np.array([pace[0] * first, pace[1] * first**2 + pace[0] * bend, pace[2] * last, pace[3] * last**2 + pace[2] * bend])
+    return slower, np.array([depth[0], depth[1] * first, depth[2], depth[3] * last])

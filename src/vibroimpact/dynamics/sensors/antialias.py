@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.sensors.pole_pairs import PolePairs
+from vibroimpact.dynamics.sensors.pole_pairs import PolePairs, Section
 from vibroimpact.dynamics.sensors.sensor import CORNER, Sensor
 
 HALF_LENGTH = 33
@@ -25,9 +25,6 @@ FINENESS = 8
 """Points per sampling period of tables of the kernel and of its responses."""
 _KAISER = 10.4  # Kaiser's parameter: 102 dB, and with this length a transition band of a tenth of the rate
 _ORDER = 8
-
-Section = tuple[float, float]
-"""A pair of poles, by the coefficients (stiffness, damping) of s^2 + damping s + stiffness."""
 
 
 @dataclass(frozen=True)
@@ -58,6 +55,22 @@ def butterworth(corner: float) -> tuple[Section, ...]:
     omega = 2.0 * math.pi * corner
     angles = (math.pi * (2.0 * number + 1.0) / (2.0 * _ORDER) for number in range(_ORDER // 2))
     return tuple((omega**2, 2.0 * omega * math.sin(angle)) for angle in angles)
+
+
+def gain_at(sensor: Sensor, frequency: float) -> float:
+    """Return the gain of the anti-alias filter of a sensor at a frequency [Hz].
+
+    Examples
+    --------
+    >>> round(gain_at(Sensor("a", filter="butterworth", corner=50.0), 50.0), 6), round(gain_at(Sensor("a"), 50.0), 4)
+    (0.707107, 1.0)
+    """
+    if sensor.filter == "butterworth":
+        return 1.0 / math.sqrt(1.0 + (frequency / (sensor.corner or CORNER * sensor.rate)) ** (2 * _ORDER))
+    if sensor.filter == "none":
+        return 1.0
+    x = np.arange(-HALF_LENGTH * FINENESS, HALF_LENGTH * FINENESS + 1) / FINENESS
+    return abs(float(kernel(x) @ np.cos(2.0 * math.pi * frequency / sensor.rate * x))) / FINENESS
 
 
 def kernel(x: Floats) -> Floats:

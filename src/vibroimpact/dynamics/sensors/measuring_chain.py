@@ -18,8 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.sensors.antialias import Section
-from vibroimpact.dynamics.sensors.pole_pairs import PolePairs
+from vibroimpact.dynamics.sensors.pole_pairs import PolePairs, Section
 from vibroimpact.dynamics.vibrating.oscillators import Oscillators
 
 _POLE_DISTANCE = 1e-6
@@ -96,12 +95,9 @@ def measuring_chain(
     at_modes = PolePairs(plate.angular_frequency**2, plate.damping)
     passed = at_modes.low_pass(sections)
     outputs = np.stack([shape * at_modes.product(at_modes.power(order), passed) for shape, order in zip(shapes, orders, strict=True)])
-    direct = np.zeros((*compliance.shape, 3))
+    direct = compliance[..., None] * np.array([_whole_part(order, sections) for order in orders])
     if not sections:
-        direct[:, np.arange(len(shapes)), orders] = compliance
         direct[:, :, 0] += np.where(np.asarray(orders) == 2, [shapes @ shape for shape in plate.shape], 0.0)
-    elif len(sections) == 1:
-        direct[:, :, 0] = np.where(np.asarray(orders) == 2, sections[0][0] * compliance, 0.0)
     instrument = [
         _section_weights(number, sections, at_port(plate, port), shapes, compliance[port], orders)
         for port in range(len(compliance))
@@ -116,6 +112,14 @@ def measuring_chain(
         compliance,
         tuple(orders),
     )
+
+
+def _whole_part(order: int, sections: Sequence[Section]) -> Floats:
+    """Return the polynomial in s that a derivative behind pairs of poles has beside partial fractions, lowest power first, (3,)."""
+    whole = math.prod(stiffness for stiffness, _ in sections) * np.eye(order + 1)[0]
+    for stiffness, damping in sections:
+        whole, _ = np.polydiv(whole, [1.0, damping, stiffness])
+    return np.asarray(np.pad(whole[::-1], (0, 3 - len(whole))))
 
 
 def at_port(plate: Oscillators, port: int) -> Oscillators:

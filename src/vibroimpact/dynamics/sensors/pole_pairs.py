@@ -16,6 +16,9 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 
+Section = tuple[float, float]
+"""A pair of poles, by the coefficients (stiffness, damping) of s^2 + damping s + stiffness."""
+
 
 @dataclass(frozen=True)
 class PolePairs:
@@ -25,9 +28,11 @@ class PolePairs:
     damping: Floats
 
     def power(self, order: int) -> Floats:
-        """Return the element of the derivative of an order from 0 to 2, that power of A, (2, n)."""
+        """Return the element of the derivative of an order from 0 to 3, that power of A, (2, n)."""
         one, none = np.ones_like(self.stiffness), np.zeros_like(self.stiffness)
-        return np.stack([(one, none), (none, one), (-self.stiffness, -self.damping)][order])
+        squared = (-self.stiffness, -self.damping)
+        cubed = (self.damping * self.stiffness, self.damping**2 - self.stiffness)
+        return np.stack([(one, none), (none, one), squared, cubed][order])
 
     def quadratic(self, stiffness: float, damping: float) -> Floats:
         """Return the polynomial s^2 + damping s + stiffness of another oscillator at these poles, (2, n)."""
@@ -43,7 +48,7 @@ class PolePairs:
         a, b = element
         return np.asarray(np.stack([a - self.damping * b, -b]) / (a * a - self.damping * a * b + self.stiffness * b * b))
 
-    def low_pass(self, sections: Sequence[tuple[float, float]]) -> Floats:
+    def low_pass(self, sections: Sequence[Section]) -> Floats:
         """Return the low-pass of other pairs of poles (stiffness, damping) in series, with unit gain at frequency zero, (2, n)."""
         passed = math.prod(stiffness for stiffness, _ in sections) * self.power(0)
         for section in sections:

@@ -11,10 +11,13 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.problem import Problem
-from vibroimpact.dynamics.sensors.antialias import Section, antialias_of
+from vibroimpact.dynamics.sensors.antialias import antialias_of, gain_at
+from vibroimpact.dynamics.sensors.electronics import amplified, seeds
 from vibroimpact.dynamics.sensors.filtered_chain import filtered_chain
+from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer
 from vibroimpact.dynamics.sensors.measuring_chain import MeasuringChain, measuring_chain
 from vibroimpact.dynamics.sensors.overload import RINGING, Overload, clipped_part, finer_rate, overload
+from vibroimpact.dynamics.sensors.pole_pairs import Section
 from vibroimpact.dynamics.sensors.ports import Ports, ports_of
 from vibroimpact.dynamics.sensors.recording import Signal
 from vibroimpact.dynamics.sensors.sampled import (
@@ -44,8 +47,8 @@ def record(problem: Problem, segments: Sequence[VibratingSegment], sensors: Sequ
     """Return the signals of sensors over a run, by their names.
 
     The chain is that of an instrument: the motion of the modes kept and the quasi-static response of those left out, and the steady
-    motion of a plate on supports that move; the mounted resonance; the range; the anti-alias filter; sampling with noise and resolution.
-    All linear parts are computed in closed form, at the samples only.
+    motion of a plate on supports that move; the instrument; its range; the anti-alias filter; sampling with noise and resolution; amplifier
+    and converter. All linear parts are computed in closed form, at the samples only.
 
     Parameters
     ----------
@@ -67,7 +70,7 @@ def record(problem: Problem, segments: Sequence[VibratingSegment], sensors: Sequ
     ports = ports_of(segments)
     groups: dict[tuple[float, str, float | None, tuple[Section, ...]], list[Sensor]] = {}
     for sensor in sensors:
-        groups.setdefault((sensor.rate, sensor.filter, sensor.corner, _resonance(sensor)), []).append(sensor)
+        groups.setdefault((sensor.rate, sensor.filter, sensor.corner, sensor.sections), []).append(sensor)
     signals: dict[str, Signal] = {}
     for group in groups.values():
         signals |= _recorded(problem, ports, segments, group, end)
@@ -82,8 +85,8 @@ def _check(problem: Problem, sensors: Sequence[Sensor], end: float) -> None:
     for sensor in sensors:
         if modes is not None and sensor.name not in modes.points:
             raise InputError(f'the modes of the plate do not know a point "{sensor.name}"', "sensors")
-        meter = sensor.accelerometer
-        rate = sensor.rate if meter is None or meter.range is None else finer_rate(sensor.rate, meter.resonance)
+        meter = _limited(sensor)
+        rate = sensor.rate if meter is None else finer_rate(sensor.rate, meter.resonance)
         count = sample_count(end, rate) * (len(sensors) if rate == sensor.rate else 1)
         if count > MOST_SAMPLES:
             why = "" if rate == sensor.rate else ", at which the clipping of its range is followed,"
@@ -97,21 +100,18 @@ def _plate(problem: Problem, ports: Ports) -> Oscillators:
     return Oscillators(frequencies, ratios, ports.shapes)
 
 
-def _resonance(sensor: Sensor) -> tuple[Section, ...]:
-    """Return the poles of the mounted resonance, if the sensor has one."""
-    meter = sensor.accelerometer
-    if meter is None or meter.resonance is None:
-        return ()
-    omega = 2.0 * np.pi * meter.resonance
-    return ((omega**2, 2.0 * meter.damping_ratio * omega),)
+def _limited(sensor: Sensor) -> Accelerometer | None:
+    """Return the accelerometer of a sensor if it has a range."""
+    meter = sensor.instrument
+    return meter if isinstance(meter, Accelerometer) and meter.range is not None else None
 
 
 def _recorded(
     problem: Problem, ports: Ports, segments: Sequence[VibratingSegment], group: Sequence[Sensor], end: float
 ) -> dict[str, Signal]:
-    """Return the signals of sensors with the same rate, resonance and filter."""
+    """Return the signals of sensors with the same rate, filter and poles of their instruments."""
     sensor, motion, count = group[0], problem.motion, sample_count(end, group[0].rate)
-    antialias, poles = antialias_of(sensor), (*_resonance(sensor), *antialias_of(sensor).sections)
+    antialias, poles = antialias_of(sensor), (*sensor.sections, *antialias_of(sensor).sections)
     values, uncertainties = np.zeros((len(group), count)), np.zeros(len(group))
     if problem.plate.modes is not None:
         values, uncertainties = _excited(problem, ports, segments, group, count)
@@ -120,7 +120,7 @@ def _recorded(
     before = 0 if motion is None else RINGING  # a filter still holds what was cut off before the run
     signals = {}
     for number, one in enumerate(group):
-        value, meter, facts = values[number], one.accelerometer, {"uncertainty": float(uncertainties[number])}
+        value, meter, facts = values[number], _limited(one), {"uncertainty": float(uncertainties[number])}
         if meter is not None and meter.range is not None:
             found = _overload(problem, ports, segments, one, before, end)
             if one.filter == "none":
@@ -136,26 +136,27 @@ def _excited(
     problem: Problem, ports: Ports, segments: Sequence[VibratingSegment], group: Sequence[Sensor], count: int
 ) -> tuple[Floats, Floats]:
     """Return samples of the vibration that impacts excite (S, count), and how far the modes left out may change each (S,)."""
-    sensor, bare = group[0], _chain(problem, ports, group, _resonance(group[0]))
+    sensor, bare = group[0], _chain(problem, ports, group, group[0].sections)
     antialias, rate = antialias_of(sensor), sensor.rate
     # a converter's filter is applied in closed form; an analogue one is a part of the chain, sampled at instants
     if antialias.half_length:
         known = filtered_chain(bare, rate, longest_span(segments, rate))
         values = sample_filtered(known, ports, segments, count)
     else:
-        chain = _chain(problem, ports, group, (*_resonance(sensor), *antialias.sections))
+        chain = _chain(problem, ports, group, (*sensor.sections, *antialias.sections))
         values = sample_at_instants(chain, ports, rate, segments, count)
         rate *= 1 if antialias.sections else _WIDER
         known = filtered_chain(bare, rate, longest_span(segments, rate))
     # the error by the modes left out, from a model of the next octave
-    left_out = filtered_chain(_next_octave_chain(bare, _resonance(sensor)), rate, longest_span(segments, rate))
+    steeper = 2.0 ** np.array([[one.steepness] for one in group])
+    left_out = filtered_chain(_next_octave_chain(bare, steeper, sensor.sections), rate, longest_span(segments, rate))
     norm, left_out_norm = (np.linalg.norm(outputs_around_first_contact(one, ports, segments), axis=1) for one in (known, left_out))
     return values, left_out_norm / np.where(norm > 0.0, norm, np.inf)
 
 
 def _overload(problem: Problem, ports: Ports, segments: Sequence[VibratingSegment], sensor: Sensor, before: int, end: float) -> Overload:
     """Return what of the signal of a sensor lies beyond its range, from so many of its samples before the run on."""
-    meter, ahead = sensor.accelerometer, antialias_of(sensor).half_length / sensor.rate
+    meter, ahead = _limited(sensor), antialias_of(sensor).half_length / sensor.rate
     assert meter is not None
     assert meter.range is not None
     rate = finer_rate(sensor.rate, meter.resonance)
@@ -163,10 +164,10 @@ def _overload(problem: Problem, ports: Ports, segments: Sequence[VibratingSegmen
     value = np.zeros(begin + length)
     if problem.motion is not None:
         samples = range(-begin, length)
-        value += steady_outputs(problem.motion, problem.plate.modes, [sensor], _resonance(sensor), rate, samples, True)[0]
+        value += steady_outputs(problem.motion, problem.plate.modes, [sensor], sensor.sections, rate, samples, True)[0]
         level = max(meter.range - float(np.abs(value).max()), 0.0)
     if problem.plate.modes is not None:
-        alone = _chain(problem, ports, [sensor], _resonance(sensor))
+        alone = _chain(problem, ports, [sensor], sensor.sections)
         value[begin:] += sample_filtered_chain(alone, ports, rate, segments, length, np.array([level]))[0]
     return overload(value, rate, begin, end, meter.range)
 
@@ -174,30 +175,34 @@ def _overload(problem: Problem, ports: Ports, segments: Sequence[VibratingSegmen
 def _chain(problem: Problem, ports: Ports, group: Sequence[Sensor], sections: Sequence[Section]) -> MeasuringChain:
     """Return the chain from the contact forces to sensors, through pairs of poles."""
     bases = bases_of_plate(problem)
-    shapes = np.stack([np.concatenate([basis.points[one.name] for basis in bases]) @ np.asarray(one.direction) for one in group])
-    compliance = np.array([[part.get(one.name, _NONE) @ np.asarray(one.direction) for one in group] for part in ports.residuals])
+    shapes = np.stack([np.concatenate([basis.points[one.name] for basis in bases]) @ np.asarray(one.components) for one in group])
+    compliance = np.array([[part.get(one.name, _NONE) @ np.asarray(one.components) for one in group] for part in ports.residuals])
     return measuring_chain(_plate(problem, ports), shapes, compliance, [one.order for one in group], sections)
 
 
-def _next_octave_chain(chain: MeasuringChain, resonance: Sequence[Section]) -> MeasuringChain:
+def _next_octave_chain(chain: MeasuringChain, steeper: Floats, poles: Sequence[Section]) -> MeasuringChain:
     """Return the chain of the modes left out of the next octave, beyond their quasi-static response, as an estimate.
 
     They are modelled on the last octave kept, at twice the frequencies; twice as many are assumed, as for the bending of a plate.
     """
     plate = chain.plate
     last = np.flatnonzero(plate.angular_frequency > 0.5 * plate.angular_frequency.max())
-    above, shapes_above = plate.pick(last), 2.0 * chain.shapes[:, last]
+    above, shapes_above = plate.pick(last), 2.0 * steeper * chain.shapes[:, last]
     above = replace(above, angular_frequency=2.0 * above.angular_frequency)
     static = -(shapes_above * above.shape[:, None] / above.angular_frequency**2).sum(axis=2)
-    return measuring_chain(above, shapes_above, static, chain.orders, resonance)
+    return measuring_chain(above, shapes_above, static, chain.orders, poles)
 
 
 def _digitised(sensor: Sensor, value: Floats) -> Floats:
-    """Return samples with the noise and the resolution of an accelerometer."""
-    meter = sensor.accelerometer
-    if meter is None:
-        return value
-    if meter.noise:
-        seed = [zlib.crc32(sensor.name.encode()), *np.atleast_1d(meter.seed).tolist()]
-        value = value + meter.noise * np.random.default_rng(seed).standard_normal(len(value))
-    return value if meter.resolution is None else meter.resolution * np.round(value / meter.resolution)
+    """Return samples with what is not linear: noise and resolution of an accelerometer; and with gain, amplifier and converter."""
+    meter, amplifier = sensor.instrument, sensor.amplifier
+    if isinstance(meter, Accelerometer):
+        if meter.noise:
+            seed = [zlib.crc32(sensor.name.encode()), *seeds(meter.seed)]
+            value = value + meter.noise * np.random.default_rng(seed).standard_normal(len(value))
+        value = value if meter.resolution is None else meter.resolution * np.round(value / meter.resolution)
+    if meter is not None:
+        value = meter.gain * value
+    if amplifier is not None:
+        value = amplified(amplifier, sensor.name, value, sensor.rate, gain_at(sensor, amplifier.mains))
+    return value if sensor.converter is None else sensor.converter.read(value)

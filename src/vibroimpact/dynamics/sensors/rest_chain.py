@@ -19,9 +19,8 @@ from functools import reduce
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.sensors.antialias import Section
 from vibroimpact.dynamics.sensors.measuring_chain import MeasuringChain, at_port, point_receptance, section_outputs
-from vibroimpact.dynamics.sensors.pole_pairs import PolePairs
+from vibroimpact.dynamics.sensors.pole_pairs import PolePairs, Section
 from vibroimpact.dynamics.sensors.pulses import Pulses, gauss_rule
 from vibroimpact.dynamics.vibrating.oscillators import Oscillators
 from vibroimpact.dynamics.vibrating.rest_motion import RestMotion

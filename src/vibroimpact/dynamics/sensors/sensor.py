@@ -1,48 +1,20 @@
-"""A sensor on the plate: position, quantity, sampling, and the properties of an accelerometer."""
+"""A sensor on the plate: position, quantity, sampling, instrument and electronics."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Literal
+from dataclasses import dataclass, replace
 
+from vibroimpact.dynamics.sensors.electronics import Amplifier, Converter, seeds
+from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer
+from vibroimpact.dynamics.sensors.instruments.instrument import MOTIONS, UNITS, Direction, Instrument, Quantity
+from vibroimpact.dynamics.sensors.instruments.strain_gauge import StrainGauge
+from vibroimpact.dynamics.sensors.pole_pairs import Section
 from vibroimpact.errors import InputError, did_you_mean
 
 FILTERS = ("sigma-delta", "butterworth", "none")
 """The anti-alias filters that a sensor may have."""
 
 CORNER = 0.4  # default corner of a Butterworth filter, relative to the rate
-
-Quantity = Literal["displacement", "velocity", "acceleration"]
-_ORDERS: dict[Quantity, int] = {"displacement": 0, "velocity": 1, "acceleration": 2}
-"""Order of the derivative of the displacement that each quantity is."""
-
-
-@dataclass(frozen=True)
-class Accelerometer:
-    """Properties of an accelerometer beyond the acceleration of its base.
-
-    Parameters
-    ----------
-    resonance : float, optional
-        Its mounted resonance [Hz], > 0; without one it follows its base exactly.
-    damping_ratio : float, default 0.02
-        Of that resonance [-].
-    range : float, optional
-        Largest magnitude of its output [m/s^2], at which it is clipped before the anti-alias filter.
-    noise : float, default 0
-        Standard deviation of white noise in its samples [m/s^2]; the same in every run of one seed.
-    resolution : float, optional
-        Step of its readings [m/s^2].
-    seed : int or tuple of int, default 0
-        Of the noise; sensors of different names have noise of their own.
-    """
-
-    resonance: float | None = None
-    damping_ratio: float = 0.02
-    range: float | None = None
-    noise: float = 0.0
-    resolution: float | None = None
-    seed: int | tuple[int, ...] = 0
 
 
 @dataclass(frozen=True)
@@ -54,33 +26,42 @@ class Sensor:
     name : str
         Name of the point in the modes of the plate.
     quantity : str, default "acceleration"
-        "displacement" [m], "velocity" [m/s] or "acceleration" [m/s^2].
+        "displacement" [m], "velocity" [m/s] or "acceleration" [m/s^2]; or what the instrument puts out.
     direction : tuple of three floats, default (0, 0, 1)
         Unit vector of the measured component; upwards by default.
     rate : float, default 50e3
         Samples per second [Hz], > 0.
-    accelerometer : Accelerometer, optional
-        The instrument; without one the signal is the motion of the point.
+    instrument : Instrument, optional
+        The instrument, such as an `Accelerometer` or a `Geophone`; without one the signal is the motion of the point.
     filter : str, default "sigma-delta"
         Anti-alias filter, against frequencies above half the rate: "sigma-delta", "butterworth" or "none"; see `antialias_of`.
     corner : float, optional
         Frequency at which a Butterworth filter passes half of the power [Hz]; 0.4 of the rate by default.
+    amplifier : Amplifier, optional
+        The amplifier behind the instrument.
+    converter : Converter, optional
+        What reads it.
 
     Raises
     ------
     InputError
-        If there is no such filter, it takes no corner, or the corner is not below half the rate.
+        If the instrument puts out another quantity, there is no such filter, it takes no corner, or the corner is not below half the rate.
     """
 
     name: str
     quantity: Quantity = "acceleration"
-    direction: tuple[float, float, float] = (0.0, 0.0, 1.0)
+    direction: Direction = (0.0, 0.0, 1.0)
     rate: float = 50e3
-    accelerometer: Accelerometer | None = None
+    instrument: Instrument | None = None
     filter: str = "sigma-delta"
     corner: float | None = None
+    amplifier: Amplifier | None = None
+    converter: Converter | None = None
 
     def __post_init__(self) -> None:
+        if self.instrument is not None and self.quantity != self.instrument.quantity:
+            words = f"the instrument puts out {self.instrument.quantity}, and not {self.quantity}"
+            raise InputError(f'{words}; take quantity = "{self.instrument.quantity}"', "quantity")
         if self.filter not in FILTERS:
             known = ", ".join(f'"{name}"' for name in FILTERS)
             raise InputError(f'there is no filter "{self.filter}"; there are {known}.{did_you_mean(self.filter, FILTERS)}', "filter")
@@ -95,12 +76,41 @@ class Sensor:
     @property
     def unit(self) -> str:
         """The SI unit."""
-        return {"displacement": "m", "velocity": "m/s", "acceleration": "m/s2"}[self.quantity]
+        return UNITS[self.quantity]
 
     @property
     def order(self) -> int:
         """Order of the derivative of the displacement that it takes."""
-        return _ORDERS[self.quantity]
+        return MOTIONS[self.quantity] if self.instrument is None else self.instrument.order
+
+    @property
+    def sections(self) -> tuple[Section, ...]:
+        """The pairs of poles of the instrument."""
+        return () if self.instrument is None else self.instrument.sections
+
+    @property
+    def components(self) -> Direction:
+        """Weights of the three numbers that a mode has at the sensor: displacements, or strains."""
+        return self.direction if self.instrument is None else self.instrument.components(self.direction)
+
+    @property
+    def sees_strain(self) -> bool:
+        """Whether it sees the strain of the plate, and not its motion."""
+        return isinstance(self.instrument, StrainGauge)
+
+    @property
+    def steepness(self) -> float:
+        """Power of the frequency by which what it sees grows in modes of the same deflection."""
+        return 0.0 if self.instrument is None else self.instrument.steepness
+
+    def of_drop(self, number: int) -> Sensor:
+        """Return the sensor with noise and hum of its own for a drop of a study, by its number."""
+        instrument, amplifier = self.instrument, self.amplifier
+        if isinstance(instrument, Accelerometer):
+            instrument = replace(instrument, seed=(*seeds(instrument.seed), number))
+        if amplifier is not None:
+            amplifier = replace(amplifier, seed=(*seeds(amplifier.seed), number))
+        return replace(self, instrument=instrument, amplifier=amplifier)
 
 
 def sample_count(duration: float, rate: float) -> int:

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vibroimpact.arrays import Complex, Floats
-from vibroimpact.dynamics.sensors.antialias import HALF_LENGTH, Section
+from vibroimpact.dynamics.sensors.antialias import HALF_LENGTH
 from vibroimpact.dynamics.sensors.filtered_chain import filter_gains
-from vibroimpact.dynamics.sensors.pole_pairs import PolePairs
+from vibroimpact.dynamics.sensors.pole_pairs import PolePairs, Section
 from vibroimpact.dynamics.sensors.sampled import blocks_of
 from vibroimpact.dynamics.sensors.sensor import Sensor
 from vibroimpact.dynamics.shaken.statement import PlateMotion
@@ -72,7 +72,7 @@ def steady_outputs(
 
 
 def _phasors(motion: PlateMotion, modes: ModalBasis | None, sensor: Sensor) -> Complex:
-    """Return the phasors of the motion of a sensor in space along its direction [m] (k,): of the supports, and relative to them."""
-    along = np.asarray(sensor.direction)
-    supports = float(along @ motion.direction) * motion.phasors
+    """Return the phasors of what a sensor sees (k,): its motion in space along its direction [m], or the strain [m/m]."""
+    along = np.asarray(sensor.components)
+    supports = (0.0 if sensor.sees_strain else float(along @ motion.direction)) * motion.phasors  # which move the plate as a whole
     return supports if modes is None else np.asarray(supports + modes.points[sensor.name] @ along @ steady_modes(motion, modes))

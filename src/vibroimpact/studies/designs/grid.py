@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from math import prod
 
-from vibroimpact.studies.axes import Axis
-from vibroimpact.studies.design import Design
+from vibroimpact.studies.design import Asked, Design
 from vibroimpact.studies.plan import Plan
 
 
-def size(axes: Mapping[str, Axis], samples: int) -> int:
+def size(asked: Asked) -> int:
     """Return the number of combinations."""
-    return prod(map(len, axes.values()))
+    return prod(map(len, asked.axes.values()))
 
 
-def plan(axes: Mapping[str, Axis], samples: int, seed: int) -> Plan:
+def plan(asked: Asked) -> Plan:
     """Return the points of the grid."""
-    return Plan("grid", {key: axis.levels() for key, axis in axes.items()}, True)
+    return Plan("grid", {key: axis.levels() for key, axis in asked.axes.items()}, True)
 
 
 DESIGN = Design("grid", "all combinations of the values", False, size, plan)

@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
-from vibroimpact.studies.axes import Axis
-from vibroimpact.studies.design import Design, generator
+from vibroimpact.studies.design import Asked, Design, generator
 from vibroimpact.studies.plan import Plan
 
 
-def size(axes: Mapping[str, Axis], samples: int) -> int:
+def size(asked: Asked) -> int:
     """Return the number of samples."""
-    return samples
+    return asked.samples
 
 
-def plan(axes: Mapping[str, Axis], samples: int, seed: int) -> Plan:
+def plan(asked: Asked) -> Plan:
     """Return the points: on each axis one in each of `samples` equally likely intervals, paired at random.
 
     Each axis is sampled separately from its own random stream, which avoids a second copy of all samples in memory.
@@ -22,8 +19,8 @@ def plan(axes: Mapping[str, Axis], samples: int, seed: int) -> Plan:
     from scipy.stats import qmc
 
     columns = {
-        key: axis.quantiles(qmc.LatinHypercube(1, rng=generator(seed, place)).random(samples)[:, 0])
-        for place, (key, axis) in enumerate(axes.items())
+        key: axis.quantiles(qmc.LatinHypercube(1, rng=generator(asked.seed, place)).random(asked.samples)[:, 0])
+        for place, (key, axis) in enumerate(asked.axes.items())
     }
     return Plan("latin-hypercube", columns, False)
 

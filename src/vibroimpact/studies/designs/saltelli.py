@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
 
 from vibroimpact.errors import InputError
-from vibroimpact.studies.axes import Axis
-from vibroimpact.studies.design import Design, drawn_plan, generator
+from vibroimpact.studies.design import Asked, Design, drawn_plan, generator
 from vibroimpact.studies.designs.sobol import check_power_of_two
 from vibroimpact.studies.plan import Plan
 
 
-def size(axes: Mapping[str, Axis], samples: int) -> int:
+def size(asked: Asked) -> int:
     """Return the number of points: `samples` in each of 2 + axes blocks.
 
     Raises
@@ -21,13 +18,13 @@ def size(axes: Mapping[str, Axis], samples: int) -> int:
     InputError
         If the number of samples is not a power of two, or there is only one axis.
     """
-    check_power_of_two(samples)
-    if len(axes) < 2:
+    check_power_of_two(asked.samples)
+    if len(asked.axes) < 2:
         raise InputError("there is one key alone, so that everything depends on it; sweep two or more", "over")
-    return samples * (2 + len(axes))
+    return asked.samples * (2 + len(asked.axes))
 
 
-def plan(axes: Mapping[str, Axis], samples: int, seed: int) -> Plan:
+def plan(asked: Asked) -> Plan:
     """Return the points: block A, block B, and for each axis block A with the values of B on that axis.
 
     References
@@ -36,7 +33,8 @@ def plan(axes: Mapping[str, Axis], samples: int, seed: int) -> Plan:
     """
     from scipy.stats import qmc
 
-    both = qmc.Sobol(2 * len(axes), rng=generator(seed)).random(samples)
+    axes = asked.axes
+    both = qmc.Sobol(2 * len(axes), rng=generator(asked.seed)).random(asked.samples)
     a, b = both[:, : len(axes)], both[:, len(axes) :]
     blocks = [a, b]
     for place in range(len(axes)):

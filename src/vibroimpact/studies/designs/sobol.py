@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 from vibroimpact.errors import InputError
-from vibroimpact.studies.axes import Axis
-from vibroimpact.studies.design import Design, drawn_plan, generator
+from vibroimpact.studies.design import Asked, Design, drawn_plan, generator
 from vibroimpact.studies.plan import Plan
 
 
-def size(axes: Mapping[str, Axis], samples: int) -> int:
+def size(asked: Asked) -> int:
     """Return the number of samples.
 
     Raises
@@ -18,8 +15,8 @@ def size(axes: Mapping[str, Axis], samples: int) -> int:
     InputError
         If it is not a power of two, for which alone the sequence is balanced.
     """
-    check_power_of_two(samples)
-    return samples
+    check_power_of_two(asked.samples)
+    return asked.samples
 
 
 def check_power_of_two(samples: int) -> None:
@@ -31,11 +28,11 @@ def check_power_of_two(samples: int) -> None:
         )
 
 
-def plan(axes: Mapping[str, Axis], samples: int, seed: int) -> Plan:
+def plan(asked: Asked) -> Plan:
     """Return the points of the sequence."""
     from scipy.stats import qmc
 
-    return drawn_plan("sobol", axes, qmc.Sobol(len(axes), rng=generator(seed)).random(samples))
+    return drawn_plan("sobol", asked.axes, qmc.Sobol(len(asked.axes), rng=generator(asked.seed)).random(asked.samples))
 
 
 DESIGN = Design("sobol", "a Sobol sequence, evenly spread in all axes together", True, size, plan)

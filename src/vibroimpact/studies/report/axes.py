@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from vibroimpact.studies.population import CLASS
 from vibroimpact.studies.study import Study
 
 _WORDS = {
@@ -84,8 +85,9 @@ class StudyAxis:
 
 
 def study_axes(study: Study) -> list[StudyAxis]:
-    """Return the axes of a study in order."""
-    return [_axis(key, *study.meanings[key], _as_numbers(values)) for key, values in study.coordinates.items()]
+    """Return the axes of a study in order; the class of a population comes first."""
+    named = {CLASS: study.labels[CLASS]} if CLASS in study.labels else {}
+    return [_axis(key, *study.meanings[key], _as_numbers(values)) for key, values in {**named, **study.coordinates}.items()]
 
 
 def _axis(key: str, unit: str, meaning: str, values: NDArray[Any]) -> StudyAxis:

@@ -9,6 +9,7 @@ from vibroimpact.report.page import render_page, replace_report_files
 from vibroimpact.results.csv_files import write_csv
 from vibroimpact.studies.design import find_design
 from vibroimpact.studies.report.axes import study_axes
+from vibroimpact.studies.report.card import CARD, data_card
 from vibroimpact.studies.report.charts import study_charts
 from vibroimpact.studies.report.labels import drops_text
 from vibroimpact.studies.report.outputs import Output, drawn_outputs, study_outputs
@@ -37,7 +38,7 @@ PAGE, SPREADS, SENSITIVITY = "report.html", "percentiles.csv", "sensitivity.csv"
 
 
 def write_study_report(study: Study, folder: Path) -> None:
-    """Write `percentiles.csv`, `sensitivity.csv` if there are sensitivities, and `report.html`.
+    """Write `percentiles.csv`, `sensitivity.csv` if there are sensitivities, `card.md` of a population, and `report.html`.
 
     All files are written to a temporary folder and then moved into place one by one.
 
@@ -53,7 +54,7 @@ def write_study_report(study: Study, folder: Path) -> None:
     InputError
         If the folder can't be written.
     """
-    replace_report_files(folder, partial(_write, study), stale=(SENSITIVITY,))
+    replace_report_files(folder, partial(_write, study), stale=(SENSITIVITY, CARD))
 
 
 def _write(study: Study, folder: Path) -> None:
@@ -63,6 +64,8 @@ def _write(study: Study, folder: Path) -> None:
     if found is not None and found.rows:
         table = sensitivity_rows(found)
         write_csv(table, list(table[0]), folder / SENSITIVITY)
+    if study.labels:
+        (folder / CARD).write_text(data_card(study), encoding="utf-8")
     (folder / PAGE).write_text(_page(study, outputs, found), encoding="utf-8")
 
 

@@ -14,7 +14,7 @@ from vibroimpact.charts.marks import Band, Line
 from vibroimpact.charts.palette import series
 from vibroimpact.files.plain_names import plain_names
 from vibroimpact.shown import shortened, visible
-from vibroimpact.studies.drop_variables import SIGNAL
+from vibroimpact.studies.drop_variables import SIGNAL, SIGNAL_START
 from vibroimpact.studies.report.labels import BAND, drops_text
 from vibroimpact.studies.report.outputs import drop_numbers, sampled_output, sampled_places
 from vibroimpact.studies.study import Study
@@ -45,7 +45,7 @@ def _signal_chart(study: Study, sensor: str, name: str) -> Chart | None:
     variable = f"{SIGNAL}{sensor}"
     most = max(_FEW, int(_BYTES / (8 * study.shapes[variable][-1])))
     signals, numbers = sampled_output(study, variable, most), drop_numbers(study, *sampled_places(study, most))
-    touch = _first_touches(study, most)
+    touch = _first_touches(study, sensor, most)
     there = np.isfinite(signals).all(axis=1) & np.isfinite(touch)
     signals, numbers, touch = signals[there], numbers[there], touch[there]
     if not len(signals) or not np.abs(signals).max() > 0.0:
@@ -66,8 +66,11 @@ def _signal_chart(study: Study, sensor: str, name: str) -> Chart | None:
     return Chart(name, f"Sensor {shortened(visible(sensor), 60)}", ((band,), (lower,)), caption, 2.6)
 
 
-def _first_touches(study: Study, most: int) -> Floats:
-    """Return the time of first touch of each drop; zeros where the dataset does not have it."""
+def _first_touches(study: Study, sensor: str, most: int) -> Floats:
+    """Return the time of first touch of each drop since its first sample; zeros where the dataset does not have it."""
+    start = f"{sensor}{SIGNAL_START}"
+    if "first_time_s" in study.shapes and start in study.shapes:
+        return sampled_output(study, "first_time_s", most) - sampled_output(study, start, most)
     if "first_time_s" in study.shapes:
         return sampled_output(study, "first_time_s", most)
     return np.zeros(len(drop_numbers(study, *sampled_places(study, most))))

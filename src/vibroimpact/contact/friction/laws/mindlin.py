@@ -144,7 +144,12 @@ class Spring:
         """Return the rate of the displacement above which springs slide on, from that of the depth."""
         return (2.0 / 3.0) * deepening
 
-    def turns(self, drops: Drops | slice, step: Step) -> tuple[Drops, Floats, Floats]:
+    def slide(self, drops: Drops, depth: Floats, displacement: Floats, integral: Floats) -> Floats:
+        """Let springs begin that have slid so far; see `Memory`."""
+        slides = self.slides[drops] = np.sign(integral)
+        return self._with_derivatives(integral, slides, *depth)
+
+    def turns(self, drops: Drops, step: Step) -> tuple[Drops, Floats, Floats]:
         """Return which springs begin or cease to slide, and where; see `Memory`."""
         integral = self.stuck(step)
         (start, deepening_before, depth, deepening), sign = step.depth, np.sign(integral)
@@ -175,9 +180,9 @@ class Spring:
         """Return integrals with their derivatives by displacement and by depth (3, b)."""
         radius, sticks = np.sqrt(depth), slides == 0.0
         by_depth = np.where(sticks, self.growth(deepening) * _over(integral, depth), slides * radius)
-        return np.stack([integral, np.where(sticks, radius, 0.0), by_depth])
+        return np.array([integral, np.where(sticks, radius, 0.0), by_depth])
 
-    def advance(self, drops: Drops | slice, step: Step) -> Floats:
+    def advance(self, drops: Drops, step: Step) -> Floats:
         """Stretch the springs, or slide; return the integral and its derivatives. See `Memory`."""
         slides, most = self.slides[drops], (2.0 / 3.0) * step.depth[2] ** 1.5
         integral = np.where(slides == 0.0, np.clip(self.stuck(step), -most, most), slides * most)
@@ -189,7 +194,7 @@ class RescaledSpring(Spring):
 
     power: ClassVar[int] = -1
 
-    def turns(self, drops: Drops | slice, step: Step) -> tuple[Drops, Floats, Floats]:
+    def turns(self, drops: Drops, step: Step) -> tuple[Drops, Floats, Floats]:
         """Return which springs begin or cease to slide or to shrink, and where; see `Memory`."""
         some, found, _ = super().turns(drops, step)
         places, every = np.full(step.depth.shape[1], np.inf), self.every[drops]

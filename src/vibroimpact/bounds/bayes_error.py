@@ -1,0 +1,90 @@
+"""Bayes error of a population: the share of wrong answers of the best classifier there can be, from what is measured of each fall."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from vibroimpact.arrays import Floats, Integers
+
+_AT_ONCE = 4_000_000  # pairs of falls in memory
+
+
+class BayesError(NamedTuple):
+    """Bounds of a Bayes error.
+
+    Attributes
+    ----------
+    lower, upper : float
+        Between these it lies, but for the errors of sampling.
+    standard_error : float
+        Of the upper bound, from the number of falls tested.
+    neighbours : float
+        Median number of falls that are as likely as the one tested; a bracket is wide where there are few.
+    """
+
+    lower: float
+    upper: float
+    standard_error: float
+    neighbours: float
+
+
+def bayes_error(measured: Floats, noise: Floats, classes: Integers, tested: int = 2000, seed: int = 0) -> BayesError:
+    r"""Return bounds of the Bayes error of telling the class of a fall from what is measured of it.
+
+    The posterior of the classes, given a noisy measurement y of fall i, follows from all other falls j of the population, which are draws
+    of the prior:
+
+    .. math:: P(c \mid y) \propto \sum_{j \ne i,\; c_j = c} \prod_k \mathcal{N}(y_k;\, s_{jk}, \sigma_{jk})
+
+    The mean of :math:`1 - \max_c P(c \mid y)` is below the Bayes error, as each posterior is fitted to its own neighbours; the share of
+    falls whose most likely class is wrong is not below it, as no decision is better than that of Bayes (Devroye, Györfi and Lugosi, A
+    Probabilistic Theory of Pattern Recognition, 1996, chapter 2). Both tend to it as falls are added.
+
+    Parameters
+    ----------
+    measured : array, shape (falls, quantities)
+        What is measured, without noise.
+    noise : array, shape (falls, quantities)
+        Standard deviation of the noise of each.
+    classes : array of int, shape (falls,)
+        Class of each fall.
+    tested : int, default 2000
+        Number of falls, drawn at random, for which the posterior is computed.
+    seed : int, default 0
+        Of the noise, and of the falls tested.
+
+    Examples
+    --------
+    Two normal distributions of unit variance, 2 apart, half of which is noise: the error is that beyond 1 standard deviation, 0.159.
+
+    >>> rng = np.random.default_rng(1)
+    >>> classes = np.repeat([0, 1], 20_000)
+    >>> clean = 2.0 * classes[:, None] + np.sqrt(0.5) * rng.standard_normal((40_000, 1))
+    >>> found = bayes_error(clean, np.full_like(clean, np.sqrt(0.5)), classes)
+    >>> abs(found.lower - 0.1587) < 0.01, abs(found.upper - 0.1587) < 3 * found.standard_error
+    (True, True)
+    """
+    rng = np.random.default_rng(seed)
+    number = len(classes)
+    chosen = rng.choice(number, min(tested, number), replace=False)
+    noisy = measured[chosen] + noise[chosen] * rng.standard_normal((len(chosen), measured.shape[1]))
+    names, codes = np.unique(classes, return_inverse=True)
+    of_class = np.eye(len(names))[codes]
+    lower, wrong, neighbours = [], [], []
+    step = max(1, _AT_ONCE // number)
+    for begin in range(0, len(chosen), step):
+        part, y = chosen[begin : begin + step], noisy[begin : begin + step]
+        logarithm = np.zeros((len(part), number))
+        for clean, deviation, value in zip(measured.T, noise.T, y.T, strict=True):
+            logarithm -= 0.5 * ((value[:, None] - clean) / deviation) ** 2 + np.log(deviation)
+        logarithm[np.arange(len(part)), part] = -np.inf  # a fall is no neighbour of itself
+        weight = np.exp(logarithm - logarithm.max(axis=1, keepdims=True))
+        posterior = weight @ of_class / weight.sum(axis=1, keepdims=True)
+        lower.append(1.0 - posterior.max(axis=1))
+        wrong.append(posterior.argmax(axis=1) != codes[part])
+        neighbours.append(weight.sum(axis=1) ** 2 / (weight**2).sum(axis=1))
+    upper = float(np.concatenate(wrong).mean())
+    deviation = float(np.sqrt(max(upper * (1.0 - upper), 0.25 / len(chosen)) / len(chosen)))
+    return BayesError(min(float(np.concatenate(lower).mean()), upper), upper, deviation, float(np.median(np.concatenate(neighbours))))

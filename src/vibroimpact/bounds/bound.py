@@ -1,0 +1,139 @@
+"""The bound of a population: the Bayes error for what may be measured of a fall, and what is learned of the rock."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.bounds.bayes_error import BayesError, bayes_error
+from vibroimpact.bounds.falls import Falls, falls_of_study, falls_of_sweep
+from vibroimpact.bounds.observations import OBSERVATIONS, Channel, Observation, measurable
+from vibroimpact.errors import InputError
+from vibroimpact.studies.study import Study
+from vibroimpact.studies.sweep import Sweep
+
+BANDWIDTHS = np.array([1e3, 2e3, 4e3, 8e3, 16e3, 32e3])
+SIGNAL_TO_NOISE = np.array([0.0, 10.0, 20.0, 30.0, 40.0, 60.0])
+"""Bandwidths [Hz] and ratios of signal to noise [dB] over which the error from one impact is mapped."""
+
+PROPERTIES = ("radius", "density", "modulus", "speed")
+"""What a bound says of the rock, besides its class."""
+
+_MAPPED = OBSERVATIONS[2]
+_TESTED, _TESTED_OF_MAP, _FALLS_OF_MAP = 2000, 500, 8000
+
+
+@dataclass(frozen=True, eq=False)
+class Bound:
+    """What a population lets any classifier tell.
+
+    Parameters
+    ----------
+    name : str
+        Title of the population.
+    falls : Falls
+        Its falls.
+    channel : Channel
+        What hears them.
+    errors : dict of str to BayesError
+        The Bayes error, by the name of what is measured.
+    majority : float
+        Error of naming the more frequent class always.
+    remaining : dict of str to array
+        Of each of `PROPERTIES`, the standard deviation of its logarithm that remains after the best linear estimate from what is measured,
+        over that before.
+    map : array, shape (bandwidths, ratios)
+        The Bayes error from one impact over `BANDWIDTHS` and `SIGNAL_TO_NOISE`: the upper bounds.
+    """
+
+    name: str
+    falls: Falls
+    channel: Channel
+    errors: dict[str, BayesError]
+    majority: float
+    remaining: dict[str, Floats]
+    map: Floats
+
+
+def bound_of(
+    population: Study | Sweep, channel: Channel | None = None, seed: int = 0, progress: Callable[[float], None] | None = None
+) -> Bound:
+    """Return what a population lets any classifier tell, before there is one.
+
+    A sensor hears the contact force through the plate, a linear system that is the same whatever falls. What it records of an impact is
+    therefore no better than the force itself, and the force of a sphere is a pulse of an impulse and a duration.
+
+    Parameters
+    ----------
+    population : Study or Sweep
+        A computed data set, or a stated population, whose falls are then computed on its plate as a rigid body.
+    channel : Channel, optional
+        Band, noise and calibration of what hears it.
+    seed : int, default 0
+        Of the noise.
+    progress : callable, optional
+        Called with the fraction that is done.
+
+    Raises
+    ------
+    InputError
+        If it has no classes, or fewer than two of them touched the plate.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> bound = bound_of(vi.load_sweep("signals:coal-gangue"))
+    >>> bound.errors["contact time"].upper > 5 * bound.errors["one impact"].upper
+    True
+    """
+    falls = falls_of_study(population) if isinstance(population, Study) else falls_of_sweep(population)
+    names, counts = np.unique(falls.classes, return_counts=True)
+    if len(names) < 2:
+        raise InputError("falls of one class alone touched the plate, from which nothing can be told apart")
+    heard, steps = channel or Channel(), len(OBSERVATIONS) + BANDWIDTHS.size * SIGNAL_TO_NOISE.size
+
+    def tell(done: int) -> None:
+        if progress is not None:
+            progress(done / steps)
+
+    errors, remaining = {}, {}
+    for number, one in enumerate(OBSERVATIONS):
+        errors[one.name] = _error(falls, heard, one, _TESTED, seed)
+        remaining[one.name] = _remaining(falls, heard, one)
+        tell(number + 1)
+    few, found = _some(falls, _FALLS_OF_MAP), np.empty((BANDWIDTHS.size, SIGNAL_TO_NOISE.size))
+    for place, (bandwidth, ratio) in enumerate((one, other) for one in BANDWIDTHS for other in SIGNAL_TO_NOISE):
+        there = replace(heard, bandwidth=float(bandwidth), signal_to_noise=float(ratio))
+        found.flat[place] = _error(few, there, _MAPPED, _TESTED_OF_MAP, seed).upper
+        tell(len(OBSERVATIONS) + place + 1)
+    return Bound(population.name, falls, heard, errors, 1.0 - counts.max() / counts.sum(), remaining, found)
+
+
+def _some(falls: Falls, number: int) -> Falls:
+    """Return the first falls."""
+    parts = (falls.classes, falls.radius, falls.density, falls.modulus, falls.speed, falls.restitution, falls.duration)
+    return Falls(*(one[:number] for one in parts))
+
+
+def _error(falls: Falls, channel: Channel, one: Observation, tested: int, seed: int) -> BayesError:
+    values, noise = measurable(falls, channel)
+    classes = np.unique(falls.classes, return_inverse=True)[1]
+    measured, deviation = (np.stack([part[name] for name in one.quantities], axis=1) for part in (values, noise))
+    return bayes_error(measured, deviation, classes, tested, seed)
+
+
+def _remaining(falls: Falls, channel: Channel, one: Observation) -> Floats:
+    r"""Return the remaining standard deviations of the properties, :math:`\sqrt{1 - C_{py} (C_{yy} + N)^{-1} C_{yp} / C_{pp}}`."""
+    values, noise = measurable(falls, channel)
+    y = np.stack([values[name] for name in one.quantities])
+    p = np.log(np.stack([getattr(falls, name) for name in PROPERTIES]))
+    both = np.cov(np.concatenate([p, y]))
+    number = len(p)
+    inner = both[number:, number:] + np.diag([np.mean(noise[name] ** 2) for name in one.quantities])
+    told = np.einsum("pk,kp->p", both[:number, number:], np.linalg.solve(inner, both[number:, :number]))
+    before = np.diagonal(both)[:number]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return np.asarray(np.where(before > 0.0, np.sqrt(np.clip(1.0 - told / before, 0.0, 1.0)), np.nan))

@@ -1,0 +1,56 @@
+"""The charts of a bound: errors by what is measured, over band and noise, and the falls as one impact shows them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vibroimpact.bounds.bound import BANDWIDTHS, SIGNAL_TO_NOISE, Bound
+from vibroimpact.charts.axis import Axis
+from vibroimpact.charts.chart import Chart, Panel
+from vibroimpact.charts.marks import Bars, Map, Points
+from vibroimpact.charts.palette import series
+
+_MOST_POINTS = 1500
+
+
+def bound_charts(bound: Bound) -> list[Chart]:
+    """Return the charts of a bound: `errors`, `impacts` and `sensors`."""
+    return [_errors(bound), _impacts(bound), _sensors(bound)]
+
+
+def _errors(bound: Bound) -> Chart:
+    names = tuple(reversed(bound.errors))
+    found = [bound.errors[name] for name in names]
+    upper = 100.0 * np.array([one.upper for one in found])
+    low, high = 100.0 * np.array([(one.lower, one.upper + one.standard_error) for one in found]).T
+    bars = Bars(np.arange(float(len(names))), upper, "", "detail", lying=True, low=low, high=high, texts=names)
+    panel = Panel(Axis("Falls that no classifier can tell right", "%", range=(0.0, float("nan"))), Axis(names=names), (bars,))
+    caption = (
+        "The Bayes error of the population for what is measured of a fall: the best that any classifier can do. Each interval reaches from "
+        "the lower bound to one standard error above the upper one."
+    )
+    return Chart("errors", "What cannot be told, whatever the classifier", ((panel,),), caption, 4.5)
+
+
+def _impacts(bound: Bound) -> Chart:
+    falls = bound.falls
+    some = np.arange(0, len(falls), max(1, len(falls) // _MOST_POINTS))
+    marks = []
+    for number, name in enumerate(np.unique(falls.classes).tolist()):
+        there = some[falls.classes[some] == name]
+        marks.append(Points(falls.impulse[there], falls.duration[there], name, series(number)))
+    panel = Panel(Axis("Impulse", "N s", log=True), Axis("Duration of the contact", "s", log=True), tuple(marks))
+    caption = "Each fall a point: what one impact shows. Falls that share a place cannot be told apart by it, whatever else differs."
+    return Chart("impacts", "Falls as one impact shows them", ((panel,),), caption, 4.5)
+
+
+def _sensors(bound: Bound) -> Chart:
+    scale = Axis("Falls that cannot be told right from one impact", "%")
+    rows = tuple(f"{one / 1e3:g} kHz" for one in BANDWIDTHS)
+    columns = tuple(f"{one:g} dB" for one in SIGNAL_TO_NOISE)
+    values = Map(np.arange(float(len(columns))), np.arange(float(len(rows))), 100.0 * bound.map, scale)
+    panel = Panel(Axis("Peak of the median force over noise in 10 kHz", names=columns), Axis("Band", names=rows), (values,))
+    caption = (
+        "What a faster or a quieter sensor would buy, for impulse and contact time of one impact: the Bayes error over band and noise."
+    )
+    return Chart("sensors", "What band and noise cost", ((panel,),), caption, 4.0)

@@ -1,0 +1,127 @@
+"""The falls of a population as a bound needs them: impulse, duration, speed and restitution of their first impacts."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vibroimpact.arrays import Floats
+from vibroimpact.cases.case import Case
+from vibroimpact.errors import InputError
+from vibroimpact.studies.axes import Values
+from vibroimpact.studies.compute_points import compute_points
+from vibroimpact.studies.population import CLASS
+from vibroimpact.studies.study import Study
+from vibroimpact.studies.sweep import Sweep
+from vibroimpact.studies.swept_keys import case_at
+
+_COLUMNS = ("first_approach_speed_m_s", "first_restitution_achieved", "first_duration_s")
+
+
+@dataclass(frozen=True, eq=False)
+class Falls:
+    """First impacts of falls, (falls,) each.
+
+    Parameters
+    ----------
+    classes : array of str
+        Class of the rock.
+    radius, density, modulus : array
+        Of the sphere [m, kg/m^3], and Young's modulus of its material [Pa].
+    speed, restitution, duration : array
+        Approach speed [m/s], restitution achieved, and duration of the contact [s].
+    """
+
+    classes: NDArray[Any]
+    radius: Floats
+    density: Floats
+    modulus: Floats
+    speed: Floats
+    restitution: Floats
+    duration: Floats
+
+    @property
+    def mass(self) -> Floats:
+        """Mass of the sphere [kg]."""
+        return np.asarray(4.0 / 3.0 * np.pi * self.radius**3 * self.density)
+
+    @property
+    def impulse(self) -> Floats:
+        """Impulse of the contact force [N s]."""
+        return self.mass * self.speed * (1.0 + self.restitution)
+
+    @property
+    def interval(self) -> Floats:
+        """Time from the first touch to the next, under standard gravity [s]."""
+        return self.duration + 2.0 * self.restitution * self.speed / 9.80665
+
+    def __len__(self) -> int:
+        return len(self.classes)
+
+
+def falls_of_study(study: Study) -> Falls:
+    """Return the falls of a computed data set; those that failed are left out.
+
+    Raises
+    ------
+    InputError
+        If the study has no classes.
+    """
+    if CLASS not in study.labels:
+        raise InputError(f"{study.path.parent}: this study has no classes; a bound needs a population, as vibroimpact dataset computes it")
+    found = [np.asarray(study.values(name), dtype=float) for name in _COLUMNS]
+    table = {key: value for key, value in study.table.items() if key != "sweep"}
+    return _falls(study.labels[CLASS], table, study.coordinates, *found)
+
+
+def falls_of_sweep(sweep: Sweep) -> Falls:
+    """Return the falls of a stated population on its plate as a rigid body, of which a hundred thousand take seconds.
+
+    Raises
+    ------
+    InputError
+        If the study has no classes.
+    """
+    if sweep.population is None:
+        raise InputError('it has no classes; a bound needs design = "population"', "sweep.design")
+    plate = {key: value for key, value in sweep.table["plate"].items() if key in _OF_RIGID_PLATES}
+    sphere = {key: value for key, value in sweep.table["sphere"].items() if key in ("radius", "material")}
+    table = {**sweep.table, "plate": plate, "sphere": sphere, "run": {"impacts": 1}}
+    table.pop("sensors", None)
+    columns = {key: values for key, values in sweep.plan.columns.items() if not key.startswith("plate.")}
+    result = compute_points(table, (), 0, columns)
+    failed = np.array(sorted(result.failures), dtype=int)
+    found = [np.asarray(result.arrays[name], dtype=float).copy() for name in _COLUMNS]
+    for values in found:
+        values[failed] = np.nan
+    return _falls(sweep.plan.labels[CLASS], table, columns, *found)
+
+
+_OF_RIGID_PLATES = ("size", "material", "inclination")
+
+
+def _falls(
+    classes: NDArray[Any], table: Mapping[str, Any], columns: Mapping[str, Values], speed: Floats, restitution: Floats, duration: Floats
+) -> Falls:
+    """Return the falls that touched, with radius and mass from the values of the keys."""
+    first = case_at(table, {key: values[0] for key, values in columns.items()})
+    number = len(classes)
+    radius = np.broadcast_to(columns.get("sphere.radius", first.sphere.radius), number).astype(float)
+    density, modulus = (_of_material(name, first, table, columns, number) for name in ("density", "youngs_modulus"))
+    there = np.isfinite(speed) & np.isfinite(duration)
+    return Falls(*(values[there] for values in (classes, radius, density, modulus, speed, restitution, duration)))
+
+
+def _of_material(name: str, first: Case, table: Mapping[str, Any], columns: Mapping[str, Values], number: int) -> Floats:
+    """Return a property of the material of the sphere of each fall."""
+    if f"sphere.material.{name}" in columns:
+        return np.asarray(columns[f"sphere.material.{name}"], dtype=float)
+    if "sphere.material" in columns:
+        names = columns["sphere.material"].tolist()
+        known = {repr(one): float(getattr(case_at(table, {"sphere.material": one}).sphere.material, name)) for one in names}
+        return np.array([known[repr(one)] for one in names])
+    return np.full(number, float(getattr(first.sphere.material, name)))

@@ -1,0 +1,73 @@
+"""Writes a bound as a folder: data and report."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+from vibroimpact._version import __version__
+from vibroimpact.bounds.bound import BANDWIDTHS, SIGNAL_TO_NOISE, Bound
+from vibroimpact.bounds.charts import bound_charts
+from vibroimpact.bounds.observations import OBSERVATIONS
+from vibroimpact.bounds.tables import HEADERS, bound_rows, error_rows, headline, heard_words
+from vibroimpact.report.page import render_page
+from vibroimpact.results.csv_files import write_csv
+from vibroimpact.results.folder import SUMMARY, new_folder
+
+
+def save_bound(bound: Bound, directory: str | PathLike[str], *, force: bool = False) -> Path:
+    """Write a bound atomically: `bound.csv`, `map.csv`, `summary.json` and a report.
+
+    Parameters
+    ----------
+    bound : Bound
+        The bound.
+    directory : path
+        The folder to create.
+    force : bool, default False
+        Replace an existing result folder.
+
+    Raises
+    ------
+    InputError
+        If the folder exists and may not be replaced, or it can't be written to.
+    """
+    with new_folder(directory, force=force) as folder:
+        rows = bound_rows(bound)
+        write_csv(rows, list(rows[0]), folder / "bound.csv")
+        over = [
+            {"bandwidth_Hz": float(bandwidth), "signal_to_noise_dB": float(ratio), "error_upper": float(bound.map[place, other])}
+            for place, bandwidth in enumerate(BANDWIDTHS)
+            for other, ratio in enumerate(SIGNAL_TO_NOISE)
+        ]
+        write_csv(over, list(over[0]), folder / "map.csv")
+        (folder / SUMMARY).write_text(json.dumps(bound_document(bound), indent=2, allow_nan=False) + "\n", encoding="utf-8")
+        page = render_page(
+            __package__,
+            bound_charts(bound),
+            name=f"What can be told: {bound.name}",
+            headline=headline(bound),
+            heard=heard_words(bound),
+            headers=HEADERS,
+            rows=error_rows(bound),
+            meanings=[(one.name, one.meaning) for one in OBSERVATIONS],
+            version=__version__,
+        )
+        (folder / "report.html").write_text(page, encoding="utf-8")
+    return Path(directory)
+
+
+def bound_document(bound: Bound) -> dict[str, Any]:
+    """Return a bound as data: the content of `summary.json`, and what `bound --json` prints."""
+    rows = [{name: value if value == value else None for name, value in row.items()} for row in bound_rows(bound)]
+    return {
+        "name": bound.name,
+        "version": __version__,
+        "falls": len(bound.falls),
+        "majority_error": bound.majority,
+        "channel": asdict(bound.channel),
+        "bound": rows,
+    }

@@ -1,0 +1,77 @@
+"""Sentences and tables of a bound, for its page and for the terminal."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vibroimpact.bounds.bayes_error import BayesError
+from vibroimpact.bounds.bound import PROPERTIES, Bound
+from vibroimpact.bounds.observations import OBSERVATIONS
+from vibroimpact.units.display import MISSING
+
+_FEW = 5.0
+"""Median number of neighbours below which more falls would narrow a bracket."""
+
+
+def error_words(error: BayesError) -> str:
+    """Return the bracket of a Bayes error in per cent.
+
+    Examples
+    --------
+    >>> error_words(BayesError(0.0044, 0.0101, 0.002, 20.0)), error_words(BayesError(0.0, 0.004, 0.002, 1.0))
+    ('0.4 to 1.0 %', 'at most 0.4 %')
+    """
+    low, high = f"{100.0 * error.lower:.1f}", f"{100.0 * error.upper:.1f}"
+    if error.neighbours < _FEW:
+        return f"at most {high} %"
+    return f"{high} %" if low == high else f"{low} to {high} %"
+
+
+def headline(bound: Bound) -> str:
+    """Return the finding in a sentence."""
+    time, impact = bound.errors["contact time"], bound.errors["one impact"]
+    names = np.unique(bound.falls.classes).tolist()
+    return (
+        f"Of {len(bound.falls):,} falls of {' and '.join(names)}, the best classifier there can be errs in {error_words(time)} by the "
+        f"contact time alone, and in {error_words(impact)} by one impact at a known place; naming the more frequent class errs in "
+        f"{100.0 * bound.majority:.1f} %."
+    )
+
+
+def heard_words(bound: Bound) -> str:
+    """Return what hears the falls, in a sentence."""
+    one = bound.channel
+    return (
+        f"Heard up to {one.bandwidth / 1e3:g} kHz, the peak force of the median fall {one.signal_to_noise:g} dB above the noise in 10 kHz, "
+        f"with a sensitivity known to {100.0 * one.gain:g} %; an unknown place adds {100.0 * one.place:g} %; where they are known, the "
+        f"speed is so to {100.0 * one.height:g} %, and the radius to {100.0 * one.size:g} %."
+    )
+
+
+def error_rows(bound: Bound) -> list[list[str]]:
+    """Return a row for each observation: name, error, and what remains of each property."""
+    return [[one.name, error_words(bound.errors[one.name]), *(_part(value) for value in bound.remaining[one.name])] for one in OBSERVATIONS]
+
+
+HEADERS = ["Measured", "Told wrong", *(f"{name}, left" for name in PROPERTIES)]
+"""Headers of these rows."""
+
+
+def bound_rows(bound: Bound) -> list[dict[str, str | float]]:
+    """Return the rows of `bound.csv`."""
+    return [
+        {
+            "measured": one.name,
+            "meaning": one.meaning,
+            "error_lower": bound.errors[one.name].lower,
+            "error_upper": bound.errors[one.name].upper,
+            "standard_error": bound.errors[one.name].standard_error,
+            "neighbours": bound.errors[one.name].neighbours,
+            **{f"{name}_remaining": float(value) for name, value in zip(PROPERTIES, bound.remaining[one.name], strict=True)},
+        }
+        for one in OBSERVATIONS
+    ]
+
+
+def _part(value: float) -> str:
+    return f"{100.0 * value:.0f} %" if np.isfinite(value) else MISSING

@@ -1,0 +1,25 @@
+"""What the command `bound` prints."""
+
+from __future__ import annotations
+
+from rich.console import Group, RenderableType
+from rich.text import Text
+
+from vibroimpact.bounds.bound import Bound
+from vibroimpact.bounds.tables import HEADERS, error_rows, headline, heard_words
+from vibroimpact.report.terminal_table import TerminalColumn, TerminalTable
+
+
+def bound_summary(bound: Bound) -> RenderableType:
+    """Return the console report of a bound."""
+    names, errors, *left = zip(*error_rows(bound), strict=True)
+    columns = [TerminalColumn(HEADERS[0], names, text=True), TerminalColumn(HEADERS[1], errors, text=True)]
+    columns += [TerminalColumn(heading, cells) for heading, cells in zip(HEADERS[2:], left, strict=True)]
+    note = "Left: standard deviation of the logarithm after the best linear estimate, over that in the population."
+    return Group(
+        Text(f"What can be told: {bound.name}", style="bold"),
+        Text(headline(bound)),
+        TerminalTable(columns),
+        Text(f" {note}", style="dim"),
+        Text(f" {heard_words(bound)}", style="dim"),
+    )

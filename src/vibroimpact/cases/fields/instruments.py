@@ -1,0 +1,122 @@
+"""The tables of a sensor's instrument and of the electronics behind it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, Any
+
+from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic_core import CoreSchema, core_schema
+
+from vibroimpact.cases.fields.quantities import Quantity, read_quantity
+from vibroimpact.cases.fields.section import Section
+from vibroimpact.dynamics.sensors.electronics import Amplifier, Converter
+from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer
+from vibroimpact.dynamics.sensors.instruments.geophone import Geophone
+from vibroimpact.dynamics.sensors.instruments.instrument import Instrument
+from vibroimpact.dynamics.sensors.instruments.strain_gauge import StrainGauge
+from vibroimpact.errors import InputError
+from vibroimpact.ranges import Range
+
+INSTRUMENTS = {"accelerometer": "an accelerometer", "geophone": "a geophone", "strain-gauge": "a strain gauge"}
+"""What instruments are called in a case, where the key of their table has "_" for "-", and in a sentence."""
+
+Seed = Annotated[int, Field(ge=0, strict=True)]
+
+
+class AccelerometerTable(Section):
+    """What an accelerometer adds to the acceleration of its base: its resonance, then its range; its noise and its steps."""
+
+    resonance: Annotated[float, Quantity("Hz", "its mounted resonance", Range(above=0))] | None = None
+    damping_ratio: Annotated[float, Quantity("", "damping ratio of its resonance", Range(above=0))] = 0.02
+    range: Annotated[float, Quantity("m/s^2", "largest magnitude that it puts out", Range(above=0))] | None = None
+    noise: Annotated[float, Quantity("m/s^2", "standard deviation of the noise in its samples", Range(at_least=0))] = 0.0
+    resolution: Annotated[float, Quantity("m/s^2", "step of its readings", Range(above=0))] | None = None
+    seed: Seed = Field(0, description="of the noise")
+    sensitivity: (
+        Annotated[float, Quantity("V s^2/m", "its voltage over the acceleration, which it then puts out", Range(above=0))] | None
+    ) = None
+
+    def instrument(self) -> Instrument:
+        """Return the accelerometer."""
+        return Accelerometer(**self.model_dump())
+
+
+class GeophoneTable(Section):
+    """A geophone: the voltage of a coil on a spring."""
+
+    natural_frequency: Annotated[float, Quantity("Hz", "natural frequency of the coil on its spring", Range(above=0))]
+    sensitivity: Annotated[float, Quantity("V s/m", "its voltage over the velocity, far above the natural frequency", Range(above=0))]
+    damping_ratio: Annotated[float, Quantity("", "damping ratio of the coil, with its shunt", Range(above=0))] = 0.6
+    low_pass: Annotated[float, Quantity("Hz", "corner of a low-pass of order two behind it", Range(above=0))] | None = None
+
+    def instrument(self) -> Instrument:
+        """Return the geophone."""
+        return Geophone(**self.model_dump())
+
+
+class StrainGaugeTable(Section):
+    """A strain gauge on a face of the plate, along a direction in it."""
+
+    sensitivity: Annotated[float, Quantity("V", "voltage over strain, which it then puts out", Range(above=0))] | None = None
+
+    def instrument(self) -> Instrument:
+        """Return the strain gauge."""
+        return StrainGauge(**self.model_dump())
+
+
+@dataclass(frozen=True)
+class _OfSignal:
+    """Annotation of a quantity in the unit of the sensor's signal, which only the sensor knows: `in_unit` reads it."""
+
+    meaning: str
+    allowed: Range
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.any_schema()
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        words = f"{self.meaning} [the unit of what the sensor puts out]; a string carries its own unit"
+        return {"type": ["number", "string"], "description": words}
+
+
+class AmplifierTable(Section):
+    """An amplifier behind the instrument: gain, and noise and hum at its input."""
+
+    gain: Annotated[float, Quantity("", "output over input", Range(above=0))] = 1.0
+    noise: Annotated[float, _OfSignal("standard deviation of white noise at its input", Range(at_least=0))] = 0.0
+    hum: Annotated[float, _OfSignal("amplitude of the hum of the mains at its input; its phase is drawn", Range(at_least=0))] = 0.0
+    mains: Annotated[float, Quantity("Hz", "frequency of the mains", Range(above=0))] = 50.0
+    seed: Seed = Field(0, description="of the noise and of the hum's phase")
+
+    def amplifier(self) -> Amplifier:
+        """Return the amplifier."""
+        return Amplifier(**self.model_dump())
+
+
+class ConverterTable(Section):
+    """An analogue-to-digital converter, which clips and rounds."""
+
+    range: Annotated[float, _OfSignal("largest magnitude that it reads", Range(above=0))]
+    bits: Annotated[int, Field(ge=1, le=32, strict=True)] | None = Field(None, description="its width; unrounded by default")
+
+    def converter(self) -> Converter:
+        """Return the converter."""
+        return Converter(**self.model_dump())
+
+
+def read_in_unit(table: Section, unit: str) -> None:
+    """Read the quantities of a table that are in the unit of the signal, in place.
+
+    Raises
+    ------
+    InputError
+        With the key of one that can't be read, or lies outside its range.
+    """
+    for name, info in type(table).model_fields.items():
+        for kind in info.metadata:
+            if isinstance(kind, _OfSignal):
+                try:
+                    table.__dict__[name] = read_quantity(table.__dict__[name], unit, kind.allowed)
+                except InputError as error:
+                    raise InputError(error.message, name) from None

@@ -1,0 +1,62 @@
+"""The command `bound`, which tells what no classifier can do."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from vibroimpact.cli.completion import complete_case
+from vibroimpact.cli.shared import Force, Json, app, console, exit_on_interrupt, say, show, stem
+from vibroimpact.errors import InputError
+
+
+@app.command()
+def bound(
+    population: Annotated[
+        str,
+        typer.Argument(metavar="STUDY|DIR", autocompletion=complete_case, help="A study with classes, or the folder of a data set."),
+    ],
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", metavar="DIR", help="The folder to make; by default STUDY-bound.")
+    ] = None,
+    samples: Annotated[int, typer.Option("--samples", metavar="N", min=100, help="How many falls are drawn of a study.")] = 20_000,
+    bandwidth: Annotated[str, typer.Option("--bandwidth", metavar="B", help="Upper end of the band that is heard.")] = "10 kHz",
+    signal_to_noise: Annotated[
+        float, typer.Option("--snr", metavar="DB", help="Peak force of the median fall over the noise in 10 kHz, in dB.")
+    ] = 40.0,
+    force: Force = False,
+    as_json: Json = False,
+) -> None:
+    """Tell what no classifier can do: the Bayes error of a population, by what is measured of a fall.
+
+    Of a study the falls are computed on its plate as a rigid body; of a data set they are those that are there.
+    """
+    from vibroimpact.bounds.bound import bound_of
+    from vibroimpact.bounds.folder import bound_document, save_bound
+    from vibroimpact.bounds.observations import Channel
+    from vibroimpact.bounds.text import bound_summary
+    from vibroimpact.report.progress import patient_progress
+    from vibroimpact.results.folder import check_free
+    from vibroimpact.studies.study import read_study
+    from vibroimpact.studies.sweep import load_sweep
+    from vibroimpact.units.reading import to_si
+
+    target = Path(f"{stem(population)}-bound") if output is None else output
+    check_free(target, force=force)
+    try:
+        band = float(bandwidth) if bandwidth.replace(".", "", 1).isdecimal() else to_si(bandwidth, "Hz")
+    except InputError as error:
+        raise InputError(error.message, "--bandwidth") from None
+    if not 10.0 <= band <= 1e7:
+        raise InputError(f"{bandwidth} is not allowed; it must be 10 Hz or more, and at most 10 MHz", "--bandwidth")
+    if not -60.0 <= signal_to_noise <= 200.0:
+        raise InputError(f"{signal_to_noise:g} is not allowed; it must be from -60 to 200", "--snr")
+    screen = console(err=as_json)
+    with exit_on_interrupt(), patient_progress("what can be told", screen) as progress:
+        found = read_study(population) if Path(population).is_dir() else load_sweep(population, samples)
+        known = bound_of(found, Channel(bandwidth=band, signal_to_noise=signal_to_noise), progress=progress)
+        folder = save_bound(known, target, force=force)
+    show(lambda: {"folder": str(folder), **bound_document(known)}, lambda: bound_summary(known), as_json=as_json)
+    say(f"wrote {folder / 'report.html'}", err=as_json)

@@ -1,0 +1,105 @@
+r"""The electronics behind an instrument: an amplifier with its noise and the hum of the mains, and a converter.
+
+.. math:: y = Q\bigl(g\,(x + n + h \cos(2 \pi f_m t + \theta))\bigr)
+
+with white noise n and the phase of the hum drawn from the seed, the gain g, and the converter's clipping and rounding Q.
+"""
+
+from __future__ import annotations
+
+import math
+import zlib
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+
+Seed = int | tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Amplifier:
+    """An amplifier; noise and hum are what they are at its input.
+
+    Parameters
+    ----------
+    gain : float, default 1
+        Output over input [-], > 0.
+    noise : float, default 0
+        Standard deviation of white noise in the samples, in the unit of the instrument.
+    hum : float, default 0
+        Amplitude of the hum, in the same unit; its phase is drawn.
+    mains : float, default 50
+        Frequency of the mains [Hz], > 0.
+    seed : int or tuple of int, default 0
+        Of noise and phase; sensors of different names have their own.
+    """
+
+    gain: float = 1.0
+    noise: float = 0.0
+    hum: float = 0.0
+    mains: float = 50.0
+    seed: Seed = 0
+
+
+@dataclass(frozen=True)
+class Converter:
+    """An analogue-to-digital converter.
+
+    Parameters
+    ----------
+    range : float
+        Largest magnitude that it reads, in the unit of the amplifier's output, > 0; beyond it the samples are clipped.
+    bits : int, optional
+        Its width [-]: of 2 range in so many bits is a step; without it the samples are not rounded.
+
+    Examples
+    --------
+    >>> Converter(range=8.0, bits=4).read(np.array([0.4, 0.6, 7.9, -9.0])).tolist()
+    [0.0, 1.0, 7.0, -8.0]
+    """
+
+    range: float
+    bits: int | None = None
+
+    @property
+    def step(self) -> float:
+        """The step of its readings, in the unit of its range; zero if it does not round."""
+        return 0.0 if self.bits is None else math.ldexp(self.range, 1 - self.bits)
+
+    def read(self, value: Floats) -> Floats:
+        """Return what it reads; the upper end of the range is a step below the lower one's magnitude, as of any two's complement."""
+        rounded = self.step * np.round(value / self.step) if self.step else value
+        return np.clip(rounded, -self.range, self.range - self.step)
+
+
+def amplified(amplifier: Amplifier, name: str, value: Floats, rate: float, passed: float) -> Floats:
+    """Return samples of an instrument behind an amplifier.
+
+    Parameters
+    ----------
+    amplifier : Amplifier
+        The amplifier.
+    name : str
+        Name of the sensor.
+    value : array, shape (samples,)
+        Samples, from the start on.
+    rate : float
+        Samples per second [Hz].
+    passed : float
+        Gain of the anti-alias filter at the frequency of the mains [-].
+    """
+    drawn = np.random.default_rng([zlib.crc32(f"amplifier of {name}".encode()), *seeds(amplifier.seed)])
+    phase = drawn.uniform(0.0, 2.0 * math.pi)
+    if amplifier.hum:
+        value = value + passed * amplifier.hum * np.cos(2.0 * math.pi * amplifier.mains / rate * np.arange(len(value)) + phase)
+    if amplifier.noise:
+        value = value + amplifier.noise * drawn.standard_normal(len(value))
+    return amplifier.gain * value
+
+
+def seeds(seed: Seed) -> Sequence[int]:
+    """Return a seed as a sequence."""
+    return seed if isinstance(seed, tuple) else (seed,)

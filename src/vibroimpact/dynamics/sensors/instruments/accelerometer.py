@@ -1,0 +1,77 @@
+"""An accelerometer: a mass on a spring, with a range, noise and steps."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from vibroimpact.dynamics.sensors.instruments.instrument import Direction, Quantity
+from vibroimpact.dynamics.sensors.pole_pairs import Section
+
+
+@dataclass(frozen=True)
+class Accelerometer:
+    """Properties of an accelerometer beyond the acceleration of its base.
+
+    Parameters
+    ----------
+    resonance : float, optional
+        Its mounted resonance [Hz], > 0; without one it follows its base exactly.
+    damping_ratio : float, default 0.02
+        Of that resonance [-].
+    range : float, optional
+        Largest magnitude of its output [m/s^2], at which it is clipped before the anti-alias filter.
+    noise : float, default 0
+        Standard deviation of white noise in its samples [m/s^2]; the same in every run of one seed.
+    resolution : float, optional
+        Step of its readings [m/s^2].
+    seed : int or tuple of int, default 0
+        Of the noise; sensors of different names have noise of their own.
+    sensitivity : float, optional
+        Its voltage over the acceleration [V s^2/m]; without it the samples are the acceleration.
+
+    Examples
+    --------
+    >>> Accelerometer(resonance=30e3).quantity, Accelerometer(sensitivity=0.01).quantity
+    ('acceleration', 'voltage')
+    """
+
+    resonance: float | None = None
+    damping_ratio: float = 0.02
+    range: float | None = None
+    noise: float = 0.0
+    resolution: float | None = None
+    seed: int | tuple[int, ...] = 0
+    sensitivity: float | None = None
+
+    @property
+    def quantity(self) -> Quantity:
+        """What it puts out: acceleration, or voltage if it has a sensitivity."""
+        return "acceleration" if self.sensitivity is None else "voltage"
+
+    @property
+    def order(self) -> int:
+        """Order of the derivative of the displacement that it takes."""
+        return 2
+
+    @property
+    def gain(self) -> float:
+        """Output over acceleration, [V s^2/m] or 1."""
+        return 1.0 if self.sensitivity is None else self.sensitivity
+
+    @property
+    def sections(self) -> tuple[Section, ...]:
+        """The poles of the mounted resonance, if it has one."""
+        if self.resonance is None:
+            return ()
+        omega = 2.0 * math.pi * self.resonance
+        return ((omega**2, 2.0 * self.damping_ratio * omega),)
+
+    @property
+    def steepness(self) -> float:
+        """It sees the deflection itself."""
+        return 0.0
+
+    def components(self, direction: Direction) -> Direction:
+        """Return the weights of the displacements along x, y and z."""
+        return direction

@@ -1,0 +1,79 @@
+"""Static strains of the faces of a plate under a force elsewhere, from one static solution."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.structures.plate_compliance import Average, mean_square
+from vibroimpact.structures.plate_element import shear_factor
+from vibroimpact.structures.recipe import PlateOfPlates, Recipe, Reduction, is_thin
+from vibroimpact.structures.static_compliance import response_to_spread_force
+from vibroimpact.structures.store import key_of, load_entry, save_entry
+from vibroimpact.structures.surface import Side
+from vibroimpact.structures.surface_strain import surface_strain
+from vibroimpact.structures.transfer_compliance import Point
+
+_KIND = "strain"
+_RADIUS = 0.75  # of the disc of the force, in thicknesses
+
+
+def transfer_strains(
+    recipe: Recipe, place: tuple[float, float], side: Side, points: Sequence[Point], tell: Callable[[str], None] | None = None
+) -> Floats:
+    r"""Return the static strains at points under a unit upward force at a place of a held plate [1/N], (points, 3).
+
+    The force is spread over a disc whose effect away from it is that of a point force on the face of a layer, as in
+    `transfer_compliance`; within some thicknesses of the force the strain of a layer differs.
+
+    Parameters
+    ----------
+    recipe : Recipe
+        The plate and its supports; the reduction has no effect.
+    place : tuple of two floats
+        x and y of the force [m].
+    side : str
+        Face of the force, "upper" or "lower".
+    points : sequence of ((x, y), side)
+        Where the strains are.
+    tell : callable, optional
+        Called with a message on a failure of the store.
+
+    Raises
+    ------
+    InputError
+        If a place is not on the body, the supports permit vertical rigid motion, or the mesh or a support is invalid.
+    ComputationError
+        If the stiffness is singular.
+    """
+    key, say = strain_key(recipe, place, side, points), tell or (lambda text: None)
+    found, trouble = load_entry(key, _KIND, lambda parts: np.asarray(parts[_KIND], dtype=float))
+    if trouble:
+        say(trouble)
+    if found is None:
+        found = computed_strains(recipe, place, side, points)
+        trouble = save_entry(key, _KIND, {_KIND: found})
+        if trouble:
+            say(trouble)
+    return found
+
+
+def strain_key(recipe: Recipe, place: tuple[float, float], side: Side, points: Sequence[Point]) -> str:
+    """Return the key of the strains under a force in the store."""
+    return key_of(["transfer strain", replace(recipe, reduction=Reduction()), place, side, list(points)])
+
+
+def computed_strains(recipe: Recipe, place: tuple[float, float], side: Side, points: Sequence[Point]) -> Floats:
+    """Return the strains under a force, computed anew; parameters and errors are those of `transfer_strains`."""
+    layered = isinstance(recipe.shape, PlateOfPlates) and not is_thin(recipe)
+    square = mean_square(1.0, recipe.poissons_ratio, shear_factor(recipe.poissons_ratio)) if layered else 0.0
+
+    def spread(thickness: float) -> Average:
+        return Average(_RADIUS * thickness, 3.0 - 6.0 * square / _RADIUS**2)
+
+    structure, _, displacements = response_to_spread_force(recipe, place, side, spread)
+    strains = [surface_strain(structure.mesh, point, face, structure.thickness) @ displacements for point, face in points]
+    return np.array(strains)

@@ -1,0 +1,31 @@
+"""Falls of rocks of several classes, in groups that share a rock and a plate."""
+
+from __future__ import annotations
+
+from vibroimpact.errors import InputError
+from vibroimpact.studies.design import Asked, Design
+from vibroimpact.studies.plan import Plan
+
+
+def size(asked: Asked) -> int:
+    """Return the number of falls.
+
+    Raises
+    ------
+    InputError
+        If no classes are given.
+    """
+    if asked.population is None:
+        raise InputError("they are missing; a population has classes, such as [sweep.classes.coal.over]", "classes")
+    return asked.samples
+
+
+def plan(asked: Asked) -> Plan:
+    """Return the falls, one plate after the other."""
+    size(asked)
+    assert asked.population is not None
+    columns, labels = asked.population.draw(asked.axes, asked.samples, asked.seed)
+    return Plan("population", columns, False, labels)
+
+
+DESIGN = Design("population", "falls of rocks drawn from classes, several of one rock, on several plates", True, size, plan)

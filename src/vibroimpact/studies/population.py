@@ -1,0 +1,93 @@
+"""Populations of rocks: classes with distributions of their own, and groups of falls that share a rock and a plate."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from zlib import crc32
+
+import numpy as np
+
+from vibroimpact.arrays import Floats, Indices
+from vibroimpact.errors import InputError
+from vibroimpact.studies.axes import Axis, Listed, Values
+
+CLASS, ROCK, PLATE = "class", "rock", "plate"
+"""Labels of a fall: the name of its class, and the numbers of its rock and its plate, from 0."""
+
+LABELS = {CLASS: ("1", "class of the rock"), ROCK: ("1", "number of the rock, from 0"), PLATE: ("1", "number of the plate, from 0")}
+"""Unit and meaning of each label."""
+
+
+@dataclass(frozen=True)
+class Population:
+    """Rocks of several classes that fall on plates.
+
+    Keys of [plate] are drawn once for each plate, those of [drop] for each fall, and all others for each rock.
+
+    Parameters
+    ----------
+    shares : mapping of str to float
+        Share of the rocks of each class, > 0, not necessarily normalized.
+    own : mapping of str to (mapping of str to Axis)
+        The distributions of each class by key, the same keys for all.
+    falls_per_rock, rocks_per_plate : int
+        How many falls share a rock, and how many rocks share a plate.
+    """
+
+    shares: Mapping[str, float]
+    own: Mapping[str, Mapping[str, Axis]]
+    falls_per_rock: int = 1
+    rocks_per_plate: int = 1
+
+    def draw(self, common: Mapping[str, Axis], falls: int, seed: int) -> tuple[dict[str, Values], dict[str, Values]]:
+        """Return the values of each fall by key, and its labels.
+
+        Each key has a random stream of its own, so that more falls or another key leave what was drawn before as it is.
+
+        Parameters
+        ----------
+        common : mapping of str to Axis
+            The distributions that all classes have in common.
+        falls : int
+            Number of falls.
+        seed : int
+            Of the drawing.
+
+        Raises
+        ------
+        InputError
+            If a class gets no rock.
+
+        Examples
+        --------
+        >>> own = {"light": {"sphere.radius": Listed((1.0,))}, "heavy": {"sphere.radius": Listed((2.0,))}}
+        >>> columns, labels = Population({"light": 1.0, "heavy": 1.0}, own, falls_per_rock=2).draw({}, 8, 0)
+        >>> labels["class"].tolist()[::2]
+        ['heavy', 'light', 'light', 'light']
+        >>> columns["sphere.radius"].tolist()[::2]
+        [2.0, 1.0, 1.0, 1.0]
+        """
+        rock = np.arange(falls) // self.falls_per_rock
+        plate = rock // self.rocks_per_plate
+        of_rock = _drawn(Listed(tuple(range(len(self.shares))), tuple(self.shares.values())), CLASS, rock, seed).astype(int)
+        names = list(self.shares)
+        none = [name for number, name in enumerate(names) if not (of_rock == number).any()]
+        if none:
+            words = f'"{none[0]}" gets none of the {rock[-1] + 1} rocks; ask for more samples, fewer falls per rock, or a larger share'
+            raise InputError(words, "samples")
+        numbers = {"plate": plate, "drop": np.arange(falls)}
+        columns = {key: _drawn(axis, key, numbers.get(key.partition(".")[0], rock), seed) for key, axis in common.items()}
+        for key in next(iter(self.own.values())):
+            each = [_drawn(self.own[name][key], key, numbers.get(key.partition(".")[0], rock), seed) for name in names]
+            mixed = np.empty(falls, dtype=np.result_type(*each))
+            for number, values in enumerate(each):
+                mixed[of_rock == number] = values[of_rock == number]
+            columns[key] = mixed
+        return columns, {CLASS: np.array(names, dtype=object)[of_rock], ROCK: rock, PLATE: plate}
+
+
+def _drawn(axis: Axis, key: str, number: Indices, seed: int) -> Values:
+    """Return a value for each number, which may occur several times, from the random stream of a key."""
+    parts: Floats = np.random.default_rng([seed, crc32(key.encode())]).random(int(number[-1]) + 1)
+    return np.asarray(axis.quantiles(parts)[number])

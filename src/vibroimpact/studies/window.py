@@ -1,0 +1,62 @@
+"""The part of a signal around the first touch that a study keeps."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from vibroimpact.arrays import Floats
+from vibroimpact.errors import ComputationError
+
+
+@dataclass(frozen=True)
+class Window:
+    """A part of a signal.
+
+    Parameters
+    ----------
+    before : float
+        Time that is kept before the first touch [s], >= 0.
+    length : float
+        Length of the part [s], > 0.
+    """
+
+    before: float
+    length: float
+
+    def samples(self, touches: Floats, rate: float, count: int) -> tuple[int, int]:
+        """Return the numbers of the first sample that is kept and of the one after the last.
+
+        The first is the last sample that is not later than `before` ahead of the first touch, so that the touch falls between samples as
+        it happens to.
+
+        Parameters
+        ----------
+        touches : array
+            Times of first touch of the impacts [s].
+        rate : float
+            Samples per second [Hz].
+        count : int
+            Number of samples of the whole signal.
+
+        Raises
+        ------
+        ComputationError
+            If there is no impact, or the part is not within the signal.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> Window(1e-3, 10e-3).samples(np.array([0.1, 0.3]), 10e3, 5000)
+        (990, 1090)
+        """
+        if not len(touches) or not math.isfinite(touches[0]):
+            raise ComputationError("there was no impact, so that its signal can't be cut around the first touch")
+        begin, length = math.floor((float(touches[0]) - self.before) * rate + 1e-6), round(self.length * rate)
+        if begin < 0:
+            words = f"the sphere touches {float(touches[0]):.3g} s after the start, less than the {self.before:g} s kept by sweep.window"
+            raise ComputationError(f"{words}; let it fall from a height, or keep less before the touch")
+        if begin + length > count:
+            words = f"the signal ends at {count / rate:.4g} s, before the window at {(begin + length) / rate:.4g} s"
+            raise ComputationError(f"{words}; give a longer run.duration")
+        return begin, begin + length

@@ -1,0 +1,73 @@
+"""What no classifier can do: the bound of a population, its folder and its command."""
+
+from __future__ import annotations
+
+import csv
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import vibroimpact as vi
+from vibroimpact.bounds.bound import Bound, bound_of
+from vibroimpact.bounds.folder import save_bound
+from vibroimpact.bounds.observations import Channel
+
+
+@pytest.fixture(scope="module")
+def bound() -> Bound:
+    return bound_of(vi.load_sweep("signals:coal-gangue", 4000))
+
+
+def test_more_measured_tells_more(bound: Bound) -> None:
+    errors = {name: one.upper for name, one in bound.errors.items()}
+    assert errors["one impact"] < errors["one impact, place unknown"] < errors["contact time"] < errors["impulse"] < bound.majority
+    for one in bound.errors.values():
+        assert 0.0 <= one.lower <= one.upper <= bound.majority + 0.02
+    one, more, all_of_it = (bound.remaining[name] for name in ("one impact", "height known", "height, bounce and size"))
+    assert (more <= one + 1e-9).all()
+    assert (all_of_it <= more + 1e-9).all()
+
+
+def test_noise_and_a_narrow_band_cost(bound: Bound) -> None:
+    assert bound.map[0, 0] > 5 * bound.map[-1, -1]
+    assert (np.diff(bound.map.mean(axis=0)) < 0.01).all()  # quieter
+    assert (np.diff(bound.map.mean(axis=1)) < 0.01).all()  # wider
+    deaf = bound_of(vi.load_sweep("signals:coal-gangue", 1000), Channel(signal_to_noise=-60.0))
+    assert deaf.errors["contact time"].upper == pytest.approx(deaf.majority, abs=0.06)
+
+
+def test_the_bound_of_a_computed_data_set(tmp_path: Path) -> None:
+    table = vi.load_sweep("signals:coal-gangue").whole_table
+    plate = {"size": [1.2, 0.8, 0.02], "material": "steel"}
+    sweep = {**table["sweep"], "samples": 600, "keep": ["peaks"]}
+    sweep.pop("window")
+    sweep["over"] = {key: value for key, value in sweep["over"].items() if not key.startswith("plate.")}
+    rigid = {**table, "plate": plate, "sensors": [], "run": {"impacts": 1}, "sweep": sweep}
+    stated = vi.read_sweep(rigid)
+    computed = vi.read_study(vi.run_sweep(stated, tmp_path / "falls"))
+    of_study, of_sweep = bound_of(computed), bound_of(stated)
+    assert of_study.errors == of_sweep.errors
+    np.testing.assert_array_equal(of_study.falls.mass, of_sweep.falls.mass)
+
+
+def test_the_folder(bound: Bound, tmp_path: Path) -> None:
+    folder = save_bound(bound, tmp_path / "bound")
+    rows = list(csv.DictReader((folder / "bound.csv").read_text(encoding="utf-8").splitlines()))
+    assert [row["measured"] for row in rows] == list(bound.errors)
+    assert float(rows[2]["error_upper"]) == bound.errors["one impact"].upper
+    assert len((folder / "map.csv").read_text(encoding="utf-8").splitlines()) == bound.map.size + 1
+    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    assert summary["falls"] == 4000
+    page = (folder / "report.html").read_text(encoding="utf-8")
+    assert "best classifier there can be" in page
+    with pytest.raises(vi.InputError, match="is there already"):
+        save_bound(bound, folder)
+    save_bound(replace(bound, name="again"), folder, force=True)
+
+
+def test_what_has_no_bound() -> None:
+    with pytest.raises(vi.InputError, match=r"sweep.design: it has no classes; a bound needs design = \"population\""):
+        bound_of(vi.load_sweep("paper:sweep"))

@@ -1,0 +1,137 @@
+"""Instruments of sensors in a case: what is read, what is refused and in which words, and where it is told."""
+
+from __future__ import annotations
+
+from io import StringIO
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from rich.console import Console
+
+import vibroimpact as vi
+from vibroimpact.cases.build import resolved_case
+from vibroimpact.cases.sensor_doubts import sensor_doubts
+from vibroimpact.dynamics.sensors.instruments.instrument import UNITS
+from vibroimpact.dynamics.sensors.recording import Signal
+from vibroimpact.exporting.formats.uff58 import _QUANTITIES
+from vibroimpact.results.csv_files import signal_csv
+from vibroimpact.runs.case_explained import case_explained
+
+GEOPHONE = {"natural_frequency": "10 Hz", "sensitivity": "27.6 V s/m"}
+
+
+def case(**sensor: Any) -> vi.Case:
+    """A drop on an elastic plate with one sensor."""
+    plate = {"size": [0.52, 0.42, 0.008], "material": "steel-paper", "model": "elastic", "modes": 10, "supports": "clamped"}
+    return vi.read_case(
+        {
+            "sphere": {"radius": "25 mm", "material": "rock-paper"},
+            "plate": plate,
+            "drop": {"height": 1.0},
+            "contact": {"law": "hertz"},
+            "run": {"impacts": 1},
+            "sensors": [{"name": "a1", "position": [0.1, 0.05], **sensor}],
+        }
+    )
+
+
+@pytest.mark.parametrize(
+    ("sensor", "message"),
+    [
+        ({"instrument": "geofone"}, r'"a1"\.instrument: "geofone" is not allowed; .* Did you mean "geophone"'),
+        ({"instrument": "geophone"}, r'"a1"\.geophone: a geophone has properties; give them in a table geophone = \{ \.\.\. \}'),
+        ({"geophone": {"natural_frequency": 10}}, r'"a1"\.geophone\.sensitivity: this key is missing'),
+        ({"geophone": {**GEOPHONE, "sensitivity": "27.6 V/m"}}, "is another kind of quantity; what is wanted is a voltage over velocity"),
+        ({"geophone": {**GEOPHONE, "lowpas": 1}}, r'unknown key "lowpas"; .* Did you mean "low_pass"'),
+        (
+            {"instrument": "accelerometer", "geophone": GEOPHONE},
+            "its instrument is an accelerometer; leave out this table, or take instrument",
+        ),
+        ({"accelerometer": {}, "geophone": GEOPHONE}, "its instrument is an accelerometer; leave out this table"),
+        ({"quantity": "velocity", "geophone": GEOPHONE}, "a geophone reads voltage; leave out quantity, or the geophone"),
+        ({"quantity": "voltage"}, 'voltage is what an instrument puts out; name one, such as instrument = "geophone"'),
+        ({"instrument": "strain-gauge", "direction": "z"}, r'"a1"\.direction: a strain gauge lies in the face; give a direction along it'),
+        ({"instrument": "strain-gauge", "direction": [1, 0, 1]}, "a strain gauge lies in the face"),
+        ({"instrument": "strain-gauge", "quantity": "voltage"}, "a strain gauge reads strain; leave out quantity"),
+        ({"strain_gauge": {"sensitivty": 1}}, r'unknown key "sensitivty"; .* Did you mean "sensitivity"'),
+        ({"amplifier": {"noise": "1 mV"}}, r'"a1"\.amplifier\.noise: "1 mV" is a voltage; what is wanted is an acceleration'),
+        ({"amplifier": {"gain": 0}}, r'"a1"\.amplifier\.gain: 0 is not allowed'),
+        ({"geophone": GEOPHONE, "converter": {"range": -1}}, r'"a1"\.converter\.range: -1 is not allowed; it must be greater than 0 V'),
+        ({"converter": {"range": 1, "bit": 3}}, r'unknown key "bit"; .* takes range, bits\. Did you mean "bits"'),
+    ],
+)
+def test_what_does_not_fit_is_named(sensor: dict[str, Any], message: str) -> None:
+    with pytest.raises(vi.InputError, match=message):
+        case(**sensor)
+
+
+@pytest.mark.parametrize(
+    "sensor",
+    [
+        {"geophone": GEOPHONE, "amplifier": {"noise": "1 uV", "hum": "1 mV", "mains": 60}, "converter": {"range": "10 V", "bits": 24}},
+        {"accelerometer": {"sensitivity": "100 mV/g", "range": "50 g"}, "converter": {"range": "5 V"}},
+        {"instrument": "accelerometer", "amplifier": {"noise": "1 g"}},
+        {"instrument": "strain-gauge", "face": "lower", "converter": {"range": 1e-3}},
+        {"strain_gauge": {"sensitivity": "2 V"}, "direction": [1, 2, 0], "amplifier": {"gain": 1000}},
+        {"quantity": "velocity", "converter": {"range": "1 m/s", "bits": 12}},
+    ],
+)
+def test_the_resolved_case_is_the_same_case(sensor: dict[str, Any]) -> None:
+    given = case(**sensor)
+    (resolved,) = resolved_case(given)["sensors"]
+    assert case(**{key: value for key, value in resolved.items() if key not in ("name", "position")}).sensors == given.sensors
+    (again,) = vi.read_case(dict(resolved_case(given))).sensors
+    assert again.sensor() == given.sensors[0].sensor()
+
+
+def test_standard_gravity_in_a_sensitivity() -> None:
+    (sensor,) = case(accelerometer={"sensitivity": "100 mV/g"}).sensors
+    assert sensor.quantity == "voltage"
+    assert sensor.accelerometer is not None
+    assert sensor.accelerometer.sensitivity == pytest.approx(0.1 / 9.80665, rel=1e-12)
+
+
+def test_a_converter_that_clips_or_reads_nothing_is_doubted() -> None:
+    sensor = {"name": "a1", "position": [0.1, 0.05], "converter": {"range": 1.0, "bits": 8}}
+    signal = Signal(vi.Sensor("a1", "voltage"), np.array([0.0, 0.5, 127 / 128, -1.0]))
+    (clipped,) = sensor_doubts({"sensors": [sensor]}, {"a1": signal}, 1e4, 1e-4)  # type: ignore[list-item]
+    assert 'the converter of sensor "a1" clips 2 of 4 samples at its range of 1.000' in clipped
+    (silent,) = sensor_doubts({"sensors": [sensor]}, {"a1": Signal(signal.sensor, np.zeros(4))}, 1e4, 1e-4)  # type: ignore[list-item]
+    assert "reads nothing: its step is 7.812" in silent
+
+
+def test_every_quantity_has_a_type_in_universal_files_and_a_header() -> None:
+    assert _QUANTITIES.keys() == UNITS.keys()
+    assert signal_csv(Signal(vi.Sensor("a1", "voltage"), np.zeros(1))).startswith("time_s,voltage_V\n")
+
+
+def test_a_run_with_instruments_is_told_and_read_back(tmp_path: Path) -> None:
+    """In the folder, the page, universal files and the explanation of the case; voltage and strain are what the sensors' parts say."""
+    given = case(geophone=GEOPHONE, amplifier={"hum": "1 mV"}, converter={"range": "10 V", "bits": 16}, rate="10 kHz")
+    whole = dict(resolved_case(given))
+    whole["sensors"] = [*whole["sensors"], {"name": "e", "position": [0.1, 0.05], "instrument": "strain-gauge"}]
+    response = vi.simulate(vi.read_case(whole))
+    response.save(tmp_path / "run")
+    again = vi.read_result(tmp_path / "run")
+    assert {name: (one.sensor.quantity, one.sensor.unit) for name, one in again.signals.items()} == {
+        "a1": ("voltage", "V"),
+        "e": ("strain", "m/m"),
+    }
+    for name, signal in response.signals().items():
+        np.testing.assert_array_equal(again.signals[name].value, signal.value)
+        assert np.isfinite(signal.uncertainty)
+        assert signal.largest > 0.0
+    assert (tmp_path / "run" / "sensors" / "e.csv").read_text().startswith("time_s,strain_m_m\n")
+    words = case_text_of(whole)
+    assert "strain at (0.1, 0.05) m, upper face, by a strain gauge (ideal)" in words
+    assert "by a geophone (natural frequency 10 Hz; sensitivity 27.6 V s/m; damping ratio 0.6)" in words
+    assert "amplifier (gain 1; noise 0 V; hum of 0.001 V at 50 Hz), converter (range 10 V; 16 bits)" in words
+
+
+def case_text_of(table: dict[str, Any]) -> str:
+    """What `check` says of a case, without line breaks."""
+    console = Console(width=400, file=StringIO())
+    console.print(case_explained(vi.read_case(table)))
+    return " ".join(console.file.getvalue().split())  # type: ignore[attr-defined]

@@ -1,0 +1,64 @@
+"""The shipped river plate against the class limits that are used at Swiss plate geophones, with nothing tuned.
+
+Amplitudes of grains of 10 to 20 mm are compared with the class limits 4.6e-4 D^1.71 V, D in mm (measured; Wyss and others, Water Resour. Res.
+52:7712, 2016), within a factor of two. A plate of Kirchhoff on two sprung edges (100 modes, 3 % damping, quartz at 1 m/s, medians over six
+places) gave .030, .100, .179, .360 and .832 V for 12.3, 17.4, 21.8, 28 and 37.6 mm, and 1.4 to 2.3 times between places.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import vibroimpact as vi
+from vibroimpact.cases.reader import load_table
+
+PLACES = ((0.03, 0.02), (0.1, 0.05), (-0.15, 0.1), (0.05, -0.12), (0.2, 0.0), (-0.08, -0.06))
+KIRCHHOFF = {12.3: 0.030, 17.4: 0.100, 21.8: 0.179, 28.0: 0.360, 37.6: 0.832}
+
+
+def amplitudes(diameter: float, speed: float = 1.0) -> np.ndarray:
+    """Return the largest voltage of the geophone for impacts of a grain [mm] at six places [V]."""
+    table: dict[str, Any] = load_table("signals:river-plate")
+    del table["sweep"], table["sensors"][0]["amplifier"]
+    table["drop"], table["run"] = {"speed": speed}, {"duration": 0.06}
+    table["plate"]["damping"] = 0.03
+    table["sphere"]["radius"] = 0.5e-3 * diameter
+    found = []
+    for place in PLACES:
+        table["drop"]["position"] = list(place)
+        found.append(vi.simulate(vi.read_case(table)).signals()["geophone"].largest)
+    return np.array(found)
+
+
+@pytest.fixture(scope="module")
+def heard() -> dict[float, np.ndarray]:
+    return {diameter: amplitudes(diameter) for diameter in KIRCHHOFF}
+
+
+@pytest.mark.parametrize("diameter", [12.3, 17.4])
+def test_small_grains_lie_at_the_class_limits(heard: dict[float, np.ndarray], diameter: float) -> None:
+    limit = 4.6e-4 * diameter**1.71
+    assert 0.5 < np.median(heard[diameter]) / limit < 2.0
+
+
+@pytest.mark.parametrize("diameter", KIRCHHOFF)
+def test_medians_are_near_those_of_a_kirchhoff_plate(heard: dict[float, np.ndarray], diameter: float) -> None:
+    """Places, pads and the elasticity of the plate's face differ: it is the same plate, not the same model."""
+    assert np.median(heard[diameter]) == pytest.approx(KIRCHHOFF[diameter], rel=0.35)
+
+
+@pytest.mark.parametrize("diameter", KIRCHHOFF)
+def test_places_differ_as_they_are_known_to(heard: dict[float, np.ndarray], diameter: float) -> None:
+    assert 1.3 < heard[diameter].max() / heard[diameter].min() < 2.5
+
+
+def test_larger_grains_reach_the_limits_more_slowly() -> None:
+    """At the class limit a grain of 28 mm arrives at about half a metre per second along the normal, one of 12 mm at more than one."""
+    speeds = np.array([0.3, 0.5, 1.0, 1.5])
+    medians = np.array([np.median(amplitudes(28.0, speed)) for speed in speeds])
+    exponent = np.polyfit(np.log(speeds), np.log(medians), 1)[0]
+    assert 0.9 < exponent < 1.3  # more than linear: a faster impact is shorter and excites more modes
+    assert 0.3 < np.interp(4.6e-4 * 28.0**1.71, medians, speeds) < 0.7
