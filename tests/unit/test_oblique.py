@@ -432,6 +432,24 @@ def test_more_steps_change_little(law: str, friction: str, monkeypatch: pytest.M
     assert (np.abs(found - more) < 1e-4 * slip).all()
 
 
+@pytest.mark.parametrize("friction", FRICTION)
+def test_a_force_that_ends_and_begins_again_is_followed(friction: str) -> None:
+    """Of Tsuji's law a force of nearly nothing is left after it has ended; this once gave a spring that was no number."""
+    rng = np.random.default_rng(0)
+    speed, angle = rng.uniform(1.0, 5.0, 1000), rng.uniform(0.0, 1.3, 1000)
+    law = vi.find_contact_law("tsuji")(stiffness=1.333e8, restitution=0.7, effective_mass=0.03)
+    drops = vi.Problem(
+        sphere=vi.Body(mass=rng.uniform(0.01, 0.1, 1000), contact_offset=RADIUS),
+        plate=vi.rigid_plate(),
+        laws=(law,),
+        speed=speed * np.cos(angle),
+        gravity=0.0,
+        impacts=1,
+        oblique=vi.Oblique(velocity=(speed * np.sin(angle), 0.0), friction=FRICTION[friction]),
+    )
+    assert not vi.tabulate(drops).failures
+
+
 def test_values_at_keys_are_not_shared() -> None:
     one = with_values({"drop": {"height": 1.0}}, {"drop.spin.y": 100.0})
     other = with_values({"drop": {"height": 1.0}}, {"drop.spin.x": 7.0})

@@ -1,8 +1,9 @@
 """The shipped river plate against the class limits that are used at Swiss plate geophones, with nothing tuned.
 
-Amplitudes of grains of 10 to 20 mm are compared with the class limits 4.6e-4 D^1.71 V, D in mm (measured; Wyss and others, Water Resour. Res.
-52:7712, 2016), within a factor of two. A plate of Kirchhoff on two sprung edges (100 modes, 3 % damping, quartz at 1 m/s, medians over six
-places) gave .030, .100, .179, .360 and .832 V for 12.3, 17.4, 21.8, 28 and 37.6 mm, and 1.4 to 2.3 times between places.
+Amplitudes of grains of 10 to 20 mm are compared with the class limits 4.6e-4 D^1.71 V, D in mm (measured; Wyss and others, Water
+Resour. Res. 52:7712, 2016), within a factor of two. A plate of Kirchhoff on two sprung edges (100 modes, 3 % damping, quartz at 1 m/s,
+medians over six places) gave .030, .100, .179, .360 and .832 V for 12.3, 17.4, 21.8, 28 and 37.6 mm, and 1.4 to 2.3 times between
+places.
 """
 
 from __future__ import annotations

@@ -25,9 +25,10 @@ def place_of_value(change: Floats, slope: Floats, slope_there: Floats, left: Flo
 
     `change`: from 0 to 1; `slope`, `slope_there`: at 0 and at 1.
     """
-    back = 2.0 * left / (slope_there + np.sqrt(np.maximum(slope_there**2 + 4.0 * (change - slope_there) * left, 0.0)) + 1e-300)
+    root = np.sqrt(np.maximum(slope_there**2 + 4.0 * (change - slope_there) * left, 0.0))
+    back = np.clip(2.0 * left / (slope_there + root + 1e-300), 0.0, 1.0)
     bend, twist = 3.0 * change - 2.0 * slope_there - slope, slope + slope_there - 2.0 * change
     for _ in range(2):
         miss = back * (slope_there + back * (bend + back * twist)) - left
-        back = back - miss / (slope_there + back * (2.0 * bend + 3.0 * back * twist) + 1e-300)
-    return np.clip(1.0 - back, 0.0, 1.0)
+        back = np.clip(back - miss / (slope_there + back * (2.0 * bend + 3.0 * back * twist) + 1e-300), 0.0, 1.0)
+    return 1.0 - back
