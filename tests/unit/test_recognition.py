@@ -93,7 +93,7 @@ def test_of_a_large_data_set_whole_groups_are_drawn(folder: Path) -> None:
     [
         (lambda file: file.attrs.update(format="other 2"), 'the attribute "format" is "other 2"; this version reads'),
         (lambda file: file.pop("signal_a1"), "there are no signals"),
-        (lambda file: file["signal_a1"].attrs.update(rate_Hz=0.0), "no attribute rate_Hz that is greater than 0"),
+        (lambda file: file["signal_a1"].attrs.update(rate_Hz=0.0), "neither an attribute rate_Hz that is greater than 0 nor times"),
         (lambda file: file["class"].attrs.pop("flag_meanings"), "no flag_values and flag_meanings"),
         (lambda file: file["class"].attrs.update(flag_meanings="coal"), "2 flag_values and 1 flag_meanings"),
         (lambda file: file["class"].attrs.update(flag_values=[0, 7]), "1 is in the variable class and not in its flag_values"),
@@ -108,7 +108,7 @@ def test_what_is_no_data_set_is_said(change: Callable[[h5py.File], Any], message
 
 
 def test_files_that_are_no_data_sets(tmp_path: Path) -> None:
-    with pytest.raises(vi.InputError, match=r"this is not a data set; there is no dataset\.nc"):
+    with pytest.raises(vi.InputError, match=r"this is not a data set; there is no study\.nc or dataset\.nc"):
         vi.read_labelled_signals(tmp_path)
     (tmp_path / "dataset.nc").write_text("no")
     with pytest.raises(vi.InputError, match="not a NetCDF-4 file"):
@@ -117,6 +117,22 @@ def test_files_that_are_no_data_sets(tmp_path: Path) -> None:
     (place / "summary.json").write_text(json.dumps({"bayes_error": 1.5}))
     with pytest.raises(vi.InputError, match=r"bayes_error is 1\.5; it must be a number from 0 to below 1"):
         vi.read_labelled_signals(place)
+
+
+def test_a_study_is_a_data_set(tmp_path: Path) -> None:
+    """As `vibroimpact dataset` writes it: a rate by the times alone, no falls, a drop that failed."""
+    place = write_knocks(tmp_path / "data", lambda data: data.pop("fall"), **SMALL)
+    (place / "dataset.nc").rename(place / "study.nc")
+    with h5py.File(place / "study.nc", "a") as file:
+        for name in ("format", "seed"):
+            del file.attrs[name]
+        del file["signal_a1"].attrs["rate_Hz"]
+        file["signal_a1"].dims[1].attach_scale(file["time_a1"])
+        file["signal_a1"][7] = np.nan
+    signals = vi.read_labelled_signals(place)
+    assert signals.sensors["a1"].rate == 20e3
+    assert signals.groups["fall"].tolist() == [one for one in range(96) if one != 7]
+    assert len(signals) == 95
 
 
 # what is refused

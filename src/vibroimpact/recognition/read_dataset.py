@@ -1,4 +1,4 @@
-"""Reads the signals of a data set, `dataset.nc`, with their classes and groups; of a large one, whole groups drawn at random."""
+"""Reads the signals of a data set with their classes and groups; of a large one, whole groups drawn at random."""
 
 from __future__ import annotations
 
@@ -19,8 +19,11 @@ from vibroimpact.files.hdf5 import read_array
 from vibroimpact.recognition.labelled_signals import GROUPS, LabelledSignals, SensorSignals
 from vibroimpact.results.folder import SUMMARY
 from vibroimpact.shown import shown
+from vibroimpact.studies.study_folder import DATASET as STUDY
 
 DATASET, FORMAT = "dataset.nc", "vibroimpact dataset 1"
+"""File and format of data sets that are no studies; a study is read as `dataset` and `sweep` write it."""
+
 _SIGNAL, _CLASS = "signal_", "class"
 _BLOCK = 4096  # signals read at once
 
@@ -31,7 +34,7 @@ def read_labelled_signals(dataset: str | PathLike[str], *, most: int | None = No
     Parameters
     ----------
     dataset : path
-        Its folder, or its file `dataset.nc`.
+        Folder of `vibroimpact dataset`, with `study.nc`, or one with a file `dataset.nc` of the same variables; or such a file.
     most : int, optional
         Largest number of signals; of more, whole groups are drawn at random. By default all are read.
     group : str, default "rock"
@@ -50,9 +53,10 @@ def read_labelled_signals(dataset: str | PathLike[str], *, most: int | None = No
         If it is not a data set, or it is damaged.
     """
     path = Path(dataset)
-    path = path / DATASET if path.is_dir() else path
+    if path.is_dir():
+        path = next((path / name for name in (DATASET, STUDY) if (path / name).is_file()), path)
     if not path.is_file():
-        raise InputError(f"{dataset}: this is not a data set; there is no {DATASET}")
+        raise InputError(f"{dataset}: this is not a data set; there is no {STUDY} or {DATASET}")
     try:
         with h5py.File(path) as file:
             found = _read(file, path, most, group, seed)
@@ -64,8 +68,7 @@ def read_labelled_signals(dataset: str | PathLike[str], *, most: int | None = No
 
 
 def _read(file: h5py.File, path: Path, most: int | None, group: str, seed: int) -> LabelledSignals:
-    form = file.attrs.get("format", "")
-    if form != FORMAT:
+    if path.name != STUDY and (form := file.attrs.get("format", "")) != FORMAT:
         raise InputError(f'{path}: the attribute "format" is {shown(form)}; this version reads "{FORMAT}"')
     sensors = [name.removeprefix(_SIGNAL) for name, one in file.items() if name.startswith(_SIGNAL) and one.ndim == 2]
     if not sensors:
@@ -73,6 +76,7 @@ def _read(file: h5py.File, path: Path, most: int | None, group: str, seed: int) 
     count = len(file[f"{_SIGNAL}{sensors[0]}"])
     columns = {name: read_array(one) for name, one in file.items() if one.ndim == 1 and len(one) == count and not _is_scale(one)}
     groups = {name: columns[name].astype(np.intp) for name in GROUPS if name in columns}
+    groups.setdefault("fall", np.arange(count))
     classes, names = _classes(file, path, columns)
     kept = np.arange(count)
     if most is not None and count > most and group in groups:
@@ -80,7 +84,7 @@ def _read(file: h5py.File, path: Path, most: int | None, group: str, seed: int) 
     numbers = {name: one.astype(float) for name, one in columns.items() if one.dtype.kind in "fiu" and name not in (*GROUPS, _CLASS)}
     texts = {name: one.astype(str) for name, one in columns.items() if one.dtype.kind in "OS"}
     values = {sensor: _rows(file[f"{_SIGNAL}{sensor}"], kept) for sensor in sensors}
-    return LabelledSignals(
+    found = LabelledSignals(
         str(file.attrs.get("title", path.parent.name)),
         {sensor: SensorSignals(values[sensor], *_rate_and_unit(file, path, sensor)) for sensor in sensors},
         None if classes is None else classes[kept],
@@ -92,6 +96,9 @@ def _read(file: h5py.File, path: Path, most: int | None, group: str, seed: int) 
         count,
         file_digest(path),
     )
+    # of a drop that failed there is no sample
+    there = np.any([np.isfinite(one).any(axis=1) for one in values.values()], axis=0)
+    return found if there.all() else found.only(np.flatnonzero(there))
 
 
 def _is_scale(one: h5py.Dataset) -> bool:
@@ -116,11 +123,19 @@ def _classes(file: h5py.File, path: Path, columns: Mapping[str, NDArray[Any]]) -
 
 
 def _rate_and_unit(file: h5py.File, path: Path, sensor: str) -> tuple[float, str]:
-    attributes = file[f"{_SIGNAL}{sensor}"].attrs
-    rate = float(attributes.get("rate_Hz", np.nan))
+    data = file[f"{_SIGNAL}{sensor}"]
+    rate = float(data.attrs["rate_Hz"]) if "rate_Hz" in data.attrs else _rate_of_scale(data)
     if not (np.isfinite(rate) and rate > 0.0):
-        raise InputError(f"{path}: signal_{sensor} has no attribute rate_Hz that is greater than 0")
-    return rate, str(attributes.get("units", "1"))
+        raise InputError(f"{path}: signal_{sensor} has neither an attribute rate_Hz that is greater than 0 nor times of its samples")
+    return rate, str(data.attrs.get("units", "1"))
+
+
+def _rate_of_scale(data: h5py.Dataset) -> float:
+    """Return the sampling rate by the times that signals are over; NaN if there are none."""
+    if not len(data.dims[1]) or data.shape[1] < 2:
+        return float("nan")
+    time = read_array(data.dims[1][0])
+    return float(f"{(len(time) - 1) / (time[-1] - time[0]):.12g}")  # without the rounding of the times
 
 
 def _drawn_groups(groups: Indices, most: int, seed: int) -> Indices:
