@@ -24,6 +24,7 @@ FLOORS = {  # top to bottom: what a floor is, its colour, its rooms and what the
             "calibration": "parameters from\nmeasurements",
             "studies": "many drops,\ndataset, report",
             "bounds": "what no classifier\ncan tell",
+            "recognition": "classifiers that can't\nfool themselves",
             "modes": "frequencies,\nshapes",
             "laws": "sheets, curves,\npages",
             "exporting": "files for other\nprograms",

@@ -104,6 +104,16 @@ if TYPE_CHECKING:
     from vibroimpact.modes.charts import mode_charts as mode_charts
     from vibroimpact.modes.folder import save_modes as save_modes
     from vibroimpact.paper.report.folder import reproduce_paper as reproduce_paper
+    from vibroimpact.recognition.apply import Recognised as Recognised
+    from vibroimpact.recognition.apply import apply_recogniser as apply_recogniser
+    from vibroimpact.recognition.apply import save_recognised as save_recognised
+    from vibroimpact.recognition.folder import save_recognition as save_recognition
+    from vibroimpact.recognition.labelled_signals import LabelledSignals as LabelledSignals
+    from vibroimpact.recognition.read_dataset import read_labelled_signals as read_labelled_signals
+    from vibroimpact.recognition.recognise import Recognition as Recognition
+    from vibroimpact.recognition.recognise import recognise as recognise
+    from vibroimpact.recognition.recogniser import Recogniser as Recogniser
+    from vibroimpact.recognition.recogniser import load_recogniser as load_recogniser
     from vibroimpact.remake import remake_report as remake_report
     from vibroimpact.results.folder import read_result as read_result
     from vibroimpact.results.result import Result as Result
@@ -157,6 +167,7 @@ _HOME = {
     "Geophone": "dynamics.sensors.instruments.geophone",
     "InputError": "errors",
     "Material": "materials",
+    "LabelledSignals": "recognition.labelled_signals",
     "Mesh": "structures.mesh",
     "ModalBasis": "structures.modal_model",
     "MovingBody": "dynamics.system",
@@ -170,6 +181,9 @@ _HOME = {
     "Problem": "dynamics.problem",
     "QuasiStatic": "contact.quasi_static",
     "Record": "signals.record",
+    "Recogniser": "recognition.recogniser",
+    "Recognised": "recognition.apply",
+    "Recognition": "recognition.recognise",
     "RecordTable": "signals.record_table",
     "Response": "dynamics.response",
     "Result": "results.result",
@@ -184,6 +198,7 @@ _HOME = {
     "VibroimpactError": "errors",
     "achieved_restitution": "dynamics.restitution",
     "bound_of": "bounds.bound",
+    "apply_recogniser": "recognition.apply",
     "calibrate": "calibration.calibrate",
     "calibrate_case": "calibration.calibrate_case",
     "calibrate_friction": "calibration.friction.calibrate",
@@ -216,6 +231,7 @@ _HOME = {
     "law_parameter": "calibration.tunables",
     "load_calibration": "calibration.calibrate_case",
     "load_case": "cases.reader",
+    "load_recogniser": "recognition.recogniser",
     "load_sweep": "studies.sweep",
     "local_element_deviations": "dynamics.local_element",
     "material_library": "materials",
@@ -228,11 +244,13 @@ _HOME = {
     "plotly_figure": "charts.notebook",
     "read_calibration": "calibration.calibrate_case",
     "read_case": "cases.reader",
+    "read_labelled_signals": "recognition.read_dataset",
     "read_mesh": "meshes.mesh_file",
     "read_records": "signals.read_records",
     "read_result": "results.folder",
     "read_study": "studies.study",
     "read_sweep": "studies.sweep",
+    "recognise": "recognition.recognise",
     "record_table": "signals.record_table",
     "remake_report": "remake",
     "reproduce_paper": "paper.report.folder",
@@ -247,6 +265,8 @@ _HOME = {
     "save_comparison": "comparison.folder",
     "save_figures": "figures",
     "save_modes": "modes.folder",
+    "save_recognised": "recognition.apply",
+    "save_recognition": "recognition.folder",
     "save_result": "runs.save",
     "shipped_cases": "cases.reader",
     "simulate": "dynamics.simulate",

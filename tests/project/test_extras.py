@@ -12,11 +12,12 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 EXTRAS: dict[str, list[str]] = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]
-_IMPORTED_AS = {"dask": "distributed"}  # of which the scheduler is used
+_IMPORTED_AS = {"dask": "distributed", "scikit-learn": "sklearn"}  # of dask the scheduler is used
 
 _PACKAGE_OF = {
     "pydantic_core": "pydantic",
     "PIL": "pillow",
+    "sklearn": "scikit-learn",
     "distributed": "dask",
     "skfem": "scikit-fem",
     "tomli_w": "tomli-w",

@@ -36,6 +36,7 @@ LAYERS = [
     {"runs"},
     {"comparison", "calibration", "studies", "laws"},
     {"bounds"},
+    {"recognition"},
     {"exporting", "paper"},
     {"remake", "figures"},
     {"app"},

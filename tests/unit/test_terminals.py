@@ -14,6 +14,7 @@ import pytest
 from rich.console import RenderableType
 
 import vibroimpact as vi
+from knocks import write_knocks
 from studies import study_table
 from support import one_in, plain_case
 from told import told_case
@@ -35,6 +36,7 @@ from vibroimpact.laws.sheet import law_sheet, law_table
 from vibroimpact.modes.text import modes_summary
 from vibroimpact.paper.report.page import verdict_table
 from vibroimpact.paper.report_section import Verdict
+from vibroimpact.recognition.text import recognised_summary, recognition_summary
 from vibroimpact.report.console import TerminalConsole
 from vibroimpact.results.result import result_of
 from vibroimpact.runs.case_explained import case_explained
@@ -82,6 +84,9 @@ def commands(tmp_path_factory: pytest.TempPathFactory, variable: vi.Response) ->
     drop = told_case("paper:type1-variable")
     signals = [vi.Record(name, signal.value, signal.sensor.rate, signal.sensor.unit) for name, signal in rung.signals.items()]
     table = vi.record_table([*signals, vi.Record("silence", [0.0] * 100, 20e3, "V")])
+    knocks = write_knocks(folder / "knocks", rocks=8, falls=6)
+    recognition = vi.recognise(knocks, folds=2, seeds=1)
+    recognised = vi.apply_recogniser(recognition.recogniser, knocks)
     return {
         "run": lambda width: result_summary(rigid, width),
         "run, elastic": lambda width: result_summary(rung, width),
@@ -95,6 +100,8 @@ def commands(tmp_path_factory: pytest.TempPathFactory, variable: vi.Response) ->
         "export, done": lambda _: export_summary(drop, find_export_format("lammps"), [folder / "drop.in"]),
         "features": lambda _: table_summary(table),
         "features --list": lambda _: feature_list(),
+        "recognise": lambda _: recognition_summary(recognition),
+        "recognise, applied": lambda _: recognised_summary(recognised),
         "cases": lambda _: shipped_cases_table(),
         "laws": law_table,
         "laws NAME": lambda _: law_sheet("jackson-green-marghitu"),
@@ -119,6 +126,8 @@ NAMES = (
     "export, done",
     "features",
     "features --list",
+    "recognise",
+    "recognise, applied",
     "cases",
     "laws",
     "laws NAME",

@@ -40,6 +40,8 @@ _OTHER_FOLDERS = {
     "reproduction": "this is a reproduction of the paper, not the result of a run; make it anew with reproduce",
     "study": "this is a study of many drops, not the result of a run; its results are in study.nc",
     "modes": "these are modes of elastic bodies, not the result of a run; make them anew with modes",
+    "recognition": "this is a recognition of signals, not the result of a run; make it anew with recognise",
+    "recognised": "these are recognised signals, not the result of a run; make them anew with recognise --model",
 }
 """Messages for folders that are not results of a run, by the key that identifies them in `summary.json`."""
 

@@ -1,0 +1,86 @@
+"""The command `recognise`, which trains and validates classifiers of a data set, or applies a saved one."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from vibroimpact.cli.shared import Figures, Force, Json, app, exit_on_interrupt, note, say, show, stem
+from vibroimpact.errors import InputError
+
+_EVERY = 10.0
+"""Time between two lines of progress [s]."""
+
+
+@app.command()
+def recognise(
+    dataset: Annotated[str, typer.Argument(metavar="DATASET", help="The folder of a data set, or its dataset.nc.")],
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", metavar="DIR", help="The folder to make; by default DATASET-recognised.")
+    ] = None,
+    model: Annotated[
+        Path | None, typer.Option("--model", metavar="DIR", help="Train nothing: apply the model that an earlier recognise saved in DIR.")
+    ] = None,
+    group: Annotated[
+        str, typer.Option("--group", metavar="NAME", help="What is never both trained on and tested on: rock, plate or fall.")
+    ] = "rock",
+    folds: Annotated[int, typer.Option("--folds", metavar="N", help="Parts of the cross-validation.")] = 5,
+    seeds: Annotated[int, typer.Option("--seeds", metavar="N", help="How many seeds the scores are a mean over.")] = 5,
+    seed: Annotated[int, typer.Option("--seed", metavar="N", min=0, help="The first of them.")] = 0,
+    most: Annotated[
+        int, typer.Option("--most", metavar="N", help="Signals used at most; of more, whole groups are drawn at random.")
+    ] = 4000,
+    figures: Figures = False,
+    force: Force = False,
+    as_json: Json = False,
+) -> None:
+    """Train classifiers of what fell on a plate, and validate them so that they can't fool themselves.
+
+    Baselines and four classifiers are compared with groups kept apart, beside a split at random; the best is saved, and --model applies it.
+    """
+    from vibroimpact.recognition.apply import apply_recogniser, recognised_document, save_recognised
+    from vibroimpact.recognition.folder import save_recognition
+    from vibroimpact.recognition.recognise import recognise as recognise_signals
+    from vibroimpact.recognition.tables import summary_of_recognition
+    from vibroimpact.recognition.text import recognised_summary, recognition_summary
+    from vibroimpact.results.folder import check_free
+
+    name = stem(str(Path(dataset).parent if dataset.endswith(".nc") else Path(dataset)))
+    target = Path(f"{name}-recognised") if output is None else output
+    check_free(target, force=force)
+    for given in (Path(dataset), *([] if model is None else [model])):
+        if target.resolve() in (given.resolve(), *given.resolve().parents):
+            raise InputError(f"{target}: {given} lies there, and would be replaced; name another place for the result")
+    if model is not None:
+        with exit_on_interrupt():
+            applied = apply_recogniser(model, dataset)
+            folder = save_recognised(applied, target, force=force)
+        show(lambda: {"folder": str(folder), **recognised_document(applied)}, lambda: recognised_summary(applied), as_json=as_json)
+        say(f"wrote {folder / 'predictions.csv'}", err=as_json)
+        return
+    with exit_on_interrupt():
+        done = recognise_signals(dataset, group=group, folds=folds, seeds=seeds, seed=seed, most=most, progress=_progress_lines())
+        folder = save_recognition(done, target, force=force, figures=("png",) if figures else ())
+    show(lambda: {"folder": str(folder), **summary_of_recognition(done)}, lambda: recognition_summary(done), as_json=as_json)
+    say(f"wrote {folder / 'report.html'} and {folder / 'model'}", err=as_json)
+
+
+def _progress_lines() -> Callable[[str, int, int], None]:
+    """Return a callback that prints a line when something begins, and every ten seconds while it lasts."""
+    said = time.monotonic()
+
+    def progress(what: str, done: int, total: int) -> None:
+        nonlocal said
+        if not done:
+            note(what)
+        elif done < total and time.monotonic() - said > _EVERY:
+            note(f"{what}: {done} of {total}")
+        else:
+            return
+        said = time.monotonic()
+
+    return progress

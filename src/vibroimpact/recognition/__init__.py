@@ -1,0 +1,1 @@
+"""Recognition: classifiers of what fell on a plate, validated so that they can't fool themselves, saved and applied."""

@@ -1,0 +1,151 @@
+"""Applies a saved model to the signals of a data set, whose classes may not be known."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from vibroimpact._version import __version__
+from vibroimpact.arrays import Floats
+from vibroimpact.files.plain_names import one_line
+from vibroimpact.recognition.fraction import Estimate
+from vibroimpact.recognition.labelled_signals import LabelledSignals
+from vibroimpact.recognition.read_dataset import read_labelled_signals
+from vibroimpact.recognition.recogniser import Recogniser, doubts_of_version, load_recogniser
+from vibroimpact.results.csv_files import write_csv
+from vibroimpact.results.folder import SUMMARY, new_folder
+
+
+@dataclass(frozen=True, eq=False)
+class Recognised:
+    """Signals with the classes that a model gives them.
+
+    Parameters
+    ----------
+    name : str
+        Title of the signals.
+    classifier : str
+        What the model is.
+    class_names : tuple of str
+        The classes of the model.
+    probabilities : array, shape (signals, classes)
+        Probability of each class.
+    counted : tuple of float
+        Part of the signals taken for each class.
+    fractions : mapping of str to Estimate
+        The fraction of each class, corrected by what the model confuses.
+    accuracy : float, optional
+        Balanced accuracy, where the classes of the signals are known.
+    doubts : tuple of str
+        What is doubtful, such as another version.
+    """
+
+    name: str
+    classifier: str
+    class_names: tuple[str, ...]
+    probabilities: Floats
+    counted: tuple[float, ...]
+    fractions: Mapping[str, Estimate]
+    accuracy: float | None
+    doubts: tuple[str, ...]
+
+
+def apply_recogniser(model: Recogniser | str | PathLike[str], dataset: str | PathLike[str] | LabelledSignals) -> Recognised:
+    """Recognise signals by a saved model, and estimate the fraction of each class in them.
+
+    Parameters
+    ----------
+    model : Recogniser or path
+        A model, or the folder of one.
+    dataset : path or LabelledSignals
+        A data set, whose classes need not be known: its signals are the stream of impacts.
+
+    Returns
+    -------
+    Recognised
+        Probabilities and fractions.
+
+    Raises
+    ------
+    InputError
+        If either can't be read, or the signals are not of the sensors and rates that the model was trained on.
+    """
+    recogniser = model if isinstance(model, Recogniser) else load_recogniser(model)
+    signals = dataset if isinstance(dataset, LabelledSignals) else read_labelled_signals(dataset)
+    found = recogniser.probabilities(signals)
+    guessed, names = found.argmax(axis=1), recogniser.class_names
+    doubts = doubts_of_version(recogniser)
+    if signals.check_sum and signals.check_sum == recogniser.card["data"]["sha256"]:
+        doubts.append("the model was trained on these signals, so it recognises them better than others")
+    return Recognised(
+        signals.name,
+        recogniser.card["classifier"],
+        names,
+        found,
+        tuple(float((guessed == one).mean()) for one in range(len(names))),
+        recogniser.fractions(guessed),
+        _accuracy(signals, [names[one] for one in guessed], names),
+        tuple(doubts),
+    )
+
+
+def _accuracy(signals: LabelledSignals, guessed: list[str], names: tuple[str, ...]) -> float | None:
+    """Return the balanced accuracy; None if the classes are not known, or one is not a class of the model."""
+    if signals.classes is None or not set(signals.of_present_classes().class_names) <= set(names):
+        return None
+    truth = np.array([signals.class_names[one] for one in signals.classes])
+    right = truth == np.array(guessed)
+    return float(np.mean([right[truth == one].mean() for one in np.unique(truth)]))
+
+
+def recognised_document(found: Recognised) -> dict[str, Any]:
+    """Return the content of `summary.json` of recognised signals."""
+    return {
+        "name": found.name,
+        "version": __version__,
+        "recognised": {
+            "classifier": found.classifier,
+            "signals": len(found.probabilities),
+            "balanced_accuracy": found.accuracy,
+            "classes": {
+                name: {"counted": counted, "fraction": one.value, "fraction_low": one.low, "fraction_high": one.high}
+                for (name, one), counted in zip(found.fractions.items(), found.counted, strict=True)
+            },
+        },
+        "doubts": list(found.doubts),
+    }
+
+
+def save_recognised(found: Recognised, directory: str | PathLike[str], *, force: bool = False) -> Path:
+    """Write `predictions.csv`, a row a signal with the probability of each class, and `summary.json`, atomically.
+
+    Parameters
+    ----------
+    found : Recognised
+        The signals with their classes.
+    directory : path
+        The folder to create.
+    force : bool, default False
+        Replace an existing result folder.
+
+    Raises
+    ------
+    InputError
+        If the folder exists and may not be replaced, or it can't be written to.
+    """
+    columns = [f"probability_{one_line(name)}" for name in found.class_names]
+    guessed = [found.class_names[one] for one in found.probabilities.argmax(axis=1)]
+    with new_folder(directory, force=force) as folder:
+        rows = (
+            {"signal": number, "class": name, **dict(zip(columns, values.tolist(), strict=True))}
+            for number, (name, values) in enumerate(zip(guessed, found.probabilities, strict=True))
+        )
+        write_csv(rows, ["signal", "class", *columns], folder / "predictions.csv")
+        (folder / SUMMARY).write_text(json.dumps(recognised_document(found), indent=2, allow_nan=False) + "\n", encoding="utf-8")
+    return Path(directory)

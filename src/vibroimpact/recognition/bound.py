@@ -1,0 +1,69 @@
+"""The best classifier beside the bound that physics sets: one that is better has seen what it may not, a leak."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from vibroimpact.recognition.scores import Score, Scores
+
+_SURE = 99.0
+"""Part of the draws whose error must lie below the bound [%]."""
+
+
+def below_bound(error: Score, bayes_error: float, groups: int) -> bool:
+    """Return whether an error rate lies below the Bayes error by more than chance.
+
+    Parameters
+    ----------
+    error : Score
+        Error rate with its bootstrap draws.
+    bayes_error : float
+        The least error that any classifier can have on the population.
+    groups : int
+        Number of independent groups: where no group has an error all draws are zero, and the upper end is that of none in so many.
+
+    Examples
+    --------
+    >>> none = Score(0.0, np.zeros(1000), np.zeros(5))
+    >>> below_bound(none, 0.2, 100), below_bound(none, 0.02, 100)
+    (True, False)
+    """
+    high = float(np.nanpercentile(error.draws, _SURE))
+    if not error.draws.any():
+        high = 1.0 - (1.0 - _SURE / 100.0) ** (1.0 / groups)
+    return high < bayes_error
+
+
+def bound_doubts(scores: Mapping[str, Scores], bayes_error: float | None, groups: int, probe: str, best: str) -> list[str]:
+    """Return a sentence for each leak: what is better than the bound, and a probe that is better than all features.
+
+    Parameters
+    ----------
+    scores : mapping of str to Scores
+        Scores under the grouped split.
+    bayes_error : float, optional
+        The bound, where it is known.
+    groups : int
+        Number of groups.
+    probe : str
+        Name of the classifier of what should tell little.
+    best : str
+        Name of the best classifier of all features.
+    """
+    found = []
+    if bayes_error is not None:
+        found = [
+            f"leak: {name} errs in {one.error.value:.2%}, below the Bayes error of {bayes_error:.2%} of this population; it has seen what "
+            "a plate can't tell"
+            for name, one in scores.items()
+            if below_bound(one.error, bayes_error, groups)
+        ]
+    apart = scores[probe].balanced_accuracy.draws - scores[best].balanced_accuracy.draws
+    if np.nanpercentile(apart, 100.0 - _SURE) > 0.0:
+        found.append(
+            f"leak: {probe} alone tell the classes (balanced accuracy {scores[probe].balanced_accuracy.value:.3f}), better than all "
+            f"features ({scores[best].balanced_accuracy.value:.3f}); look how the signals were cut"
+        )
+    return found

@@ -1,0 +1,179 @@
+"""The charts of a recognition, described as data."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vibroimpact.charts.axis import Axis
+from vibroimpact.charts.chart import Chart, Panel
+from vibroimpact.charts.marks import Bars, Level, Line, Map, Mark, Points
+from vibroimpact.charts.palette import series
+from vibroimpact.recognition.recognise import Recognition
+from vibroimpact.recognition.scores import Score
+from vibroimpact.shown import shortened, visible
+
+_HEIGHT = 3.6
+_MOST_FEATURES = 20
+_LETTERS = 34
+
+
+def recognition_charts(found: Recognition) -> list[Chart]:
+    """Return the charts of a recognition.
+
+    Parameters
+    ----------
+    found : Recognition
+        The recognition.
+
+    Returns
+    -------
+    list of Chart
+        `scores`, `confusion`, `unseen` where ranges could be left out, `robustness`, `reliability`, `importance` and `fraction`.
+    """
+    unseen = [_unseen_chart(found)] if found.unseen else []
+    fraction = [_fraction_chart(found)] if found.streams else []
+    return [
+        _scores_chart(found),
+        _confusion_chart(found),
+        *unseen,
+        _robustness_chart(found),
+        _reliability_chart(found),
+        _importance_chart(found),
+        *fraction,
+    ]
+
+
+def _scores_chart(found: Recognition) -> Chart:
+    names = list(found.scores)[::-1]
+    places = np.arange(float(len(names)))
+    marks: list[Mark] = [
+        _lying(places + side, [scores[name].error for name in names], words, role, names)
+        for side, scores, words, role in (
+            (0.18, found.scores, f"{found.group}s kept apart", "detail"),
+            (-0.18, found.random, "split at random", "pale"),
+        )
+    ]
+    if found.bayes_error is not None:
+        marks.append(Level(found.bayes_error, "Bayes error", "mark line", upright=True))
+    panel = Panel(Axis("Part taken for another class", range=(0.0, np.nan)), Axis(names=_short(names)), tuple(marks))
+    bound = " No classifier can be left of the line, the Bayes error of the population: one that is has seen what a plate can't tell." * (
+        found.bayes_error is not None
+    )
+    caption = (
+        f"Error on signals that were not trained on: with all signals of a {found.group} either trained on or tested on, and with signals "
+        "split at random, as is often done. The difference is optimism. Thin lines: 95 % intervals, by bootstrap over "
+        f"{found.group}s.{bound}"
+    )
+    return Chart("scores", "Errors, and optimism", ((panel,),), caption, 0.9 + 0.36 * len(names))
+
+
+def _lying(places: np.ndarray, scores: list[Score], words: str, role: str, names: list[str]) -> Bars:
+    values, low, high = (np.array(one) for one in zip(*((one.value, one.low, one.high) for one in scores), strict=True))
+    return Bars(places, values, words, role, 0.34, lying=True, low=low, high=high, texts=tuple(names))
+
+
+def _confusion_chart(found: Recognition) -> Chart:
+    counts = found.confusion[found.best]
+    parts = counts / counts.sum(axis=1, keepdims=True)
+    names = tuple(shortened(visible(name), _LETTERS) for name in found.class_names)
+    places = np.arange(float(len(names)))
+    texts = tuple(
+        f"{truth} taken for {guess}: {parts[row, column]:.1%}" for row, truth in enumerate(names) for column, guess in enumerate(names)
+    )
+    cells = Map(places, places, parts, Axis("Part of the class", range=(0.0, 1.0)), texts=texts)
+    panel = Panel(Axis("Taken for", names=names), Axis("Is", names=names), (cells,))
+    caption = f"What the best classifier ({found.best}) takes signals for, of {found.group}s that it did not see; mean over the seeds."
+    return Chart("confusion", "Confusion", ((panel,),), caption, _HEIGHT)
+
+
+def _unseen_chart(found: Recognition) -> Chart:
+    rows = found.unseen[::-1]
+    names = [f"{one.key}: {one.words}" for one in rows]
+    places = np.arange(float(len(rows)))
+    marks = (
+        _lying(places + 0.18, [one.seen for one in rows], "trained on too", "detail", names),
+        _lying(places - 0.18, [one.unseen for one in rows], "left out in training", "lower", names),
+        Level(1.0 / len(found.class_names), "chance", "dotted", upright=True),
+    )
+    panel = Panel(Axis("Balanced accuracy", range=(0.0, 1.0)), Axis(names=_short(names)), marks)
+    caption = (
+        "Signals in each range of a drawn key, recognised by classifiers that were trained on all ranges, and by ones that were trained on "
+        f"the others alone; {found.group}s are kept apart in both. Keys by which classes are made are not left out. Best classifier: "
+        f"{found.best}."
+    )
+    return Chart("unseen", "Trained on, and tested on", ((panel,),), caption, 0.9 + 0.36 * len(names))
+
+
+def _robustness_chart(found: Recognition) -> Chart:
+    levels = np.array([one.level for one in found.noise])[::-1]
+    marks: list[Mark] = []
+    for number, (words, scores) in enumerate(
+        (
+            ("trained with the noise", [one.trained_with for one in found.noise]),
+            ("trained without", [one.trained_without for one in found.noise]),
+        )
+    ):
+        values, low, high = (np.array(one)[::-1] for one in zip(*((one.value, one.low, one.high) for one in scores), strict=True))
+        marks += [Line(levels, values, words, series(number), marked=True), Points(levels, values, role=series(number), low=low, high=high)]
+    marks.append(Level(found.scores[found.best].balanced_accuracy.value, "without noise", "reference"))
+    marks.append(Level(1.0 / len(found.class_names), "chance", "dotted"))
+    panel = Panel(Axis("Signal to noise", "dB"), Axis("Balanced accuracy", range=(0.0, 1.0)), tuple(marks))
+    caption = (
+        "White noise of one strength is added to all signals before their features are taken; its level counts from the mean square of the "
+        f"median signal. Best classifier: {found.best}."
+    )
+    return Chart("robustness", "Recognition in noise", ((panel,),), caption, _HEIGHT)
+
+
+def _reliability_chart(found: Recognition) -> Chart:
+    marks: list[Mark] = [Line(np.array([0.0, 1.0]), np.array([0.0, 1.0]), "as told", "reference")]
+    for number, name in enumerate(dict.fromkeys(one.class_name for one in found.reliability)):
+        rows = [one for one in found.reliability if one.class_name == name]
+        part, told, low, high = (np.array([getattr(one, key) for one in rows]) for key in ("part", "probability", "low", "high"))
+        texts = tuple(f"{one.signals} signals" for one in rows)
+        marks += [Line(told, part, name, series(number)), Points(told, part, role=series(number), low=low, high=high, texts=texts)]
+    panel = Panel(Axis("Probability told", range=(0.0, 1.0)), Axis("Part that is of the class", range=(0.0, 1.0)), tuple(marks))
+    caption = (
+        "Of signals that are told to be of a class with a probability, the part that is; mean difference "
+        f"{found.calibration_error:.3f}. Best classifier: {found.best}."
+    )
+    return Chart("reliability", "Calibration of the probabilities", ((panel,),), caption, _HEIGHT)
+
+
+def _importance_chart(found: Recognition) -> Chart:
+    rows = found.importance[:_MOST_FEATURES][::-1]
+    names = [one.feature for one in rows]
+    loss, spread = (np.array([getattr(one, key) for one in rows]) for key in ("loss", "spread"))
+    places = np.arange(float(len(rows)))
+    bars = Bars(places, loss, lying=True, low=loss - spread, high=loss + spread, texts=tuple(names))
+    panel = Panel(Axis("Loss of balanced accuracy"), Axis(names=_short(names)), (bars, Level(0.0, role="main", upright=True)))
+    caption = (
+        f"How much worse {found.group}s that were not trained on are recognised once a feature is exchanged between their signals; thin "
+        "lines: spread over the parts of the cross-validation. Features that say the same share their importance. Best classifier: "
+        f"{found.best}."
+    )
+    return Chart("importance", "Importance of features", ((panel,),), caption, 0.9 + 0.26 * len(names))
+
+
+def _fraction_chart(found: Recognition) -> Chart:
+    panels = []
+    across, up = Axis("True fraction", range=(-0.02, 1.02)), Axis("Fraction found", range=(0.0, 1.0))
+    for impacts in dict.fromkeys(one.impacts for one in found.streams):
+        marks: list[Mark] = [Line(np.array([0.0, 1.0]), np.array([0.0, 1.0]), "true", "reference")]
+        for number, name in enumerate(dict.fromkeys(one.class_name for one in found.streams)):
+            rows = [one for one in found.streams if (one.class_name, one.impacts) == (name, impacts)]
+            true, counted, value, low, high = (
+                np.array([getattr(one, key) for one in rows]) for key in ("fraction", "counted", "adjusted", "low", "high")
+            )
+            marks.append(Line(true, counted, f"{name}, counted", f"thin {series(number)}"))
+            marks += [Line(true, value, f"{name}, corrected", series(number)), Points(true, value, role=series(number), low=low, high=high)]
+        panels.append(Panel(across, up, tuple(marks), f"{impacts} impacts"))
+    caption = (
+        f"The fraction of a class in streams of {found.group}s that the confusion was not learned from: as counted, and corrected by the "
+        "confusion, with mean 95 % intervals."
+    )
+    return Chart("fraction", "Fraction in a stream of impacts", (tuple(panels),), caption, _HEIGHT)
+
+
+def _short(names: list[str]) -> tuple[str, ...]:
+    return tuple(shortened(visible(name), _LETTERS) for name in names)

@@ -1,0 +1,18 @@
+"""The extra `ml`: what is said where it is missing."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from vibroimpact.errors import InputError
+
+
+@contextmanager
+def needs_extra() -> Iterator[None]:
+    """Turn a failed import of a library of the extra into an InputError that says how to install it."""
+    try:
+        yield
+    except ImportError as error:
+        name = {"sklearn": "scikit-learn"}.get(error.name or "", error.name)
+        raise InputError(f'recognition needs {name}, which is not installed: pip install "vibroimpact[ml]"') from None

@@ -1,0 +1,150 @@
+"""What makes a data set unfit for recognition, or its score too good: each said in one sentence before anything is learned."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vibroimpact.arrays import Floats, Indices
+from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.recognition.labelled_signals import GROUPS, LabelledSignals, lengths
+
+DURATION, FORCE = "first_duration_s", "largest_force_N"
+_CORNER = 0.67
+"""Frequency at which the spectrum of Hertz's force has fallen by 3 dB, times the contact time."""
+
+
+def check_signals(signals: LabelledSignals, group: str, folds: int) -> list[str]:
+    """Check that classifiers can be trained on signals and tested honestly, and return what is doubtful.
+
+    Parameters
+    ----------
+    signals : LabelledSignals
+        The signals.
+    group : str
+        What signals of a group share; no group is both trained on and tested on.
+    folds : int
+        Number of parts of the cross-validation.
+
+    Raises
+    ------
+    InputError
+        If there is only one class, the groups can't be split, the length of a signal tells its class, two groups hold the same signal,
+        or the signals are sampled too slowly to tell the classes.
+    """
+    if signals.classes is None:
+        raise InputError(f"{signals.name}: the signals have no classes to learn from; the variable class is missing")
+    present = np.unique(signals.classes)
+    if len(present) < 2:
+        raise InputError(f"there is one class only: all {len(signals)} signals are {signals.class_names[present[0]]}")
+    groups = check_groups(signals, signals.classes, group, folds)
+    check_lengths(signals, signals.classes)
+    check_duplicates(signals, groups, group)
+    doubts = check_rates(signals, signals.classes)
+    if len(np.unique(groups)) == len(groups):
+        doubts.append(f"each signal has a {group} of its own, so the grouped split is a random split")
+    if signals.total is not None and signals.total > len(signals):
+        doubts.append(
+            f"of {signals.total:,} signals {len(signals):,} are used, those of whole groups drawn at random; failed drops are left out"
+        )
+    return doubts
+
+
+def check_groups(signals: LabelledSignals, classes: Indices, group: str, folds: int) -> Indices:
+    """Return the group of each signal, after a check that the groups can be split so that every part has every class."""
+    if group not in signals.groups:
+        known = tuple(signals.groups)
+        words = f"there are {', '.join(known)}" if known else "there are none"
+        raise InputError(f'"{group}" is no group of these signals; {words}.{did_you_mean(group, known or GROUPS)}', "group")
+    groups = signals.groups[group]
+    names = {int(one): np.unique(groups[classes == one]) for one in np.unique(classes)}
+    if len(np.unique(groups)) == 1:
+        raise InputError(f"all {len(groups)} signals are of one {group}, so that nothing can be tested on another {group}")
+    if all(len(one) == 1 for one in names.values()):
+        raise InputError(
+            f"each class is in one {group} only: what tells the {group}s apart would pass for what tells the classes apart; "
+            f"give several {group}s of each class"
+        )
+    fewest = min(names, key=lambda one: len(names[one]))
+    if (count := len(names[fewest])) < folds:
+        remedy = f"or ask for {count} folds" if count > 1 else "since what is trained on one can't be tested on another"
+        raise InputError(
+            f"{signals.class_names[fewest]} is in {count} {group}{'s' if count > 1 else ''}, too few for {folds} folds; "
+            f"give signals of {folds} {group}s or more, {remedy}"
+        )
+    return groups
+
+
+def check_lengths(signals: LabelledSignals, classes: Indices) -> None:
+    """Raise InputError if the length of signals tells their class: a simulation that ended, and nothing that a plate could tell."""
+    for sensor, one in signals.sensors.items():
+        found = lengths(one.values)
+        for name in np.unique(classes):
+            own, others = found[classes == name], found[classes != name]
+            low, high = int(own.min()), int(own.max())
+            if not ((others >= low) & (others <= high)).any():
+                words = f"{low}" if low == high else f"{low} to {high}"
+                raise InputError(
+                    f"the length of a signal tells its class: those of {signals.class_names[name]} have {words} samples at {sensor}, and "
+                    "no signal of another class has; cut or record all to one length"
+                )
+
+
+def check_duplicates(signals: LabelledSignals, groups: Indices, group: str) -> None:
+    """Raise InputError if two groups hold the same signal, which would then be trained on and tested on; silent signals do not count."""
+    seen: dict[bytes, int] = {}
+    parts = [one.values for one in signals.sensors.values()]
+    silent = np.all([np.ptp(np.nan_to_num(part), axis=1) == 0.0 for part in parts], axis=0)
+    for number in np.flatnonzero(~silent):
+        row = b"".join(part[number].tobytes() for part in parts)
+        first = seen.setdefault(row, int(number))
+        if groups[first] != groups[number]:
+            raise InputError(
+                f"signals {first} and {number} are the same and lie in two {group}s ({groups[first]} and {groups[number]}): one would be "
+                "trained on and the other tested on; remove one"
+            )
+
+
+def check_rates(signals: LabelledSignals, classes: Indices) -> list[str]:
+    """Return doubts about sampling rates at which contact times can't be seen.
+
+    Raises
+    ------
+    InputError
+        If the classes differ in contact time and hardly in force, and no sensor is fast enough to see the contact times.
+    """
+    if DURATION not in signals.truth:
+        return []
+    duration = signals.truth[DURATION]
+    median = max(float(np.nanmedian(duration[classes == one])) for one in np.unique(classes))
+    fastest = max(signals.sensors, key=lambda name: signals.sensors[name].rate)
+    rate = signals.sensors[fastest].rate
+    needed = 2.0 * _CORNER / median
+    if not rate < needed:  # or no impact has a duration
+        return []
+    words = (
+        f"{fastest} samples at {rate:.4g} Hz and shows up to {0.5 * rate:.4g} Hz; contacts of {median * 1e6:.3g} us, the longest median of "
+        f"a class, show from {_CORNER / median:.4g} Hz on, so contact times need {needed:.4g} Hz or more"
+    )
+    if FORCE in signals.truth and separation(signals.truth[FORCE], classes) < 0.5 * separation(duration, classes):
+        raise InputError(f"sampling is too slow for the question: the classes differ in contact time and hardly in force; {words}")
+    return [f"contact times can't be seen: {words}"]
+
+
+def separation(values: Floats, classes: Indices) -> float:
+    """Return how well one quantity tells classes apart: the largest, over pairs, of |2 A - 1|, A being the area under the ROC curve.
+
+    Examples
+    --------
+    >>> separation(np.array([1.0, 2.0, 3.0, 4.0]), np.array([0, 0, 1, 1]))
+    1.0
+    """
+    there = np.isfinite(values)
+    values, classes = values[there], classes[there]
+    found = [0.0]
+    names = np.unique(classes)
+    for place, one in enumerate(names):
+        for other in names[place + 1 :]:
+            low, high = np.sort(values[classes == one]), values[classes == other]
+            below = np.searchsorted(low, high, side="left") + np.searchsorted(low, high, side="right")
+            found.append(abs(float(below.mean()) / len(low) - 1.0))
+    return max(found)

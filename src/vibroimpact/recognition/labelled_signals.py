@@ -1,0 +1,115 @@
+"""The noun of recognition: signals with their classes, and which of them share a rock, a plate or a fall."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vibroimpact.arrays import Indices
+
+GROUPS = ("rock", "plate", "fall")
+"""What signals may share."""
+
+
+@dataclass(frozen=True, eq=False)
+class SensorSignals:
+    """The signals that one sensor gave, of one length and rate.
+
+    Parameters
+    ----------
+    values : array of float32, shape (signals, samples)
+        Samples in SI units; a signal that ends early has NaN after its end.
+    rate : float
+        Sampling rate [Hz].
+    unit : str
+        Unit of the samples.
+    """
+
+    values: NDArray[np.float32]
+    rate: float
+    unit: str
+
+
+@dataclass(frozen=True, eq=False)
+class LabelledSignals:
+    """Signals of one data set, with what is known of each.
+
+    Parameters
+    ----------
+    name : str
+        Title of the data set.
+    sensors : mapping of str to SensorSignals
+        The signals by sensor; each has as many rows as there are signals.
+    classes : array of int, shape (signals,), optional
+        Index of the class of each signal; None where it is not known.
+    class_names : tuple of str
+        Names of the classes.
+    groups : mapping of str to array of int
+        Identifiers of what the signals share: "rock", "plate", "fall".
+    drawn : mapping of str to array
+        The keys that were drawn, such as "drop.height": numbers in SI units, or names.
+    truth : mapping of str to array
+        What the simulation knows and a sensor does not, such as "first_duration_s".
+    bayes_error : float, optional
+        The least error rate that any classifier can have on the population, where it is known.
+    total : int, optional
+        Number of signals in the file, of which these are a part.
+    check_sum : str, optional
+        SHA-256 of the file.
+    """
+
+    name: str
+    sensors: Mapping[str, SensorSignals]
+    classes: Indices | None
+    class_names: tuple[str, ...]
+    groups: Mapping[str, Indices] = field(default_factory=dict)
+    drawn: Mapping[str, NDArray[np.generic]] = field(default_factory=dict)
+    truth: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
+    bayes_error: float | None = None
+    total: int | None = None
+    check_sum: str = ""
+
+    def __len__(self) -> int:
+        """Return the number of signals."""
+        return len(next(iter(self.sensors.values())).values)
+
+    def only(self, kept: Indices) -> LabelledSignals:
+        """Return some of the signals.
+
+        Examples
+        --------
+        >>> silence = SensorSignals(np.zeros((2, 4), np.float32), 1e3, "V")
+        >>> both = LabelledSignals("two", {"a1": silence}, np.array([0, 1]), ("coal", "gangue"))
+        >>> len(both.only(np.array([1])))
+        1
+        """
+        return replace(
+            self,
+            sensors={name: replace(one, values=one.values[kept]) for name, one in self.sensors.items()},
+            classes=None if self.classes is None else self.classes[kept],
+            groups={name: one[kept] for name, one in self.groups.items()},
+            drawn={name: one[kept] for name, one in self.drawn.items()},
+            truth={name: one[kept] for name, one in self.truth.items()},
+        )
+
+    def of_present_classes(self) -> LabelledSignals:
+        """Return the signals without the names of classes that none of them has."""
+        if self.classes is None:
+            return self
+        present, classes = np.unique(self.classes, return_inverse=True)
+        return replace(self, classes=classes, class_names=tuple(self.class_names[one] for one in present))
+
+
+def lengths(values: NDArray[np.float32]) -> Indices:
+    """Return the length of each signal without the NaN or zeros after its end [samples].
+
+    Examples
+    --------
+    >>> lengths(np.array([[1, 2, 0, 0], [0, 3, 4, np.nan], [0, 0, 0, 0]], np.float32)).tolist()
+    [2, 3, 0]
+    """
+    there = np.isfinite(values) & (values != 0.0)
+    return np.where(there.any(axis=1), values.shape[1] - np.argmax(there[:, ::-1], axis=1), 0)

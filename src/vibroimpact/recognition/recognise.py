@@ -1,0 +1,263 @@
+"""Recognition of what fell on a plate: trained, validated so that it can't fool itself, and set beside its bound."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from importlib.metadata import version
+from os import PathLike
+from typing import Any
+
+import numpy as np
+
+from vibroimpact._version import __version__
+from vibroimpact.arrays import Floats, Indices
+from vibroimpact.errors import InputError
+from vibroimpact.recognition.bound import bound_doubts
+from vibroimpact.recognition.classifiers import CLASSIFIER, PROBE, Classifier, all_classifiers, fit_tuned
+from vibroimpact.recognition.cross_validation import Validated, cross_validate
+from vibroimpact.recognition.extra import needs_extra
+from vibroimpact.recognition.fraction import Streams, draw_rates, try_streams
+from vibroimpact.recognition.importance import Importance, permutation_importance
+from vibroimpact.recognition.input_faults import check_signals
+from vibroimpact.recognition.jobs import Progress, silent
+from vibroimpact.recognition.labelled_signals import LabelledSignals
+from vibroimpact.recognition.read_dataset import read_labelled_signals
+from vibroimpact.recognition.recogniser import FORMAT, Recogniser, graph_of
+from vibroimpact.recognition.reliability import Reliable, reliability
+from vibroimpact.recognition.robustness import Noisy, score_in_noise
+from vibroimpact.recognition.scores import Bootstrap, Score, Scores, score
+from vibroimpact.recognition.signal_features import FEATURES, features_of, tables_of
+from vibroimpact.recognition.unseen_bins import Unseen, score_unseen
+
+MOST_SIGNALS, FOLDS, SEEDS = 4000, 5, 5
+"""By default: largest number of signals used, parts of the cross-validation, and seeds."""
+
+
+@dataclass(frozen=True, eq=False)
+class Recognition:
+    """What classifiers recognise of a data set, and how far that can be trusted.
+
+    Parameters
+    ----------
+    name : str
+        Title of the data set.
+    group : str
+        What signals of a group share; no group was both trained on and tested on.
+    groups : int
+        Number of groups.
+    folds : int
+        Number of parts of the cross-validation.
+    seeds : tuple of int
+        Seeds of the splits and classifiers.
+    class_names : tuple of str
+        Names of the classes.
+    counts : tuple of int
+        Number of signals of each class.
+    compared : tuple of Classifier
+        The classifiers, as they are compared.
+    scores, random : mapping of str to Scores
+        Their scores, with groups kept apart, and split at random.
+    optimism : mapping of str to Score
+        Balanced accuracy of the random split less that of groups kept apart.
+    best : str
+        The classifier of all features with the largest balanced accuracy, groups kept apart.
+    confusion : mapping of str to array, shape (classes, classes)
+        Number of signals of each true class (row) taken for each class (column), mean over the seeds.
+    reliability, unseen, noise, importance, streams
+        Of the best: calibration curve, ranges left out in training, noise, importance of features, and fraction in streams of impacts.
+    calibration_error : float
+        Mean difference of probability and part in the calibration curve, weighted by the signals.
+    bayes_error : float, optional
+        The least error that any classifier can have, where the data set says it.
+    doubts : tuple of str
+        What is doubtful, such as a leak.
+    recogniser : Recogniser
+        The best, trained on all signals, as it is saved.
+    """
+
+    name: str
+    group: str
+    groups: int
+    folds: int
+    seeds: tuple[int, ...]
+    class_names: tuple[str, ...]
+    counts: tuple[int, ...]
+    compared: tuple[Classifier, ...]
+    scores: Mapping[str, Scores]
+    random: Mapping[str, Scores]
+    optimism: Mapping[str, Score]
+    best: str
+    confusion: Mapping[str, Floats]
+    reliability: Sequence[Reliable]
+    unseen: Sequence[Unseen]
+    noise: Sequence[Noisy]
+    importance: Sequence[Importance]
+    streams: Sequence[Streams]
+    calibration_error: float
+    bayes_error: float | None
+    doubts: tuple[str, ...]
+    recogniser: Recogniser
+
+
+def recognise(
+    dataset: str | PathLike[str] | LabelledSignals,
+    *,
+    group: str = "rock",
+    folds: int = FOLDS,
+    seeds: int = SEEDS,
+    seed: int = 0,
+    most: int = MOST_SIGNALS,
+    workers: int = 2,
+    progress: Progress = silent,
+) -> Recognition:
+    """Train classifiers on a data set, and validate them so that they can't fool themselves.
+
+    Baselines (majority, peak alone, contact time alone), logistic regression, random forest, gradient boosting and a support vector
+    machine are compared by nested cross-validation in which no group is both trained on and tested on; beside it stands the score of a
+    split at random. The best is tried on ranges of the drawn keys that it was not trained on, in noise, and on streams of impacts.
+
+    Parameters
+    ----------
+    dataset : path or LabelledSignals
+        Folder of a data set, its file `dataset.nc`, or signals that were read.
+    group : str, default "rock"
+        What signals of a group share: "rock", "plate" or "fall".
+    folds : int, default 5
+        Number of parts of the cross-validation.
+    seeds : int, default 5
+        Number of seeds; every score is a mean over them.
+    seed : int, default 0
+        The first seed.
+    most : int, default 4000
+        Largest number of signals used; of more, whole groups are drawn at random.
+    workers : int, default 2
+        Number of processes.
+    progress : callable, optional
+        Called with what is done, how many parts of it are done, and how many there are.
+
+    Returns
+    -------
+    Recognition
+        Scores, tables and the trained model; `save_recognition` writes them as a folder.
+
+    Raises
+    ------
+    InputError
+        If the data set can't be read, or classifiers can't be trained on it and tested honestly; the extra `ml` is missing.
+    ComputationError
+        If the trained model can't be saved as ONNX without changing what it says.
+
+    See Also
+    --------
+    vibroimpact.load_recogniser : loads a saved model, to apply it to other signals.
+    """
+    with needs_extra():
+        import onnxruntime as onnxruntime
+        import skl2onnx as skl2onnx
+        import sklearn as sklearn
+    check_settings(folds, seeds, most)
+    signals = dataset if isinstance(dataset, LabelledSignals) else read_labelled_signals(dataset, most=most, group=group, seed=seed)
+    signals = signals.of_present_classes()
+    doubts = check_signals(signals, group, folds)
+    assert signals.classes is not None  # checked
+    classes, groups = signals.classes, signals.groups[group]
+    progress("features", 0, 1)
+    features = features_of(signals)
+    progress("features", 1, 1)
+    tables = tables_of(signals, features)
+    numbers, compared = tuple(range(seed, seed + seeds)), all_classifiers()
+    validate = partial(cross_validate, compared, tables, classes, folds=folds, seeds=numbers, workers=workers, progress=progress)
+    apart = validate(groups, what=f"cross-validation by {group}")
+    at_random = validate(None, what="cross-validation at random")
+    bootstrap = Bootstrap(groups, classes, seed)
+    scores = {name: score(one.held_out, classes, bootstrap) for name, one in apart.items()}
+    random = {name: score(one.held_out, classes, bootstrap) for name, one in at_random.items()}
+    optimism = {name: _difference(random[name].balanced_accuracy, scores[name].balanced_accuracy) for name in scores}
+    best = max((one for one in compared if one.kind == CLASSIFIER), key=lambda one: scores[one.name].balanced_accuracy.value)
+    (probe,) = (one.name for one in compared if one.kind == PROBE)
+    count, chosen = len(np.unique(groups)), apart[best.name]
+    doubts += bound_doubts(scores, signals.bayes_error, count, probe, best.name)
+    held_out = chosen.held_out.mean(axis=0)
+    curve = reliability(held_out, classes, signals.class_names, bootstrap)
+    common: Any = (seed, bootstrap, workers, progress)
+    return Recognition(
+        signals.name,
+        group,
+        count,
+        folds,
+        numbers,
+        signals.class_names,
+        tuple(int((classes == one).sum()) for one in range(len(signals.class_names))),
+        tuple(one for one in compared if one.name in scores),
+        scores,
+        random,
+        optimism,
+        best.name,
+        {name: _confusion(one, classes, len(signals.class_names)) for name, one in apart.items()},
+        curve,
+        score_unseen(best, features.values, signals, classes, groups, chosen, *common),
+        score_in_noise(best, features.values, signals, classes, groups, chosen, *common),
+        permutation_importance(best, features.values, features.names, classes, groups, chosen, seed, workers, progress),
+        try_streams(chosen.held_out[0].argmax(axis=1), classes, signals.class_names, groups, seed),
+        float(np.average([abs(one.probability - one.part) for one in curve], weights=[one.signals for one in curve])),
+        signals.bayes_error,
+        tuple(doubts),
+        _trained(best, signals, features.names, features.units, tables[FEATURES], group, chosen, seed),
+    )
+
+
+def check_settings(folds: int, seeds: int, most: int) -> None:
+    """Raise InputError if the numbers of folds, seeds or signals are not allowed."""
+    for name, value, least in (("folds", folds, 2), ("seeds", seeds, 1), ("most", most, 10)):
+        if value < least:
+            raise InputError(f"{value} is not allowed; it must be {least} or more", name)
+
+
+def _difference(one: Score, other: Score) -> Score:
+    return Score(one.value - other.value, one.draws - other.draws, one.seeds - other.seeds)
+
+
+def _confusion(validated: Validated, classes: Indices, count: int) -> Floats:
+    found = np.zeros((count, count))
+    for guessed in validated.held_out.argmax(axis=2):
+        np.add.at(found, (classes, guessed), 1.0 / len(validated.held_out))
+    return found
+
+
+def _trained(
+    best: Classifier,
+    signals: LabelledSignals,
+    names: tuple[str, ...],
+    units: tuple[str, ...],
+    values: Floats,
+    group: str,
+    validated: Validated,
+    seed: int,
+) -> Recogniser:
+    """Return the best classifier trained on all signals, with its card."""
+    assert signals.classes is not None
+    classes, groups = signals.classes, signals.groups[group]
+    fitted, parameters = fit_tuned(best, values, classes, groups, seed)
+    guessed = validated.held_out[0].argmax(axis=1)
+    confusion = {}
+    for number, name in enumerate(signals.class_names):
+        rates = draw_rates(guessed == number, classes == number, groups, np.random.default_rng(seed))  # the same draws for all
+        confusion[name] = {"true_rate": rates.true.round(6).tolist(), "false_rate": rates.false.round(6).tolist()}
+    card = {
+        "format": FORMAT,
+        "version": __version__,
+        "packages": {name: version(name) for name in ("scikit-learn", "skl2onnx", "onnxruntime")},
+        "classifier": best.name,
+        "parameters": dict(parameters),
+        "classes": list(signals.class_names),
+        "features": list(names),
+        "units": list(units),
+        "sensors": {name: {"rate_Hz": one.rate, "unit": one.unit, "samples": one.values.shape[1]} for name, one in signals.sensors.items()},
+        "group": group,
+        "data": {"name": signals.name, "signals": len(signals), "groups": len(np.unique(groups)), "sha256": signals.check_sum},
+        "seed": seed,
+        "confusion": confusion,
+    }
+    return Recogniser(card, graph_of(fitted, values, len(np.unique(classes))))

@@ -1,0 +1,197 @@
+"""A trained classifier that is saved without code that runs on loading: an ONNX graph, and a card in JSON that says what it is of."""
+
+from __future__ import annotations
+
+import json
+import logging
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from vibroimpact._version import __version__
+from vibroimpact.arrays import Floats
+from vibroimpact.errors import ComputationError, InputError
+from vibroimpact.files.check_sums import CHECK_SUMS, DamageError, check_file, file_digest, read_sealed, sealed
+from vibroimpact.recognition.extra import needs_extra
+from vibroimpact.recognition.fraction import Estimate, Rates, estimate_fraction
+from vibroimpact.recognition.labelled_signals import LabelledSignals
+from vibroimpact.recognition.signal_features import by_name, features_of
+from vibroimpact.shown import shown
+
+FOLDER, CARD, GRAPH, FORMAT = "model", "card.json", "model.onnx", "vibroimpact model 1"
+_DIFFERENT = 0.005
+"""Largest part of the training signals that the saved graph may take for another class, by rounding to single precision at a threshold."""
+
+_KEYS = ("format", "version", "classifier", "classes", "features", "sensors", "group", "data")
+
+
+@dataclass(frozen=True, eq=False)
+class Recogniser:
+    """A trained classifier.
+
+    Parameters
+    ----------
+    card : mapping
+        What it is: classifier, classes, features, sensors, versions, the data that it was trained on, and what it confuses.
+    graph : bytes
+        Its ONNX graph: features in, probabilities out.
+    """
+
+    card: Mapping[str, Any]
+    graph: bytes
+
+    @property
+    def class_names(self) -> tuple[str, ...]:
+        """Names of the classes."""
+        return tuple(self.card["classes"])
+
+    def probabilities(self, signals: LabelledSignals) -> Floats:
+        """Return the probability of each class for each signal, shape (signals, classes).
+
+        Parameters
+        ----------
+        signals : LabelledSignals
+            Signals of the same sensors and rates as those trained on.
+
+        Raises
+        ------
+        InputError
+            If a sensor, its rate or its unit, or a feature differs.
+        """
+        for sensor, trained in self.card["sensors"].items():
+            if sensor not in signals.sensors:
+                raise InputError(f"the model was trained on the sensor {shown(sensor)}, which these signals do not have")
+            one = signals.sensors[sensor]
+            if not np.isclose(one.rate, trained["rate_Hz"], rtol=1e-6) or one.unit != trained["unit"]:
+                words = f"at {trained['rate_Hz']:g} Hz in {trained['unit']}, and these signals are at {one.rate:g} Hz in {one.unit}"
+                raise InputError(f"{sensor}: the model was trained {words}")
+            if (length := one.values.shape[1]) != trained["samples"]:
+                raise InputError(f"{sensor}: the model was trained on {trained['samples']} samples a signal, and these have {length}")
+        features = features_of(signals)
+        return run_graph(self.graph, by_name(features, tuple(self.card["features"])))
+
+    def fractions(self, guessed: Any, seed: int = 0) -> dict[str, Estimate]:
+        """Return the fraction of each class in a stream of impacts, corrected by what the model confuses.
+
+        Parameters
+        ----------
+        guessed : array of int
+            The class that each impact is taken for.
+        seed : int
+            Seed of the draws for the intervals.
+        """
+        generator = np.random.default_rng(seed)
+        found = {}
+        for number, name in enumerate(self.class_names):
+            rates = self.card["confusion"][name]
+            drawn = Rates(np.array(rates["true_rate"]), np.array(rates["false_rate"]))
+            found[name] = estimate_fraction(int((guessed == number).sum()), len(guessed), drawn, generator)
+        return found
+
+
+def graph_of(estimator: Any, values: Floats, classes: int) -> bytes:
+    """Return the ONNX graph of a fitted pipeline, after comparison with it on the signals that it was trained on.
+
+    Parameters
+    ----------
+    estimator
+        The pipeline.
+    values : array, shape (signals, features)
+        What it was trained on.
+    classes : int
+        Number of classes.
+
+    Raises
+    ------
+    ComputationError
+        If the graph classifies them differently.
+    """
+    with needs_extra():
+        from skl2onnx import to_onnx
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of attributes that scikit-learn will drop and the conversion asks for
+        logging.getLogger("skl2onnx").setLevel(logging.ERROR)
+        graph: bytes = to_onnx(estimator, values[:1].astype(np.float32), options={"zipmap": False}).SerializeToString()
+    found, expected = run_graph(graph, values), estimator.predict_proba(values)
+    different = float(np.mean(found.argmax(axis=1) != expected.argmax(axis=1)))
+    if found.shape != (len(values), classes) or different > _DIFFERENT:
+        words = f"the saved model takes {different:.1%} of the signals for another class than the trained one"
+        raise ComputationError(f"{words}; the conversion to ONNX failed")
+    return graph
+
+
+def run_graph(graph: bytes, values: Floats) -> Floats:
+    """Return the probabilities that an ONNX graph gives for features."""
+    with needs_extra():
+        import onnxruntime
+    options = onnxruntime.SessionOptions()
+    options.intra_op_num_threads = 1
+    options.log_severity_level = 4
+    session = onnxruntime.InferenceSession(graph, options, providers=["CPUExecutionProvider"])
+    (given,) = session.get_inputs()
+    _, found = session.run(None, {given.name: values.astype(np.float32)})
+    return np.asarray(found, dtype=float)
+
+
+def save_recogniser(recogniser: Recogniser, folder: Path) -> None:
+    """Write the graph and the card into an existing folder."""
+    (folder / GRAPH).write_bytes(recogniser.graph)
+    card = {**recogniser.card, CHECK_SUMS: {GRAPH: file_digest(folder / GRAPH)}}
+    (folder / CARD).write_text(sealed(card), encoding="utf-8")
+
+
+def load_recogniser(directory: str | PathLike[str]) -> Recogniser:
+    """Load a saved model; nothing in it can run code.
+
+    Parameters
+    ----------
+    directory : path
+        The result folder of `recognise`, or the folder `model` in it.
+
+    Returns
+    -------
+    Recogniser
+        The model; `doubts_of_version` says whether another version saved it.
+
+    Raises
+    ------
+    InputError
+        If it is no model, of a format that this version does not know, or damaged.
+    """
+    folder = Path(directory)
+    folder = folder / FOLDER if (folder / FOLDER).is_dir() else folder
+    if not (folder / CARD).is_file():
+        raise InputError(f"{directory}: this is no saved model; there is no {CARD}")
+    try:
+        card = read_sealed(folder / CARD)
+    except (ValueError, OSError, json.JSONDecodeError) as error:
+        raise InputError(f"{folder / CARD}: {error}") from None
+    if card.get("format") != FORMAT:
+        by = f" by vibroimpact {card['version']}" if "version" in card else ""
+        words = f'the model was saved in the format {shown(card.get("format"))}{by}; this version reads "{FORMAT}"'
+        raise InputError(f"{folder}: {words}: train it anew")
+    missing = [key for key in (*_KEYS, "confusion") if key not in card]
+    if missing:
+        raise InputError(f"{folder / CARD}: the card has no {missing[0]}")
+    try:
+        check_file(folder / GRAPH, card.pop(CHECK_SUMS, {}).get(GRAPH))
+        graph = (folder / GRAPH).read_bytes()
+    except DamageError as error:
+        raise InputError(f"{folder / GRAPH}: {error}") from None
+    except OSError as error:
+        raise InputError(f"{folder / GRAPH}: {error.strerror}") from None
+    return Recogniser(card, graph)
+
+
+def doubts_of_version(recogniser: Recogniser) -> list[str]:
+    """Return a sentence if another version saved a model."""
+    saved = recogniser.card["version"]
+    if saved == __version__:
+        return []
+    words = "the features may be computed otherwise; train it anew where that matters"
+    return [f"the model was saved by vibroimpact {saved} and this is {__version__}: {words}"]

@@ -1,0 +1,237 @@
+"""The tables of a recognition: rows of its CSV files, cells of its page, and its summary."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from vibroimpact._version import __version__
+from vibroimpact.recognition.recognise import Recognition
+from vibroimpact.recognition.scores import Score, Scores
+
+Row = dict[str, Any]
+
+GROUPED, RANDOM = "grouped", "random"
+"""The two splits, as they are named in files."""
+
+
+def score_rows(found: Recognition) -> list[Row]:
+    """Return a row for each classifier and split, as `scores.csv` has them."""
+    kinds = {one.name: one.kind for one in found.compared}
+    return [
+        {"classifier": name, "kind": kinds[name], "split": split, **_scores(one)}
+        for split, scores in ((GROUPED, found.scores), (RANDOM, found.random))
+        for name, one in scores.items()
+    ]
+
+
+def optimism_rows(found: Recognition) -> list[Row]:
+    """Return what a split at random promises beyond what groups kept apart hold, as `optimism.csv` has it."""
+    return [
+        {
+            "classifier": name,
+            "balanced_accuracy_grouped": found.scores[name].balanced_accuracy.value,
+            "balanced_accuracy_random": found.random[name].balanced_accuracy.value,
+            **_interval("optimism", one),
+        }
+        for name, one in found.optimism.items()
+    ]
+
+
+def confusion_rows(found: Recognition) -> list[Row]:
+    """Return what is taken for what, mean over the seeds, as `confusion.csv` has it."""
+    return [
+        {
+            "classifier": name,
+            "class": truth,
+            "taken_for": guess,
+            "signals": counts[row, column],
+            "part": counts[row, column] / counts[row].sum(),
+        }
+        for name, counts in found.confusion.items()
+        for row, truth in enumerate(found.class_names)
+        for column, guess in enumerate(found.class_names)
+    ]
+
+
+def robustness_rows(found: Recognition) -> list[Row]:
+    """Return the balanced accuracy in noise, as `robustness.csv` has it."""
+    return [
+        {
+            "signal_to_noise_dB": one.level,
+            **_interval("trained_without", one.trained_without),
+            **_interval("trained_with", one.trained_with),
+        }
+        for one in found.noise
+    ]
+
+
+def unseen_rows(found: Recognition) -> list[Row]:
+    """Return the balanced accuracy in ranges that are left out in training, as `unseen.csv` has it."""
+    return [
+        {
+            "key": one.key,
+            "range": one.words,
+            "signals": one.signals,
+            **_interval("trained_on", one.seen),
+            **_interval("left_out", one.unseen),
+        }
+        for one in found.unseen
+    ]
+
+
+def importance_rows(found: Recognition) -> list[Row]:
+    """Return the importance of each feature, as `importance.csv` has it."""
+    units = dict(zip(found.recogniser.card["features"], found.recogniser.card["units"], strict=True))
+    return [{"feature": one.feature, "unit": units[one.feature], "loss": one.loss, "loss_spread": one.spread} for one in found.importance]
+
+
+def reliability_rows(found: Recognition) -> list[Row]:
+    """Return the calibration curve, as `reliability.csv` has it."""
+    return [
+        {
+            "class": one.class_name,
+            "signals": one.signals,
+            "probability": one.probability,
+            "part": one.part,
+            "part_low": one.low,
+            "part_high": one.high,
+        }
+        for one in found.reliability
+    ]
+
+
+def fraction_rows(found: Recognition) -> list[Row]:
+    """Return how well fractions are estimated, as `fraction.csv` has it."""
+    return [
+        {
+            "class": one.class_name,
+            "fraction": one.fraction,
+            "impacts": one.impacts,
+            "counted": one.counted,
+            "estimate": one.adjusted,
+            "estimate_low": one.low,
+            "estimate_high": one.high,
+            "error_rms": one.error,
+            "covered": one.covered,
+        }
+        for one in found.streams
+    ]
+
+
+TABLES = {
+    "scores.csv": score_rows,
+    "optimism.csv": optimism_rows,
+    "confusion.csv": confusion_rows,
+    "unseen.csv": unseen_rows,
+    "robustness.csv": robustness_rows,
+    "importance.csv": importance_rows,
+    "reliability.csv": reliability_rows,
+    "fraction.csv": fraction_rows,
+}
+"""The rows of each CSV file of the folder."""
+
+
+def summary_of_recognition(found: Recognition) -> dict[str, Any]:
+    """Return the content of `summary.json`, which `recognise --json` prints too."""
+    grouped = [row for row in score_rows(found) if row["split"] == GROUPED]
+    return {
+        "name": found.name,
+        "version": __version__,
+        "recognition": {
+            "group": found.group,
+            "groups": found.groups,
+            "folds": found.folds,
+            "seeds": list(found.seeds),
+            "signals": dict(zip(found.class_names, found.counts, strict=True)),
+            "best": found.best,
+            "bayes_error": found.bayes_error,
+            "calibration_error": found.calibration_error,
+        },
+        "scores": grouped,
+        "optimism": optimism_rows(found),
+        "balanced_accuracy_by_seed": {name: one.balanced_accuracy.seeds.tolist() for name, one in found.scores.items()},
+        "model": {key: found.recogniser.card[key] for key in ("classifier", "parameters", "packages", "data")},
+        "doubts": list(found.doubts),
+    }
+
+
+SCORE_HEADERS: list[str | tuple[str, str]] = [
+    "Classifier",
+    ("Error", "%"),
+    ("95 % interval", "%"),
+    ("Balanced accuracy", "%"),
+    ("95 % interval", "%"),
+    ("Split at random", "%"),
+    ("Optimism", "%"),
+    "Brier score",
+]
+
+
+def score_cells(found: Recognition) -> list[tuple[str, ...]]:
+    """Return the table of scores with the optimism, a row a classifier, as pages and terminals show it."""
+    return [
+        (
+            name,
+            _percent(one.error.value),
+            _percents(one.error),
+            _percent(one.balanced_accuracy.value),
+            _percents(one.balanced_accuracy),
+            _percent(found.random[name].balanced_accuracy.value),
+            f"{100.0 * found.optimism[name].value:+.1f}",
+            f"{one.brier.value:.3f}",
+        )
+        for name, one in found.scores.items()
+    ]
+
+
+def confusion_cells(found: Recognition) -> tuple[list[str | tuple[str, str]], list[list[str]]]:
+    """Return headers and rows of the table of what the best classifier takes for what."""
+    counts = found.confusion[found.best]
+    parts = counts / counts.sum(axis=1, keepdims=True)
+    rows = [[name, *map(_percent, row)] for name, row in zip(found.class_names, parts, strict=True)]
+    return ["Is", *((f"Taken for {name}", "%") for name in found.class_names)], rows
+
+
+def sentences(found: Recognition) -> Iterator[str]:
+    """Yield what the scores say, in sentences."""
+    best = found.scores[found.best]
+    low, high = _percents(best.balanced_accuracy).split(" to ")
+    yield (
+        f"The best classifier, {found.best}, recognises {_percent(best.balanced_accuracy.value)} % ({low} to {high} %) of each class, of "
+        f"{found.group}s that it never saw; split at random it would seem to be "
+        f"{_percent(found.random[found.best].balanced_accuracy.value)} %."
+    )
+    if found.bayes_error is not None:
+        yield (
+            f"No classifier can err less than {_percent(found.bayes_error)} % on this population (its Bayes error); the best errs in "
+            f"{_percent(best.error.value)} % ({_percents(best.error)} %)."
+        )
+    hardest = [one for one in found.streams if one.impacts == max(row.impacts for row in found.streams)]
+    if hardest:
+        worst = max(hardest, key=lambda row: row.error)
+        yield (
+            f"The fraction of {worst.class_name} in a stream of {worst.impacts} impacts is found within {_percent(worst.error)} % "
+            f"(root mean square, at the worst fraction tried, {worst.fraction:g})."
+        )
+
+
+def _scores(one: Scores) -> Row:
+    row: Row = {}
+    for name in ("error", "balanced_accuracy", "brier", "log_loss"):
+        row |= _interval(name, getattr(one, name))
+    return {**row, "balanced_accuracy_spread_over_seeds": float(np.std(one.balanced_accuracy.seeds))}
+
+
+def _interval(name: str, one: Score) -> Row:
+    return {name: one.value, f"{name}_low": one.low, f"{name}_high": one.high}
+
+
+def _percent(value: float) -> str:
+    return f"{100.0 * value:.1f}"
+
+
+def _percents(one: Score) -> str:
+    return f"{_percent(one.low)} to {_percent(one.high)}"
