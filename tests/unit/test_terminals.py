@@ -18,6 +18,8 @@ from knocks import write_knocks
 from studies import study_table
 from support import one_in, plain_case
 from told import told_case
+from vibroimpact.bounds.bound import bound_of
+from vibroimpact.bounds.text import bound_summary
 from vibroimpact.calibration.calibrate import calibrate
 from vibroimpact.calibration.reported import report_of
 from vibroimpact.calibration.text import calibration_summary
@@ -81,6 +83,7 @@ def commands(tmp_path_factory: pytest.TempPathFactory, variable: vi.Response) ->
     calibrated = calibrate(case, vi.load_case("paper:type1-theory"))
     sweep = read_sweep(study_table())
     study = vi.read_study(compute_study(sweep, folder / "study"))
+    population = vi.load_sweep("signals:coal-gangue", 400)
     drop = told_case("paper:type1-variable")
     signals = [vi.Record(name, signal.value, signal.sensor.rate, signal.sensor.unit) for name, signal in rung.signals.items()]
     table = vi.record_table([*signals, vi.Record("silence", [0.0] * 100, 20e3, "V")])
@@ -96,6 +99,8 @@ def commands(tmp_path_factory: pytest.TempPathFactory, variable: vi.Response) ->
         "calibrate": lambda _: calibration_summary(case, report_of(case, calibrated)),
         "modes": lambda _: modes_summary(elastic, modes),
         "sweep": lambda width: study_summary(study, width),
+        "dataset": lambda _: explain_sweep(population),
+        "bound": lambda _: bound_summary(bound_of(population)),
         "export": lambda _: format_table(),
         "export, done": lambda _: export_summary(drop, find_export_format("lammps"), [folder / "drop.in"]),
         "features": lambda _: table_summary(table),
@@ -122,6 +127,8 @@ NAMES = (
     "calibrate",
     "modes",
     "sweep",
+    "dataset",
+    "bound",
     "export",
     "export, done",
     "features",

@@ -13,13 +13,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.arrays import Indices
+from vibroimpact.bounds.bound import least_error
+from vibroimpact.bounds.falls import falls_of_study
 from vibroimpact.errors import InputError
 from vibroimpact.files.check_sums import DamageError, file_digest, read_sealed
 from vibroimpact.files.hdf5 import read_array
 from vibroimpact.recognition.labelled_signals import GROUPS, LabelledSignals, SensorSignals
 from vibroimpact.results.folder import SUMMARY
 from vibroimpact.shown import shown
+from vibroimpact.studies.study import read_study
 from vibroimpact.studies.study_folder import DATASET as STUDY
+from vibroimpact.studies.study_folder import is_study
 
 DATASET, FORMAT = "dataset.nc", "vibroimpact dataset 1"
 """File and format of data sets that are no studies; a study is read as `dataset` and `sweep` write it."""
@@ -157,10 +161,12 @@ def _rows(data: h5py.Dataset, kept: Indices) -> NDArray[np.float32]:
 
 
 def _bayes_error(path: Path) -> float | None:
-    """Return the least error that any classifier can have, from the summary of the data set; None if it does not say."""
+    """Return the least error that any classifier can have: as the summary has it, or of a computed population; None if it is not known."""
     summary = path.parent / SUMMARY
     if not summary.is_file():
         return None
+    if path.name == STUDY and is_study(path.parent):
+        return least_error(falls_of_study(read_study(path.parent)))
     try:
         value = read_sealed(summary).get("bayes_error")
     except (ValueError, OSError, json.JSONDecodeError) as error:
