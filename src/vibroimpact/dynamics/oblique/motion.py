@@ -15,8 +15,9 @@ from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.oblique.normal_motion import NormalMotion
 from vibroimpact.dynamics.oblique.rolling import ACROSS, LyingSpheres
 from vibroimpact.dynamics.oblique.sliding import slide
-from vibroimpact.dynamics.oblique.state import ObliqueContact, ObliqueContacts, Sphere, State, energy_taken
+from vibroimpact.dynamics.oblique.state import ObliqueContact, ObliqueContacts, Sliding, Sphere, State, energy_taken
 from vibroimpact.dynamics.oblique.statement import Oblique
+from vibroimpact.dynamics.oblique.twisting import slowed_spins
 from vibroimpact.dynamics.shaken.statement import PlateMotion
 
 OBLIQUE_STEPS = 16
@@ -112,8 +113,8 @@ class ObliqueMotion:
         sphere, before = self.sphere.take(drops), self.state.take(drops)
         law = self.law if self.law is None or len(drops) == len(self.lost) else self.law.take(drops)
         direction, slip, pull = _along(sphere, before)
-        sliding, twist = slide(law, normal, slip, sphere.tangential_mass, pull), _twist(law, normal, sphere, before)
-        contact = ObliqueContact(sphere, before, direction, sliding, twist)
+        sliding = slide(law, normal, slip, sphere.tangential_mass, pull)
+        contact = ObliqueContact(sphere, before, direction, sliding, _twist(law, normal, sliding, sphere, before))
         rubbed = sphere.tangential_mass * np.abs(sliding.slip[-1] - slip - pull * normal.time[-1])
         contact = contact.changed(_across(sphere, contact))
         contact = contact.changed(_rolling(law, sphere, contact.end, normal.impulse[-1], rubbed))
@@ -208,14 +209,17 @@ def _across(sphere: Sphere, contact: ObliqueContact) -> State | None:
     return sphere.pushed(State(still, still, np.zeros((3, still.shape[1]))), sphere.tangential_mass * lost)
 
 
-def _twist(law: FrictionLaw | None, normal: NormalMotion, sphere: Sphere, before: State) -> Floats:
-    """Return the change of the spin about the normal by full twisting of the contact [rad/s]."""
-    if law is None or not before.spin[2].any():
-        return np.zeros_like(before.spin[2])
+def _twist(law: FrictionLaw | None, normal: NormalMotion, sliding: Sliding, sphere: Sphere, before: State) -> Floats:
+    """Return the change of the spin about the normal by twisting of the contact [rad/s]."""
+    spin = before.spin[2]
+    if law is None or not spin.any():
+        return np.zeros_like(spin)
     moment = law.twisting_moment(normal.force)
     with np.errstate(divide="ignore", invalid="ignore"):
         growth = np.where(normal.force > 0.0, (4.0 / 3.0) * moment * normal.force_slope / normal.force, 0.0)
-    return sphere.twist(before, normal.integrals(moment, growth)[-1])
+    slower = normal.integrals(moment, growth) / sphere.inertia
+    left, _ = slowed_spins(law, spin, slower, normal.force, np.abs(sliding.force), np.abs(sliding.slip))
+    return np.asarray(np.sign(spin) * (left[-1] - left[0]))
 
 
 def _rolling(law: FrictionLaw | None, sphere: Sphere, after: State, impulse: Floats, rubbed: Floats) -> State | None:

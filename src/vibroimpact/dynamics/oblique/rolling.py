@@ -9,7 +9,8 @@ plate, the mass m and the moment of inertia I, the friction Q and the moment of 
 
 where s or w is zero, Q or M is what keeps it so, up to these values. A sphere that rolls thus has
 :math:`\dot v = \frac57 (g - \mu_r g_n v/|v|)`, and it stays at rest where the plate is less steep than :math:`\mu` and :math:`\mu_r`.
-Both are constant along a line, up to the next zero of s or w. In all cases, with the effective mass :math:`m_t` of the tangential motion,
+Both are constant along a line, up to the next zero of s or w. The spin about the normal, which changes neither, is integrated afterwards
+(`twisting`). In all cases, with the effective mass :math:`m_t` of the tangential motion,
 2/7 m of a solid sphere, and what the moment makes of the slip, :math:`\dot u = R M / I`,
 
 .. math:: v = v_0 + \Bigl(1 - \frac{m_t}{m}\Bigr) g t + \frac{m_t}{m} (s - s_0 - u)
@@ -29,6 +30,7 @@ import numpy as np
 from vibroimpact.arrays import Bools, Drops, Floats
 from vibroimpact.contact.friction.law import FrictionLaw
 from vibroimpact.dynamics.oblique.state import Sphere, State
+from vibroimpact.dynamics.oblique.twisting import slowed_spins
 
 ACROSS = 1e-12
 """Of two vectors: the part of one across the other that counts as none."""
@@ -36,6 +38,8 @@ ACROSS = 1e-12
 _STOPPED = 1e-9  # of the slip and the spin at the start: what has ended, where the motion turns
 
 _TURNS = 3  # of false position, to where a centre turns back
+
+_TWIST_STEPS = 256  # of the spin about the normal, from each place where slip or spin begin or end to the next
 
 
 @dataclass(frozen=True)
@@ -99,7 +103,11 @@ class LyingSpheres:
             drop: _Curve(begin[:, [drop]], turning[:, [drop]], forces.of(drop), float(until[drop]))
             for drop in np.flatnonzero(_turns(begin, turning, forces)).tolist()
         }
-        self.twisting = np.zeros_like(until) if law is None else law.twisting_moment(sphere.mass * pressing)
+        self.twists: dict[int, tuple[Floats, ...]] = {}
+        if law is not None:
+            load = sphere.mass * pressing
+            slower = law.twisting_moment(load) / sphere.inertia
+            self.twists = {drop: self._twist(drop, law, load, slower) for drop in np.flatnonzero(start.spin[2] * slower).tolist()}
 
     def at(self, drops: Drops, time: Floats) -> tuple[State, Floats]:
         """Return the states of some spheres and the friction forces on them [N] (2, b) at times [s] (b,); one may be asked for often."""
@@ -113,8 +121,29 @@ class LyingSpheres:
         position = start.position + (start.velocity + 0.5 * (1.0 - share) * gravity * time) * time
         position = position + share * (moved - slip * time - turned_way)
         pushed = sphere.pushed(start, sphere.mass * (velocity - start.velocity - gravity * time))
-        twist = sphere.twist(start, self.twisting[drops] * time)
+        twist = np.zeros_like(time)
+        for drop, (times, left, rate) in self.twists.items():
+            here = np.flatnonzero(drops == drop)
+            step = np.searchsorted(times, time[here], side="right") - 1
+            now_left = np.maximum(left[step] - rate[step] * (time[here] - times[step]), 0.0)
+            twist[here] = np.sign(start.spin[2, here]) * (now_left - left[0])
         return State(position, velocity, sphere.turned(pushed, turned, twist).spin), -sphere.tangential_mass * taken
+
+    def _twist(self, drop: int, law: FrictionLaw, load: Floats, slower: Floats) -> tuple[Floats, ...]:
+        """Return times [s], the sizes of the spin of a sphere about the normal then [rad/s], and the rates at which it falls from there on.
+
+        `load`: normal forces [N]. `slower`: what full twisting takes from the spins [rad/s^2].
+        """
+        begins = [begin for begin, _ in self.curves[drop].parts] if drop in self.curves else [phase.begin[drop] for phase in self.phases]
+        ends = np.unique([0.0, *begins, self.until[drop]])
+        parts = 0.5 * (1.0 - np.cos(np.linspace(0.0, np.pi, _TWIST_STEPS + 1)[:-1]))  # close to where the slip begins or ends
+        times = np.append((ends[:-1, None] + np.diff(ends)[:, None] * parts).ravel(), ends[-1])
+        one = np.array([drop])
+        state, friction = self.at(np.repeat(one, len(times)), times)
+        rubbed, slip = np.hypot(*friction)[:, None], np.hypot(*self.sphere.take(one).slip(state))[:, None]
+        full = slower[one] * times[:, None]
+        left, lost = slowed_spins(law.take(one), self.start.spin[2, one], full, load[one] + 0.0 * full, rubbed, slip)
+        return times, left[:, 0], np.append(lost[:, 0] / np.diff(times), 0.0)
 
     def edge_time(self, half: Floats) -> Floats:
         """Return the times at which the spheres leave the plate, as their centres first are beyond an edge [s] (B,); else their last times.

@@ -86,11 +86,6 @@ class Sphere:
         spin = state.spin + np.stack([turn * impulse[1], -turn * impulse[0], twist + 0.0 * impulse[0]])
         return State(state.position, state.velocity + impulse / self.mass, spin)
 
-    def twist(self, state: State, impulse: Floats) -> Floats:
-        """Return the change of the spin about the normal by an impulse of twisting friction [N m s], which ends with the spin [rad/s]."""
-        spin = state.spin[2]
-        return np.asarray(-np.sign(spin) * np.minimum(impulse / self.inertia, np.abs(spin)))
-
     def turned(self, state: State, change: Floats, twist: Floats | float = 0.0) -> State:
         """Return the state after changes of the part of the spin in the slip [m/s] (2, B) and of the spin about the normal [rad/s]."""
         spin = state.spin + np.stack([change[1] / self.radius, -change[0] / self.radius, twist + 0.0 * change[0]])

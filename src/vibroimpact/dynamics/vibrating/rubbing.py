@@ -225,18 +225,26 @@ class FrictionForces:
 
     def _moments(self, normal: Floats) -> Floats:
         """Return the moments at the nodes [N m] (B, 3, N): they act along the spins as these are without them, and end with these."""
-        force = self.force.copy()
+        force, slips = self.force.copy(), self._velocities() + self._surfaces(normal, self.force, "rate")[:, :2]
         force[:, 2:] = 0.0
         free = self._spins(force) + self._surfaces(normal, force, "rate")[:, 2:]
         size = np.sqrt(_together(free**2))
         along = np.divide(free, size, out=np.zeros_like(free), where=size > 0.0)
         for number, (one, load) in enumerate(zip(self.rubbings, np.maximum(normal, 0.0), strict=True)):
             force[number, 2:4] = one.law.rolling_coefficient * one.radius * load
-            force[number, 4] = one.law.twisting_moment(load)
+            rubbed, slip = np.hypot(*force[number, :2]), np.hypot(*slips[number])
+            force[number, 4] = one.law.twisting_moment(load) * one.law.twisting_part(load, rubbed, slip, size[number, 2])
         force[:, 2:] *= along
         full = self._spins(force) + self._surfaces(normal, force, "rate")[:, 2:]
         left, slower = (_together(change * along)[:, :, -1:] for change in (free, free - full))
         return np.asarray(force[:, 2:] * np.clip(np.divide(left, slower, out=np.ones_like(left), where=slower > left), 0.0, 1.0))
+
+    def _velocities(self) -> Floats:
+        """Return the velocities of the contact points of the spheres at the nodes [m/s] (B, 2, N)."""
+        rule, across = self.basis.rule, self.length[:, None, None]
+        return np.asarray(
+            self.velocity[:, :, None] + self.pull[:, :, None] * (across * rule.time) - across * (self._slowed @ rule.integral.T)
+        )
 
     def _spins(self, force: Floats) -> Floats:
         """Return the spins of the spheres at the nodes [rad/s] (B, 3, N), under friction forces and moments."""
@@ -247,8 +255,7 @@ class FrictionForces:
     def stretches(self, normal: Floats) -> list[RubbedStretch]:
         """Return the friction through the stretches, under the normal forces at the nodes [N] (B, N)."""
         rule, across, slowed = self.basis.rule, self.length[:, None, None], self._slowed
-        velocity = self.velocity[:, :, None] + self.pull[:, :, None] * (across * rule.time) - across * (slowed @ rule.integral.T)
-        below = self._surfaces(normal, self.force, "rate")
+        velocity, below = self._velocities(), self._surfaces(normal, self.force, "rate")
         own = np.append(velocity, self._spins(self.force), axis=1) if len(self.force[0]) > 2 else velocity
         slips = own + below
         time = across[:, :, 0] * rule.time[-1]

@@ -21,7 +21,7 @@ class Mdr(CompliantFriction):
     -----
     Under constant normal force this is the solution of Cattaneo (1938) and Mindlin (1949), under varying ones that of Mindlin and
     Deresiewicz (1953) and Jaeger (2005). It is followed by the turning points of its history, not by springs. The normal force is that
-    of the contact law, with its damping. The coupling of sliding and twisting is left out.
+    of the contact law, with its damping. Twisting does not reduce it.
 
     References
     ----------
