@@ -492,6 +492,10 @@ def test_python_is_told_as_well() -> None:
     }
     with pytest.raises(vi.InputError, match="newton gives no normal force for mdr to follow"):
         vi.Problem(**newton, speed=1.0, oblique=vi.Oblique(friction=FRICTION["mdr"]))
+    with pytest.raises(vi.InputError, match="may turn needs a radius"):
+        vi.Problem(**{**newton, "sphere": vi.Body(mass=MASS, contact_offset=0.0)}, speed=1.0, oblique=spinning("coulomb"))
+    with pytest.raises(vi.InputError, match="velocity is that at a height"):
+        vi.Problem(**newton, speed=1.0, velocity=0.5)
 
 
 DROP_ON_ELASTIC = {"speed": "3 m/s", "angle": "10 deg", "position": ["-100 mm", "20 mm"], "gravity": "60 m/s^2"}
