@@ -81,6 +81,14 @@ def test_refused_problems(values: dict[str, Any], words: str) -> None:
         problem(**values)
 
 
+def test_a_mode_that_would_grow_without_bound_is_refused() -> None:
+    modes = ModalBasis(
+        frequencies=np.array([25.0]), damping_ratios=np.zeros(1), contact=np.array([0.5]), participation=np.array([[0.0, 0.0, 1.0]])
+    )
+    with pytest.raises(vi.InputError, match="without damping is driven at its own frequency"):
+        problem(plate=vi.Body(mass=np.inf, contact_offset=0.0, modes=modes))
+
+
 def test_only_the_part_along_the_normal_matters_without_friction() -> None:
     tilted = vi.PlateMotion(amplitude=2e-3, frequency=25.0, direction=(0.6, 0.0, 0.8))
     straight = vi.PlateMotion(amplitude=1.6e-3, frequency=25.0)

@@ -223,6 +223,10 @@ class Problem:
             raise InputError("nothing holds the plate, so that no motion of supports reaches it; leave out its motion")
         if len(self.motion.phasors) > 1 and self.duration is None:
             raise InputError("a sphere may ride for ever on a motion of several harmonics: give the duration of the run")
+        modes = self.plate.modes
+        if modes is not None and np.isin(modes.angular_frequencies[modes.damping_ratios == 0.0], self.motion.angular_frequency).any():
+            words = "a mode of the plate without damping is driven at its own frequency, and grows without bound"
+            raise InputError(f"{words}; give it damping, or change the frequency of the motion")
         place, speed, _ = self.surface(0.0)
         if self.height is not None and not np.all(np.asarray(self.height) - self.sphere.contact_offset > place):
             raise InputError(
