@@ -274,6 +274,27 @@ def test_the_softest_touch_of_a_slope_closes_its_ledger(law: str, gravity: float
     assert abs(energy["closure_J"]) < 1e-12 * -energy["potential_J"]
 
 
+@pytest.mark.parametrize("restitution", [0.0, 0.4])
+def test_a_history_has_both_sides_of_an_impulse(restitution: float) -> None:
+    """The motion along the plate and the spin jump where the normal velocity does, and a sphere lies on with what the last impulse left."""
+    law, oblique = (
+        vi.find_contact_law("newton")(restitution=restitution),
+        vi.Oblique(velocity=([1.0, 2.0], 0.4), friction=FRICTION["rigid"]),
+    )
+    batch = vi.simulate(replace(problem(oblique=oblique, impacts=None), laws=(law,), duration=0.6))
+    for number in range(2):
+        response = batch.drop(number)
+        history, impacts, energy = response.history(), response.impacts, response.energy
+        jumps = np.flatnonzero(np.diff(history["velocity_m_s"]) > 0.1)
+        for side, at, spun in (("approach", jumps, "before"), ("separation", jumps + 1, "after")):
+            assert history["velocity_x_m_s"][at] == pytest.approx(impacts[f"{side}_velocity_x_m_s"][: len(jumps)], rel=1e-12)
+            assert history["spin_y_rad_s"][at] == pytest.approx(impacts[f"spin_y_{spun}_rad_s"][: len(jumps)], abs=1e-12)
+        assert len(jumps) >= 1
+        assert history["friction_J"][jumps + 1] == pytest.approx(np.cumsum(impacts["friction_lost_J"])[: len(jumps)], rel=1e-12)
+        for name in ("friction_J", "rotation_J", "kinetic_J"):
+            assert history[name][-1] == pytest.approx(energy[name], rel=1e-12), name
+
+
 def test_a_sphere_falls_off_the_edge() -> None:
     response = vi.simulate(vi.read_case({**CASE, "drop": {"velocity": [5.0, 0, -3.0], "position": ["900 mm", 0]}}))
     assert response.outcomes == (vi.Outcome.FELL,)
@@ -471,6 +492,10 @@ def test_python_is_told_as_well() -> None:
     }
     with pytest.raises(vi.InputError, match="newton gives no normal force for mdr to follow"):
         vi.Problem(**newton, speed=1.0, oblique=vi.Oblique(friction=FRICTION["mdr"]))
+    with pytest.raises(vi.InputError, match="may turn needs a radius"):
+        vi.Problem(**{**newton, "sphere": vi.Body(mass=MASS, contact_offset=0.0)}, speed=1.0, oblique=spinning("coulomb"))
+    with pytest.raises(vi.InputError, match="velocity is that at a height"):
+        vi.Problem(**newton, speed=1.0, velocity=0.5)
 
 
 DROP_ON_ELASTIC = {"speed": "3 m/s", "angle": "10 deg", "position": ["-100 mm", "20 mm"], "gravity": "60 m/s^2"}

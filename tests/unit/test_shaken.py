@@ -81,6 +81,14 @@ def test_refused_problems(values: dict[str, Any], words: str) -> None:
         problem(**values)
 
 
+def test_a_mode_that_would_grow_without_bound_is_refused() -> None:
+    modes = ModalBasis(
+        frequencies=np.array([25.0]), damping_ratios=np.zeros(1), contact=np.array([0.5]), participation=np.array([[0.0, 0.0, 1.0]])
+    )
+    with pytest.raises(vi.InputError, match="without damping is driven at its own frequency"):
+        problem(plate=vi.Body(mass=np.inf, contact_offset=0.0, modes=modes))
+
+
 def test_only_the_part_along_the_normal_matters_without_friction() -> None:
     tilted = vi.PlateMotion(amplitude=2e-3, frequency=25.0, direction=(0.6, 0.0, 0.8))
     straight = vi.PlateMotion(amplitude=1.6e-3, frequency=25.0)
@@ -428,6 +436,27 @@ def test_a_plate_without_amplitude_is_heard_as_one_at_rest() -> None:
     one, other = (vi.simulate(each).signals()["a1"] for each in (still, replace(still, motion=None)))
     assert np.array_equal(one.value, other.value)
     assert one.uncertainty == other.uncertainty
+
+
+@pytest.mark.parametrize("frequency", ["740 Hz", "25 Hz"])
+def test_a_sensor_on_an_elastic_plate_that_carries_a_sphere_reads_its_motion(frequency: str) -> None:
+    """Also near the resonance of the first mode, 787 Hz; the filter of a converter takes away what is left of fast oscillations."""
+    elastic = {"plate.model": "elastic", "plate.supports": "clamped", "plate.modes": 12, "plate.damping": 0.02}
+    amplitude = {"740 Hz": "4 nm", "25 Hz": "0.2 mm"}[frequency]
+    shaken = {**elastic, "plate.motion": {"amplitude": amplitude, "frequency": frequency}, "contact.restitution": 0.3}
+    sensors = [
+        {"name": name, "position": [0.0, 0.0], "quantity": "displacement", "rate": 2e4, "filter": name} for name in ("none", "sigma-delta")
+    ]
+    response = vi.simulate(case(**shaken, **{"drop.height": "30 mm", "run": {"impacts": "all", "duration": "0.4 s"}}, sensors=sensors))
+    assert response.outcomes == (vi.Outcome.CAPTURED,)
+    modes = response.problem.plate.modes
+    assert modes is not None
+    for name, heard in response.signals().items():
+        rests = (heard.time > response.rest.time[0]) & (heard.time < 0.395)
+        motion = response.at(heard.time[rests])
+        expected = motion["plate_deflection_m"] - modes.residuals[name][2] * motion["force_N"]
+        error = {"none": 1e-11, "sigma-delta": 5e-3}[name] * np.ptp(expected)
+        assert heard.value[rests] == pytest.approx(expected, abs=error), name
 
 
 # along the plate -----------------------------------------------------------------------------------

@@ -350,3 +350,12 @@ def test_a_slip_of_rounding_is_none() -> None:
     start, law = State(np.zeros((2, 1)), velocity, spin), vi.find_friction_law("coulomb")(coefficient=0.3)
     state, _ = LyingSpheres(ball, start, law, 9.81 * one, 2.0 * one).at(np.array([0]), 2.0 * one)
     assert state.velocity[:, 0] == pytest.approx([1.3 + 2.0 * 5.0 / 7.0, 0.7], rel=1e-12)
+
+
+@pytest.mark.parametrize("rolling", [0.0, 0.01])
+@pytest.mark.parametrize("size", [1e-7, 1e-12])
+def test_a_slow_slip_across_a_slope_ends_as_a_fast_one(size: float, rolling: float) -> None:
+    """The equations know no speed of their own: a slip that is smaller by a factor ends earlier by it, in as many steps."""
+    fast, slow = (on_slope((0.3 * part, 0.4 * part), (50.0 * part, -15.0 * part), 0.1, rolling, 3.0).curves[0] for part in (1.0, size))
+    assert [begin / size for begin, _ in slow.parts] == pytest.approx([begin for begin, _ in fast.parts], rel=1e-8)
+    assert len(slow.steps) < 5 * len(fast.steps)

@@ -302,3 +302,38 @@ def test_a_lump_at_rest_on_a_sprung_deck_moves_on_as_scipy_has_it() -> None:
     work = np.append(0.0, np.cumsum(0.5 * (power[1:] + power[:-1]) * np.diff(times[steady])))
     assert np.ptp(work) > 0.05
     assert drive - drive[0] == pytest.approx(work, abs=0.01 * np.ptp(work))
+
+
+def test_friction_turns_with_a_table_that_shakes_across_the_slip() -> None:
+    """A sphere rides and slides over many periods: friction points against the slip at every instant, as in SciPy's integration of it."""
+    friction = vi.find_friction_law("mindlin")(
+        coefficient=0.05, effective_modulus=4e10, effective_shear_modulus=3e10, effective_radius=0.02
+    )
+    law = vi.find_contact_law("linear-spring-dashpot")(stiffness=1e7, restitution=0.1, effective_mass=0.087)
+    motion = vi.PlateMotion(amplitude=2e-5, frequency=400.0, direction=(0.0, 1.0, 0.0))
+    response = vi.simulate(
+        vi.Problem(
+            sphere=vi.Body(mass=0.087, contact_offset=0.02),
+            plate=vi.rigid_plate(),
+            laws=(law,),
+            speed=0.1,
+            impacts=None,
+            duration=0.2,
+            motion=motion,
+            oblique=vi.Oblique(velocity=(0.8, 0.0), friction=friction),
+            tolerance=1e-7,
+        )
+    )
+    times = np.array([0.06, 0.199])
+    found = response.at(times)
+    assert found["force_N"] == pytest.approx(0.087 * 9.80665, rel=1e-6)
+
+    def rates(time: float, state: np.ndarray) -> np.ndarray:
+        slip = state + np.array([0.0, -2e-5 * 800.0 * np.pi * np.cos(800.0 * np.pi * time)])
+        return -3.5 * 0.05 * 9.80665 * slip / np.hypot(*slip)
+
+    slips = np.array([found["velocity_x_m_s"] - 0.02 * found["spin_y_rad_s"], found["velocity_y_m_s"] + 0.02 * found["spin_x_rad_s"]])
+    expected = solve_ivp(rates, tuple(times), slips[:, 0], rtol=1e-10, atol=1e-13, max_step=1e-4).y[:, -1]
+    straight = slips[0, 0] - 3.5 * 0.05 * 9.80665 * (times[1] - times[0])
+    assert expected[0] - straight > 4e-4
+    assert slips[0, 1] == pytest.approx(expected[0], abs=0.03 * (expected[0] - straight))

@@ -49,10 +49,14 @@ class Leg:
         contact_here = np.flatnonzero(self.contact_drops == drop)
         motions = self.motions[int(here[0]) : int(here[0]) + 1]
         oblique = None if self.oblique is None else (self.oblique[0].take(here), self.oblique[1].take(here))
+        along = tuple(
+            (one, part.of(place))
+            for places, part in self.oblique_contacts
+            for place in np.flatnonzero(np.isin(places, contact_here)).tolist()
+        )
         if self.contact is None or self.encounter is None or not contact_here.size:
             ride = self.ride.of(int(contact_here[0])) if self.ride is not None and contact_here.size else None
-            return Leg(one, alone, self.flight_end[here], one[: contact_here.size], motions=motions, oblique=oblique, ride=ride)
+            here_alone = one, alone, self.flight_end[here], one[: contact_here.size]
+            return Leg(*here_alone, motions=motions, oblique=oblique, oblique_contacts=along, ride=ride)
         contact, encounter = self.contact.of(int(contact_here[0])), self.encounter.take(contact_here)
-        place = int(contact_here[0])
-        along = tuple((one, part.of(int(np.flatnonzero(places == place)[0]))) for places, part in self.oblique_contacts if place in places)
         return Leg(one, alone, self.flight_end[here], one, contact, encounter, motions, oblique, along)

@@ -158,6 +158,8 @@ class Problem:
                 raise InputError(f"{name} must be finite{'' if np.isinf(least) else ' and not negative'}")
         if self.speed is not None and not np.all(np.asarray(self.speed) > 0):
             raise InputError("speed must be greater than 0 m/s")
+        if self.speed is not None and np.any(self.velocity):
+            raise InputError("velocity is that at a height; with speed, at first touch, leave it out")
         if self.height is not None:
             if not np.all(np.asarray(self.height) > self.sphere.contact_offset):
                 raise InputError(
@@ -180,6 +182,8 @@ class Problem:
             raise InputError(f"{self.laws[0].name} gives no force, and bodies that deform need one; take another law")
         if self.oblique is not None and not isinstance(self.oblique, Oblique):
             raise InputError(f"oblique must be an Oblique, not {self.oblique!r}")
+        if self.oblique is not None and not np.all(np.asarray(self.sphere.contact_offset) > 0.0):
+            raise InputError("a sphere that may turn needs a radius: its contact_offset, greater than 0 m")
         if self.oblique is not None and self.vibrates:
             self._check_rubbing(self.oblique)
         if self.oblique is not None and isinstance(self.oblique.friction, CompliantFriction) and isinstance(self.laws[0], InstantaneousLaw):
@@ -219,6 +223,10 @@ class Problem:
             raise InputError("nothing holds the plate, so that no motion of supports reaches it; leave out its motion")
         if len(self.motion.phasors) > 1 and self.duration is None:
             raise InputError("a sphere may ride for ever on a motion of several harmonics: give the duration of the run")
+        modes = self.plate.modes
+        if modes is not None and np.isin(modes.angular_frequencies[modes.damping_ratios == 0.0], self.motion.angular_frequency).any():
+            words = "a mode of the plate without damping is driven at its own frequency, and grows without bound"
+            raise InputError(f"{words}; give it damping, or change the frequency of the motion")
         place, speed, _ = self.surface(0.0)
         if self.height is not None and not np.all(np.asarray(self.height) - self.sphere.contact_offset > place):
             raise InputError(

@@ -350,7 +350,10 @@ class Response:
             found, resting = vibrating_history(problem, segments[number], times, of_bodies), isinstance(segments[number].motion, RestMotion)
         if self.legs is not None and problem.oblique is not None:
             start = segments[number].start
-            along = oblique_history(problem, self.legs, self.impacts["friction_lost_J"], start + times, start if resting else np.inf)
+            flown = np.searchsorted([float(leg.flight.start[0]) for leg in self.legs], start, side="right")
+            leg = segments.leg_of(number) if isinstance(segments, Timeline) else int(flown) - 1
+            lost = float(self.impacts["friction_lost_J"][:leg].sum())
+            along = oblique_history(problem, self.legs[leg], lost, start + times, start if resting else np.inf)
             found |= {name: values + found[name] if name in found else values for name, values in along.items()}
         if self.legs is not None and problem.air is not None:
             found["air_J"] = air_lost(self.legs, float(problem.sphere.mass), segments[number].start + times)

@@ -183,7 +183,8 @@ class Run:
             row["duration_s"][drops] = row["max_indentation_m"][drops] = row["plastic_work_J"][drops] = 0.0
             lost, along = 0.5 * self.mass[drops] * (speed**2 - separation**2), np.zeros(len(drops))
             if self.oblique is not None:
-                along = self.oblique.collide_at_once(drops, touch, self.mass[drops] * (speed + separation), row)
+                contacts, along = self.oblique.collide_at_once(drops, touch, self.mass[drops] * (speed + separation), row)
+                leg = replace(leg, oblique_contacts=contacts)
             if self.problem.shaken:
                 leg, lost = self.ride(leg, touch, speed, (lost, along), row)
         else:

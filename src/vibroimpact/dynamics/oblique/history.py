@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from vibroimpact.arrays import Floats
@@ -15,17 +13,17 @@ from vibroimpact.dynamics.oblique.statement import Oblique
 from vibroimpact.dynamics.problem import Problem
 
 
-def oblique_history(problem: Problem, legs: Sequence[Leg], lost: Floats, time: Floats, lies_from: float) -> dict[str, Floats]:
-    """Return columns of the motion along the plate at times within the run.
+def oblique_history(problem: Problem, leg: Leg, lost: float, time: Floats, lies_from: float) -> dict[str, Floats]:
+    """Return columns of the motion along the plate at times within a leg.
 
     Parameters
     ----------
     problem : Problem
         The problem of the drop.
-    legs : sequence of Leg
-        Its flights and contacts.
-    lost : array, shape (impacts,)
-        Energy that friction took in each contact [J].
+    leg : Leg
+        Its flight and contact, the last one for times after it.
+    lost : float
+        Energy that friction took before the leg [J].
     time : array, shape (T,)
         Times since the start [s].
     lies_from : float
@@ -36,33 +34,25 @@ def oblique_history(problem: Problem, legs: Sequence[Leg], lost: Floats, time: F
     dict of str to array
         The columns of `OBLIQUE_HISTORY_COLUMNS` (T,), and what the motion adds to "kinetic_J" and "potential_J".
     """
-    oblique = problem.oblique
-    assert oblique is not None
-    found = {name: np.zeros(len(time)) for name in (*OBLIQUE_HISTORY_COLUMNS, "kinetic_J", "potential_J")}
-    begin = np.searchsorted([float(leg.flight.start[0]) for leg in legs], time, side="right") - 1
-    so_far = np.concatenate([[0.0], np.cumsum(lost)])
-    for number in np.unique(np.maximum(begin, 0)).tolist():
-        here = np.flatnonzero(np.maximum(begin, 0) == number)
-        moving = _of_leg(legs[number], float(so_far[number]), np.minimum(time[here], lies_from))
-        if lies_from < np.inf:
-            moving = _lying(problem, legs[number], moving, np.maximum(time[here] - lies_from, 0.0))
-        for name, values in _columns(oblique, legs[number], *moving).items():
-            found[name][here] = values
-    return found
+    assert problem.oblique is not None
+    moving = _of_leg(leg, lost, time, lies_from)
+    if lies_from < np.inf:
+        moving = _lying(problem, leg, moving, np.maximum(time - lies_from, 0.0))
+    return _columns(problem.oblique, leg, *moving)
 
 
 Moving = tuple[State, Floats, Floats]
 """States, friction forces [N] (2, T), and energy that friction took so far [J] (T,)."""
 
 
-def _of_leg(leg: Leg, lost: float, time: Floats) -> Moving:
-    """Return the motion at times within a leg; `lost`: energy that friction took before it [J]."""
+def _of_leg(leg: Leg, lost: float, time: Floats, lies_from: float) -> Moving:
+    """Return the motion at times within a leg, up to where the sphere lies; `lost`: energy that friction took before it [J]."""
     assert leg.oblique is not None
     sphere, start = leg.oblique
-    touch = float(leg.flight_end[0])
+    touch, time, lies = float(leg.flight_end[0]), np.minimum(time, lies_from), time >= lies_from
     state, friction, taken = leg.flight.carry(sphere, start, np.minimum(time, touch)), np.zeros((2, len(time))), np.full(len(time), lost)
     state = State(state.position, state.velocity, start.spin + np.zeros(len(time)))
-    after = time > touch
+    after = (time > touch) | lies  # an impulse has no duration: a sphere may lie from the time of touch on
     if leg.oblique_contacts and after.any():
         ((_, contact),) = leg.oblique_contacts
         in_contact, force, lost_here = contact.at(time[after] - touch)

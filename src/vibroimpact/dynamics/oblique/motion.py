@@ -15,7 +15,7 @@ from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.oblique.normal_motion import NormalMotion
 from vibroimpact.dynamics.oblique.rolling import ACROSS, LyingSpheres
 from vibroimpact.dynamics.oblique.sliding import slide
-from vibroimpact.dynamics.oblique.state import ObliqueContact, ObliqueContacts, Sliding, Sphere, State, energy_taken
+from vibroimpact.dynamics.oblique.state import ImpulseAlong, ObliqueContact, ObliqueContacts, Sliding, Sphere, State, energy_taken
 from vibroimpact.dynamics.oblique.statement import Oblique
 from vibroimpact.dynamics.oblique.twisting import slowed_spins
 from vibroimpact.dynamics.shaken.statement import PlateMotion
@@ -122,10 +122,10 @@ class ObliqueMotion:
         self.finish(drops, after, energy_taken(sphere, before, after), sliding.microslip, row)
         return contact
 
-    def collide_at_once(self, drops: Drops, time: Floats, impulse: Floats, row: dict[str, Floats]) -> Floats:
-        """Let a normal impulse without duration act on drops at some times [N s], [s]; write its columns, and return the plate's work [J].
+    def collide_at_once(self, drops: Drops, time: Floats, impulse: Floats, row: dict[str, Floats]) -> tuple[ObliqueContacts, Floats]:
+        """Let a normal impulse without duration act on drops at some times [N s], [s], and write its columns.
 
-        That is the work of friction on the spheres, as the plate moves along itself.
+        Return the contacts, and the plate's work [J]: that of friction on the spheres, as the plate moves along itself.
         """
         sphere, start = self.sphere.take(drops), self.state.take(drops)
         surface = 0.0 if self.motion is None else np.outer(self.motion.direction[:2], self.motion.at(time)[1])
@@ -140,7 +140,7 @@ class ObliqueMotion:
         after = after if change is None else after.changed(change)
         lost, after = energy_taken(sphere, before, after), replace(after, velocity=after.velocity + surface)
         self.finish(drops, after, lost, np.zeros(len(drops)), row)
-        return lost - energy_taken(sphere, start, after)
+        return ((np.arange(len(drops)), ImpulseAlong(after, lost)),), lost - energy_taken(sphere, start, after)
 
     def finish(self, drops: Drops, after: State, lost: Floats, microslip: Floats, row: dict[str, Floats]) -> None:
         """Put drops into their states after a contact in which friction took an energy [J], and write its columns.

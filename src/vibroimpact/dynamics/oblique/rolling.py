@@ -360,7 +360,8 @@ class _Curve:
         ends = [changes, settles] if turns else [changes]
         for one in ends:
             one.terminal, one.direction = True, -1.0  # type: ignore[attr-defined]
-        settings = {"method": "DOP853", "rtol": 1e-11, "atol": 1e-14, "dense_output": True}
+        # an error that is small beside what counts as ended, however slow the motion: else the end is stepped over to and fro for ever
+        settings = {"method": "DOP853", "rtol": 1e-11, "atol": 1e-5 * self.least, "dense_output": True}
         found = solve_ivp(rates, (begin, until), rows.ravel(), events=ends, **settings)
 
         def part(time: Floats) -> Floats:

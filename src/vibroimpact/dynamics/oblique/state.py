@@ -197,6 +197,29 @@ class ObliqueContact:
         return state, -self.direction * PchipInterpolator(times, force)(now), energy_taken(self.sphere, self.before, state)
 
 
+@dataclass(frozen=True)
+class ImpulseAlong:
+    """Contacts of B drops that have no duration: their states `after`, and the energy that friction took [J], `lost` (B,)."""
+
+    after: State
+    lost: Floats
+
+    @property
+    def duration(self) -> Floats:
+        """Durations of the contacts [s]: none."""
+        return np.zeros_like(self.lost)
+
+    def of(self, drop: int) -> ImpulseAlong:
+        """Return the contact of one drop."""
+        here = np.array([drop])
+        return ImpulseAlong(self.after.take(here), self.lost[here])
+
+    def at(self, time: Floats) -> tuple[State, Floats, Floats]:
+        """Return the state of one drop after the impulse, no friction (2, T), and the energy taken [J] (T,), for times from then on."""
+        same = np.zeros(len(time), dtype=np.intp)
+        return self.after.take(same), np.zeros((2, len(time))), self.lost[same]
+
+
 class ContactAlong(Protocol):
     """The motion along the plate during contacts of some drops."""
 

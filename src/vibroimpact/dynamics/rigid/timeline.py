@@ -43,6 +43,10 @@ class Timeline(Sequence[Segment]):
     def __len__(self) -> int:
         return len(self.starts)
 
+    def leg_of(self, number: int) -> int:
+        """Return the number of the leg to which a segment belongs; what comes after them belongs to the last one."""
+        return min(int(np.searchsorted(self._firsts, number, side="right")), len(self.legs)) - 1
+
     @overload
     def __getitem__(self, index: int) -> Segment: ...
 
@@ -53,8 +57,8 @@ class Timeline(Sequence[Segment]):
         if isinstance(index, slice):
             return [self[number] for number in range(*index.indices(len(self)))]
         number = range(len(self))[index]
-        leg = int(np.searchsorted(self._firsts, number, side="right")) - 1
-        if self.rest is not None and leg == len(self.legs):
+        leg = self.leg_of(number)
+        if self.rest is not None and number == len(self) - 1:
             return self.rest
         if leg not in self._recent:  # segments are mostly read in order
             self._recent.clear()

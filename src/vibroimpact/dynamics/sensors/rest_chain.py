@@ -5,16 +5,16 @@ of the plate), the modes of the plate move by :math:`q = q_0 + S c`, and the con
 
 .. math:: F = m g - m \ddot s = m g - \sqrt m \sum_j S_{0j}\,\ddot c_j .
 
-The motion of a point and the outputs of a chain are therefore transfer functions at the poles of the coupled oscillators (`pole_pairs`),
-plus a constant. The pairs of poles of the instruments also perform a free motion of their own from their previous state; as it differs from
-point to point, they are repeated for each output.
+On a plate that is shaken the steady motion of both joins, with an undamped oscillator for each driven coordinate, whose shapes are transfer
+functions too. The motion of a point and the outputs of a chain are therefore transfer functions at the poles of these oscillators
+(`pole_pairs`), plus a constant. The pairs of poles of the instruments also perform a free motion of their own from their previous state; as
+it differs from point to point, they are repeated for each output.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import reduce
 
 import numpy as np
 
@@ -22,8 +22,8 @@ from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.sensors.measuring_chain import MeasuringChain, at_port, point_receptance, section_outputs
 from vibroimpact.dynamics.sensors.pole_pairs import PolePairs, Section
 from vibroimpact.dynamics.sensors.pulses import Pulses, gauss_rule
-from vibroimpact.dynamics.vibrating.oscillators import Oscillators
-from vibroimpact.dynamics.vibrating.rest_motion import RestMotion
+from vibroimpact.dynamics.vibrating.oscillators import Oscillators, joined
+from vibroimpact.dynamics.vibrating.rest_motion import FreeOscillations, RestMotion
 
 _FAST = 16.0
 """Oscillations faster than this multiple of the system's highest frequency act as one impulse, with an error of one over its square."""
@@ -60,11 +60,9 @@ def rest_chain(chain: MeasuringChain, port: int, rest: RestMotion, instrument_st
     instrument_state : array, shape (2, pairs of poles)
         State of the instruments' pairs of poles at the beginning.
     """
-    equilibrium, coupled = rest.equilibrium, rest.coupled
-    poles, shapes, ground = PolePairs(coupled.angular_frequency**2, coupled.damping), equilibrium.modes[1], equilibrium.system.ground
-    force = -math.sqrt(equilibrium.system.mass[0]) * shapes[0] * poles.power(2)
-    compliance = chain.compliance[port]
-    moved = chain.shapes @ shapes[ground] * poles.power(0)[:, None] - compliance[:, None] * force[:, None]  # (2, S, coupled)
+    equilibrium, motion = rest.equilibrium, rest.oscillations
+    poles, ground, compliance = _poles(motion), equilibrium.system.ground, chain.compliance[port]
+    moved = chain.shapes @ motion.shapes[:, ground] - compliance[:, None] * _force(rest, motion)[:, None]  # (2, S, oscillators)
     static = chain.shapes @ equilibrium.state.displacement[ground] - compliance * equilibrium.weight
     here = chain.instrument_of(port)
     instrument = at_port(chain.instrument.pick(here), port)
@@ -79,10 +77,10 @@ def rest_chain(chain: MeasuringChain, port: int, rest: RestMotion, instrument_st
             1,
         )
     ]
-    places = [rest.start_coupled]
+    places = [motion.start]
     for number, section in enumerate(sections):
         driven = poles.product(moved, poles.inverse(poles.quadratic(*section))[:, None])
-        now = np.stack([_value(driven, rest.start_coupled), _value(poles.product(driven, poles.power(1)[:, None]), rest.start_coupled)])
+        now = np.stack([_value(driven, motion.start), _value(poles.product(driven, poles.power(1)[:, None]), motion.start)])
         now[0] += static / section[0]
         places.append(_driven_section_states(chain, port, section, rest, instrument_state[:, here][:, [number]]) - now)
         outputs.append(section_outputs(number, sections, chain.orders) * np.eye(len(static)))
@@ -93,8 +91,18 @@ def rest_chain(chain: MeasuringChain, port: int, rest: RestMotion, instrument_st
         own.append(at_port(chain.instrument.pick(there), other))
         places.append(instrument_state[:, there])
         outputs.append(chain.outputs[:, :, chain.modes :][:, :, there])
-    oscillators = reduce(_concatenate, [coupled, *own])
+    oscillators = joined([motion.oscillators, *own])
     return RestChain(oscillators, np.concatenate(outputs, axis=-1), np.concatenate(places, axis=1), constant)
+
+
+def _poles(motion: FreeOscillations) -> PolePairs:
+    return PolePairs(motion.oscillators.angular_frequency**2, motion.oscillators.damping)
+
+
+def _force(rest: RestMotion, motion: FreeOscillations) -> Floats:
+    """Return the elements of the deviation of the contact force from the weight [N], (2, n)."""
+    poles = _poles(motion)
+    return np.asarray(-math.sqrt(rest.equilibrium.system.mass[0]) * poles.product(motion.shapes[:, 0], poles.power(2)))
 
 
 def _driven_section_states(chain: MeasuringChain, port: int, section: Section, rest: RestMotion, instrument_state: Floats) -> Floats:
@@ -135,18 +143,16 @@ def rest_pulses(rest: RestMotion, fastest: float, length: float) -> Pulses:
     length : float
         Duration [s].
     """
-    equilibrium, oscillators, (place, speed) = rest.equilibrium, rest.coupled, rest.start_coupled
-    share = -math.sqrt(equilibrium.system.mass[0]) * equilibrium.modes[1][0]  # contribution of an acceleration to the force
+    motion = rest.oscillations
+    oscillators, poles, force = motion.oscillators, _poles(motion), _force(rest, motion)
     fast = (oscillators.damping_ratio < 1.0) & (oscillators.angular_frequency > _FAST * fastest)
-    at_once = -float(share[fast] @ speed[fast])  # total impulse of oscillations that decay or average out
-    slow, share = oscillators.pick(~fast), share[~fast]
+    # total impulse of oscillations that decay or average out
+    at_once = -_value(poles.product(force, poles.inverse(poles.power(1)))[:, fast], motion.start[:, fast])
+    slow = oscillators.pick(~fast)
     times, weights = _graded_rule(length, fastest, slow)
-    cosine, sine = slow.propagators(times)
-    stiffness, displacement, velocity = slow.angular_frequency**2, place[~fast], speed[~fast]
-    place = cosine * displacement + sine * velocity
-    speed = -stiffness * sine * displacement + (cosine - slow.damping * sine) * velocity
-    force = equilibrium.weight - (stiffness * place + slow.damping * speed) @ share
-    return np.append(0.0, times), np.append(at_once, weights * force)
+    later, (place, speed) = slow.transition(times), motion.start[:, ~fast]
+    pushed = rest.equilibrium.weight + _value(force[:, None, ~fast], later[:, 0] * place + later[:, 1] * speed)
+    return np.append(0.0, times), np.append(at_once, weights * pushed)
 
 
 def _graded_rule(length: float, fastest: float, oscillators: Oscillators) -> tuple[Floats, Floats]:
@@ -159,13 +165,3 @@ def _graded_rule(length: float, fastest: float, oscillators: Oscillators) -> tup
     x, weights = gauss_rule(_TURN)
     spans = np.diff(ends)[:, None]
     return (ends[:-1, None] + spans * x).ravel(), (spans * weights).ravel()
-
-
-def _concatenate(one: Oscillators, other: Oscillators) -> Oscillators:
-    """Return the oscillators of both."""
-    return Oscillators(*(np.concatenate(pair) for pair in zip(_fields(one), _fields(other), strict=True)))
-
-
-def _fields(oscillators: Oscillators) -> tuple[Floats, Floats, Floats]:
-    """Return the arrays of oscillators."""
-    return oscillators.angular_frequency, oscillators.damping_ratio, oscillators.shape

@@ -20,8 +20,8 @@ import numpy as np
 from vibroimpact.arrays import Complex, Floats
 from vibroimpact.dynamics.vibrating.contact_equilibrium import REST_MARGIN, ContactEquilibrium
 from vibroimpact.dynamics.vibrating.linear_system import State
-from vibroimpact.dynamics.vibrating.oscillators import Oscillators
-from vibroimpact.dynamics.vibrating.rest_motion import RestMotion
+from vibroimpact.dynamics.vibrating.oscillators import Oscillators, joined
+from vibroimpact.dynamics.vibrating.rest_motion import FreeOscillations, RestMotion
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,6 +119,21 @@ class CarriedOscillations(RestMotion):
 
     response: SteadyResponse
     left: RestMotion
+
+    @property
+    def oscillations(self) -> FreeOscillations:
+        """The motion as that of independent oscillators: those of what is left, then the driven coordinates."""
+        left, response = self.left.oscillations, self.response
+        driving, moved = response.driving, np.vstack([response.motions, np.eye(response.driving.number)])
+        steady = np.stack([moved.real, moved.imag / driving.angular_frequency])
+        apart = np.concatenate([left.shapes, np.zeros((2, driving.number, left.oscillators.number))], axis=1)
+        phasors = response.phasors(self.start)
+        start = np.stack([phasors.imag, driving.angular_frequency * phasors.real])
+        return FreeOscillations(
+            joined([left.oscillators, replace(driving, shape=driving.shape[0])]),
+            np.concatenate([left.start, start], axis=1),
+            np.concatenate([apart, steady], axis=2),
+        )
 
     def state(self, time: Floats) -> State:
         """Return the state at times since the start [s] (...)."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -64,3 +65,9 @@ class Oscillators:
             sine[..., over] = slow * -np.expm1(-2.0 * root * t) / (2.0 * root)
             cosine[..., over] = 0.5 * slow * (1.0 + np.exp(-2.0 * root * t))
         return cosine + ratio * omega * sine, sine
+
+
+def joined(parts: Sequence[Oscillators]) -> Oscillators:
+    """Return the oscillators of several parts, in order."""
+    fields = zip(*((part.angular_frequency, part.damping_ratio, part.shape) for part in parts), strict=True)
+    return Oscillators(*(np.concatenate(values, axis=-1) for values in fields))

@@ -13,6 +13,19 @@ from vibroimpact.dynamics.vibrating.linear_system import State
 from vibroimpact.dynamics.vibrating.oscillators import Oscillators
 
 
+@dataclass(frozen=True)
+class FreeOscillations:
+    """A motion about an equilibrium as that of independent oscillators in free motion.
+
+    `start`: their displacements q and velocities q' at its start, (2, n). `shapes`: the coordinates of the system are displaced from the
+    equilibrium by the sums of a q + b q', with a and b as (2, coordinates, n).
+    """
+
+    oscillators: Oscillators
+    start: Floats
+    shapes: Floats
+
+
 @dataclass(frozen=True, eq=False)
 class RestMotion:
     """Small oscillations of a sphere and the bodies that carry it, from the instant of rest on.
@@ -40,6 +53,12 @@ class RestMotion:
     def start_coupled(self) -> Floats:
         """Displacements and velocities of the coupled modes at the start, (2, n)."""
         return np.stack([self.equilibrium.modes[1].T @ part for part in self.equilibrium.deviation(self.start)])
+
+    @property
+    def oscillations(self) -> FreeOscillations:
+        """The motion as that of independent oscillators."""
+        shapes = self.equilibrium.modes[1]
+        return FreeOscillations(self.coupled, self.start_coupled, np.stack([shapes, np.zeros_like(shapes)]))
 
     def coupled_state(self, time: Floats) -> Floats:
         """Return displacements and velocities of the coupled modes at times since the start [s], (2, ..., n)."""

@@ -117,7 +117,7 @@ class _VisitMarch:
         self.march, self.rest_speed, self.until = march, rest_speed, until
         self.system, self.gravity = march.system, float(march.system.gravity[0])
         self.stretches, self.most_stretches = 0, MOST_STEPS if np.isinf(until) else MOST_STEPS_TO_A_TIME
-        self.separation_time, self.stored = 0.0, 0.0
+        self.separation_time, self.stored, self.longest = 0.0, 0.0, _period_along(march.system, march.state)
         self.equilibrium: ContactEquilibrium | None = None
         self.response: SteadyResponse | None = None
         self.active = march.begin_contact(0)
@@ -177,7 +177,7 @@ class _VisitMarch:
             if self.stretches > self.most_stretches or (rides and remaining <= ROUNDING * self.active.span):
                 return self.end_in_contact(RIDING)
             try:
-                taken = yield from march.step(remaining if rides and self.active.pushes else np.inf)
+                taken = yield from march.step(min(remaining if rides else np.inf, self.longest) if self.active.pushes else np.inf)
             except NotIntegrable:
                 return self.end_in_contact(FAILED)
             if taken and 0 in march.active and self.active.pushes and (self.captured() or self.at_rest()):
@@ -259,3 +259,17 @@ class _VisitMarch:
         march.append_free(free, time)
         self.active = march.begin_contact(0, law)
         return True
+
+
+def _period_along(system: LinearSystem, state: State) -> float:
+    """Return about the period with which the plate is moved along itself under friction [s]; infinite where it is not.
+
+    Friction turns with the slip. A stretch of many periods would meet it at too few instants, and yet close its balance of energy.
+    """
+    if system.along is None or not system.driven:
+        return np.inf
+    driven = slice(-system.driven, None)
+    omega = system.angular_frequency[driven]
+    speeds = np.abs(system.along[:2, driven]) * np.hypot(state.velocity[driven], omega * state.displacement[driven])
+    fastest, greatest = float(np.linalg.norm(speeds * omega)), float(np.linalg.norm(speeds))
+    return 2.0 * np.pi * greatest / fastest if fastest > 0.0 else np.inf
