@@ -75,6 +75,7 @@ if TYPE_CHECKING:
     from vibroimpact.dynamics.sensors.electronics import Converter as Converter
     from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer as Accelerometer
     from vibroimpact.dynamics.sensors.instruments.geophone import Geophone as Geophone
+    from vibroimpact.dynamics.sensors.instruments.microphone import Microphone as Microphone
     from vibroimpact.dynamics.sensors.instruments.strain_gauge import StrainGauge as StrainGauge
     from vibroimpact.dynamics.sensors.recording import Signal as Signal
     from vibroimpact.dynamics.sensors.sensor import Sensor as Sensor
@@ -169,6 +170,7 @@ _HOME = {
     "Material": "materials",
     "LabelledSignals": "recognition.labelled_signals",
     "Mesh": "structures.mesh",
+    "Microphone": "dynamics.sensors.instruments.microphone",
     "ModalBasis": "structures.modal_model",
     "MovingBody": "dynamics.system",
     "Oblique": "dynamics.oblique.statement",

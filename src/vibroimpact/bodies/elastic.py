@@ -16,6 +16,7 @@ from vibroimpact.structures.modal_model import ModalBasis, ModalModel, modal_bas
 from vibroimpact.structures.mode_count import OF_AN_EDGE
 from vibroimpact.structures.plate_waves import wave_numbers
 from vibroimpact.structures.recipe import PlateOfPlates, PlateOfSolids, Recipe, Reduction, Shape, SphereOfSolids
+from vibroimpact.structures.sound_paths import Listener
 from vibroimpact.structures.supports.edge import Edge
 from vibroimpact.structures.supports.support import Support
 from vibroimpact.structures.surface import Side, Spot
@@ -49,6 +50,8 @@ class ElasticBody:
         Sensors of motion by name.
     strained : mapping of str to (spot, side), optional
         Sensors of strain by name.
+    heard : mapping of str to Listener, optional
+        Microphones by name.
     """
 
     recipe: Recipe
@@ -57,10 +60,11 @@ class ElasticBody:
     damping: Damping = ConstantRatio(0.0)
     watched: Mapping[str, tuple[Spot, Side]] = field(default_factory=dict)
     strained: Mapping[str, tuple[Spot, Side]] = field(default_factory=dict)
+    heard: Mapping[str, Listener] = field(default_factory=dict)
 
     @property
     def sensors(self) -> dict[str, tuple[Spot, Side]]:
-        """All sensors by name."""
+        """All sensors on the body by name."""
         return {**self.watched, **self.strained}
 
     def basis(self, model: ModalModel) -> ModalBasis:
@@ -71,11 +75,11 @@ class ElasticBody:
         InputError
             If a point is not on the body, or a set is not in its mesh.
         """
-        return modal_basis(model, self.damping, self.contact, self.side, self.watched, self.strained)
+        return modal_basis(model, self.damping, self.contact, self.side, self.watched, self.strained, self.heard)
 
     def rigid_motions(self, model: ModalModel) -> ModalBasis | None:
         """Return the rigid motions that the supports permit, at the same points, as modes of frequency zero; None if there are none."""
-        return rigid_basis(model, (self.contact, self.side), self.watched, self.strained)
+        return rigid_basis(model, (self.contact, self.side), self.watched, self.strained, self.heard)
 
 
 def sphere_recipe(radius: float, material: Material, reduction: Reduction, **mesh: Any) -> Recipe:

@@ -17,7 +17,14 @@ from vibroimpact.calibration.section import CalibrateSection, SpeedsTable
 from vibroimpact.cases.build import check_case
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.fields.fault_messages import fault_messages
-from vibroimpact.cases.fields.instruments import AccelerometerTable, AmplifierTable, ConverterTable, GeophoneTable, StrainGaugeTable
+from vibroimpact.cases.fields.instruments import (
+    AccelerometerTable,
+    AmplifierTable,
+    ConverterTable,
+    GeophoneTable,
+    MicrophoneTable,
+    StrainGaugeTable,
+)
 from vibroimpact.cases.fields.item_labels import path_in_words
 from vibroimpact.cases.fields.material import InlineMaterial
 from vibroimpact.cases.fields.motion import MotionTable
@@ -47,6 +54,7 @@ _SECTIONS: dict[tuple[str, ...], type[BaseModel]] = {
     ("sensors", "amplifier"): AmplifierTable,
     ("sensors", "converter"): ConverterTable,
     ("sensors", "geophone"): GeophoneTable,
+    ("sensors", "microphone"): MicrophoneTable,
     ("sensors", "strain_gauge"): StrainGaugeTable,
     ("plate", "motion"): MotionTable,
 }

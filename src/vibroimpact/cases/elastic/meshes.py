@@ -44,6 +44,11 @@ def meshes_of(case: CaseTable) -> dict[str, Mesh]:
         names = [{"name": one} for one in body.sensors]
         for number, (spot, face) in enumerate(body.sensors.values()):
             _check_spot(mesh, spot, face, f"{item_label('sensors', names, number)}.position")
+        for sensor, listener in body.heard.items():
+            try:
+                place_of(mesh, listener.spot, listener.side)
+            except InputError as error:
+                raise InputError(error.message, f"{item_label('sensors', [{'name': sensor}], 0)}.position") from None
         if name == "plate":
             _check_supports(case, body, mesh)
         found[name] = mesh
