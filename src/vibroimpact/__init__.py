@@ -74,6 +74,7 @@ if TYPE_CHECKING:
     from vibroimpact.dynamics.sensors.electronics import Amplifier as Amplifier
     from vibroimpact.dynamics.sensors.electronics import Converter as Converter
     from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer as Accelerometer
+    from vibroimpact.dynamics.sensors.instruments.force_sensor import ForceSensor as ForceSensor
     from vibroimpact.dynamics.sensors.instruments.geophone import Geophone as Geophone
     from vibroimpact.dynamics.sensors.instruments.microphone import Microphone as Microphone
     from vibroimpact.dynamics.sensors.instruments.strain_gauge import StrainGauge as StrainGauge
@@ -164,6 +165,7 @@ _HOME = {
     "ContactLaw": "contact.law",
     "Converter": "dynamics.sensors.electronics",
     "FeatureTable": "signals.feature_table",
+    "ForceSensor": "dynamics.sensors.instruments.force_sensor",
     "FrictionCalibration": "calibration.friction.calibrate",
     "Geophone": "dynamics.sensors.instruments.geophone",
     "InputError": "errors",

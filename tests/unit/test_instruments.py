@@ -12,6 +12,7 @@ from rich.console import Console
 
 import vibroimpact as vi
 from vibroimpact.cases.build import resolved_case
+from vibroimpact.cases.elastic.meshes import meshes_of as check_meshes
 from vibroimpact.cases.sensor_doubts import sensor_doubts
 from vibroimpact.dynamics.sensors.instruments.instrument import UNITS
 from vibroimpact.dynamics.sensors.recording import Signal
@@ -67,6 +68,9 @@ def case(**sensor: Any) -> vi.Case:
         ({"microphone": MICROPHONE, "filter": "none"}, r'"a1"\.filter: the samples of a microphone are those behind "sigma-delta"'),
         ({"microphone": MICROPHONE, "position": "a set"}, r'"a1"\.position: a plate that is meshed here has no set "a set"'),
         ({"microphone": {**MICROPHONE, "sensitivity": "50 mV"}}, "is a voltage; what is wanted is a voltage over pressure"),
+        ({"instrument": "force", "quantity": "voltage"}, "a force sensor reads force; leave out quantity"),
+        ({"force": {"sensitivity": "10 mV"}}, "is a voltage; what is wanted is a voltage over force"),
+        ({"force": {"sensitivitty": 1}}, r'unknown key "sensitivitty"; .* Did you mean "sensitivity"'),
         ({"amplifier": {"noise": "1 mV"}}, r'"a1"\.amplifier\.noise: "1 mV" is a voltage; what is wanted is an acceleration'),
         ({"amplifier": {"gain": 0}}, r'"a1"\.amplifier\.gain: 0 is not allowed'),
         ({"geophone": GEOPHONE, "converter": {"range": -1}}, r'"a1"\.converter\.range: -1 is not allowed; it must be greater than 0 V'),
@@ -88,6 +92,8 @@ def test_what_does_not_fit_is_named(sensor: dict[str, Any], message: str) -> Non
         {"strain_gauge": {"sensitivity": "2 V"}, "direction": [1, 2, 0], "amplifier": {"gain": 1000}},
         {"microphone": MICROPHONE, "face": "lower", "amplifier": {"noise": "1 mPa"}},
         {"microphone": {**MICROPHONE, "sensitivity": "50 mV/Pa", "speed_of_sound": 340}, "position": [2, 0], "converter": {"range": "1 V"}},
+        {"instrument": "force", "position": [-0.26, 0], "amplifier": {"noise": "10 mN"}},
+        {"force": {"sensitivity": "10 mV/N"}, "direction": "x", "position": [-0.26, 0], "converter": {"range": "5 V", "bits": 16}},
         {"quantity": "velocity", "converter": {"range": "1 m/s", "bits": 12}},
     ],
 )
@@ -128,6 +134,7 @@ def test_a_run_with_instruments_is_told_and_read_back(tmp_path: Path) -> None:
         *whole["sensors"],
         {"name": "e", "position": [0.1, 0.05], "instrument": "strain-gauge"},
         {"name": "m", "position": [0.0, 0.0], "microphone": MICROPHONE},
+        {"name": "r", "position": [-0.26, 0.0], "instrument": "force"},
     ]
     response = vi.simulate(vi.read_case(whole))
     response.save(tmp_path / "run")
@@ -136,6 +143,7 @@ def test_a_run_with_instruments_is_told_and_read_back(tmp_path: Path) -> None:
         "a1": ("voltage", "V"),
         "e": ("strain", "m/m"),
         "m": ("pressure", "Pa"),
+        "r": ("force", "N"),
     }
     for name, signal in response.signals().items():
         np.testing.assert_array_equal(again.signals[name].value, signal.value)
@@ -143,7 +151,9 @@ def test_a_run_with_instruments_is_told_and_read_back(tmp_path: Path) -> None:
         assert signal.largest > 0.0
     assert (tmp_path / "run" / "sensors" / "e.csv").read_text().startswith("time_s,strain_m_m\n")
     assert (tmp_path / "run" / "sensors" / "m.csv").read_text().startswith("time_s,pressure_Pa\n")
+    assert (tmp_path / "run" / "sensors" / "r.csv").read_text().startswith("time_s,force_N\n")
     words = case_text_of(whole)
+    assert "force of the support at (-0.26, 0) m, by a force sensor (ideal)" in words
     assert "pressure at (0, 0) m, upper face, by a microphone (distance 0.3 m; air density 1.2 kg/m3; speed of sound 343.2 m/s)" in words
     assert "strain at (0.1, 0.05) m, upper face, by a strain gauge (ideal)" in words
     assert "by a geophone (natural frequency 10 Hz; sensitivity 27.6 V s/m; damping ratio 0.6)" in words
@@ -157,12 +167,13 @@ def case_text_of(table: dict[str, Any]) -> str:
     return " ".join(console.file.getvalue().split())  # type: ignore[attr-defined]
 
 
-def test_microphones_are_for_plates_at_rest() -> None:
-    shaken = dict(resolved_case(case(microphone=MICROPHONE)))
+@pytest.mark.parametrize(
+    ("sensor", "name"), [({"microphone": MICROPHONE}, "a microphone"), ({"instrument": "force", "position": [-0.26, 0]}, "a force sensor")]
+)
+def test_what_is_for_plates_at_rest(sensor: dict[str, Any], name: str) -> None:
+    shaken = dict(resolved_case(case(**sensor)))
     shaken["plate"] = {**shaken["plate"], "motion": {"amplitude": "0.1 mm", "frequency": "50 Hz"}}
-    with pytest.raises(
-        vi.InputError, match=r'"a1"\.instrument: a microphone is for plates whose supports are at rest; leave out the sensor'
-    ):
+    with pytest.raises(vi.InputError, match=rf'"a1"\.instrument: {name} is for plates whose supports are at rest; leave out the sensor'):
         vi.simulate(vi.read_case(shaken))
 
 
@@ -198,3 +209,15 @@ def test_a_free_plate_sounds_as_a_whole_too() -> None:
     heard = plate.rigid.sounds["a1"].weights.sum(axis=1)
     rise = plate.rigid.participation[:, 2] / plate.rigid.mass
     np.testing.assert_allclose(heard, 0.52 * 0.42 / (2.0 * np.pi * 50.0) * rise, rtol=0.0, atol=1e-4 * np.abs(heard).max())
+
+
+@pytest.mark.parametrize(
+    ("position", "message"),
+    [
+        ([0.0, 0.0], r'"a1"\.position: there is no support at \(0, 0\) m; there are: edge x-min clamped; edge x-max clamped; edge y-min'),
+        ([0.26, 0.21], r"\(0\.26, 0\.21\) m is as near to edge x-max clamped and edge y-max clamped; give a place on one of them"),
+    ],
+)
+def test_a_force_sensor_is_under_one_support(position: list[float], message: str) -> None:
+    with pytest.raises(vi.InputError, match=message):
+        check_meshes(case(instrument="force", position=position))

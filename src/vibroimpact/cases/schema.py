@@ -29,6 +29,7 @@ from vibroimpact.cases.fields.instruments import (
     AccelerometerTable,
     AmplifierTable,
     ConverterTable,
+    ForceTable,
     GeophoneTable,
     MicrophoneTable,
     StrainGaugeTable,
@@ -44,6 +45,7 @@ from vibroimpact.cases.slips.lengths import likely_lengths
 from vibroimpact.dynamics.air import AIR_DENSITY
 from vibroimpact.dynamics.problem import MOST_IMPACTS, STANDARD_GRAVITY
 from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer
+from vibroimpact.dynamics.sensors.instruments.force_sensor import ForceSensor
 from vibroimpact.dynamics.sensors.instruments.instrument import MOTIONS, Instrument
 from vibroimpact.dynamics.sensors.instruments.microphone import Microphone
 from vibroimpact.dynamics.sensors.instruments.strain_gauge import StrainGauge
@@ -189,10 +191,10 @@ class SensorSection(Section):
         description="x and y on the plate, from its centre [m]; or the name of a set of a mesh that was brought"
     )
     face: Literal["upper", "lower"] = Field("upper", description="the side of the plate that it is on, or that a microphone hears")
-    instrument: Annotated[Literal["accelerometer", "geophone", "strain-gauge", "microphone"] | None, _one_of(INSTRUMENTS)] = Field(
+    instrument: Annotated[Literal["accelerometer", "geophone", "strain-gauge", "microphone", "force"] | None, _one_of(INSTRUMENTS)] = Field(
         None, description="what reads it; by default that of the table that is given, or else the motion is read as it is"
     )
-    quantity: Literal["acceleration", "velocity", "displacement", "voltage", "strain", "pressure"] | None = Field(
+    quantity: Literal["acceleration", "velocity", "displacement", "voltage", "strain", "pressure", "force"] | None = Field(
         None, description="what it takes: acceleration by default, or what the instrument puts out"
     )
     direction: Literal["x", "y", "z"] | tuple[float, float, float] = Field("z", description="along which it takes it; z is upwards")
@@ -204,6 +206,7 @@ class SensorSection(Section):
     accelerometer: AccelerometerTable | None = Field(None, description="resonance, range, noise, resolution and sensitivity of one")
     geophone: GeophoneTable | None = Field(None, description="natural frequency, sensitivity, damping and low-pass of one")
     strain_gauge: StrainGaugeTable | None = Field(None, description="sensitivity of one")
+    force: ForceTable | None = Field(None, description="sensitivity of a force sensor between the plate and the support at the position")
     microphone: MicrophoneTable | None = Field(None, description="distance and sensitivity of one, and its air")
     amplifier: AmplifierTable | None = Field(None, description="gain, noise and hum behind the instrument")
     converter: ConverterTable | None = Field(None, description="range and bits of what samples it")
@@ -255,7 +258,8 @@ class SensorSection(Section):
             return found
         if kind in ("geophone", "microphone"):
             raise InputError(f"{INSTRUMENTS[kind]} has properties; give them in a table {kind} = {{ ... }}", kind)
-        return Accelerometer() if kind == "accelerometer" else StrainGauge()
+        ideal: dict[str, Instrument] = {"accelerometer": Accelerometer(), "strain-gauge": StrainGauge(), "force": ForceSensor()}
+        return ideal[kind]
 
     def sensor(self) -> Sensor:
         """Return the sensor, with its direction as a unit vector."""

@@ -222,7 +222,8 @@ class ModalBasis:
     participation : array, shape (modes, 3)
         Momentum of each mode [kg^1/2]; over the mass it is the displacement of the centre of mass.
     points : mapping of str to array, shape (modes, 3)
-        Displacements of the sensors in each mode [kg^-1/2]; of strain gauges the strains along x and y and of shear [kg^-1/2 m^-1].
+        Displacements of the sensors in each mode [kg^-1/2]; of strain gauges the strains along x and y and of shear [kg^-1/2 m^-1];
+        of force sensors the forces of the supports [N m^-1 kg^-1/2].
     mass : float, default NaN
         Mass of the body [kg].
     rotation : array, shape (modes, 3), optional
@@ -231,7 +232,7 @@ class ModalBasis:
         Estimated relative error of each frequency [-]; NaN where unknown.
     residuals : mapping of str to array, shape (3,)
         Residual compliances: static displacements of the sensors under a unit vertical force at the contact point, less those of these
-        modes [m/N]; of strain gauges the strains [1/N].
+        modes [m/N]; of strain gauges the strains [1/N]; of force sensors the forces [-].
     along : array, shape (modes, 2), optional
         Displacement of the contact point along x and y in each mode [kg^-1/2], by which friction moves the body.
     turning : array, shape (modes, 3), optional

@@ -83,8 +83,9 @@ def _plate(case: CaseTable) -> ElasticBody:
         contact = section.mesh.contact
     places = {sensor.name: (sensor.position, sensor.face) for sensor in case.sensors if sensor.microphone is None}
     strained = {sensor.name: places.pop(sensor.name) for sensor in case.sensors if sensor.instrument == "strain-gauge"}
+    pressed = {sensor.name: places.pop(sensor.name) for sensor in case.sensors if sensor.instrument == "force"}
     damping = damping_of(section.damping, section.material.loss_factor)
-    return ElasticBody(_plate_recipe(case, contact), "upper", contact, damping, places, strained, _heard(case))
+    return ElasticBody(_plate_recipe(case, contact), "upper", contact, damping, places, strained, _heard(case), pressed)
 
 
 def _heard(case: CaseTable) -> dict[str, Listener]:

@@ -13,6 +13,7 @@ from vibroimpact.cases.fields.section import Section
 from vibroimpact.dynamics.air import AIR_DENSITY
 from vibroimpact.dynamics.sensors.electronics import Amplifier, Converter
 from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer
+from vibroimpact.dynamics.sensors.instruments.force_sensor import ForceSensor
 from vibroimpact.dynamics.sensors.instruments.geophone import Geophone
 from vibroimpact.dynamics.sensors.instruments.instrument import Instrument
 from vibroimpact.dynamics.sensors.instruments.microphone import Microphone
@@ -25,11 +26,12 @@ INSTRUMENTS = {
     "geophone": "a geophone",
     "strain-gauge": "a strain gauge",
     "microphone": "a microphone",
+    "force": "a force sensor",
 }
 """What instruments are called in a case, where the key of their table has "_" for "-", and in a sentence."""
 
-AT_REST = ("microphone",)
-"""Instruments that the motion of supports is not known to reach."""
+AT_REST = ("force", "microphone")
+"""Instruments for plates whose supports are at rest."""
 SPEED_OF_SOUND = 343.2  # m/s, of dry air at 20 C: sqrt(1.4 * 287.05 J/(kg K) * 293.15 K)
 _NEAREST = 1e-3  # m: the paths of sound to a closer point would take long to integrate, and no microphone is as small
 
@@ -90,6 +92,16 @@ class MicrophoneTable(Section):
     def instrument(self) -> Instrument:
         """Return the microphone."""
         return Microphone(self.sensitivity, self.air_density or AIR_DENSITY)
+
+
+class ForceTable(Section):
+    """A force sensor between the plate and the support at its position."""
+
+    sensitivity: Annotated[float, Quantity("V/N", "voltage over force, which it then puts out", Range(above=0))] | None = None
+
+    def instrument(self) -> Instrument:
+        """Return the force sensor."""
+        return ForceSensor(**self.model_dump())
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,7 @@ from vibroimpact.dynamics.sensors.antialias import FINENESS, antialias_of, gain_
 from vibroimpact.dynamics.sensors.electronics import amplified, seeds
 from vibroimpact.dynamics.sensors.filtered_chain import filtered_chain
 from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer
+from vibroimpact.dynamics.sensors.instruments.force_sensor import ForceSensor
 from vibroimpact.dynamics.sensors.instruments.microphone import Microphone
 from vibroimpact.dynamics.sensors.left_out import next_octave
 from vibroimpact.dynamics.sensors.measuring_chain import MeasuringChain, measuring_chain
@@ -90,8 +91,9 @@ def _check(problem: Problem, sensors: Sequence[Sensor], end: float) -> None:
     if modes is None and problem.motion is None:
         raise InputError("the plate is rigid, so that its points do not move; give it modes", "sensors")
     for sensor in sensors:
-        if isinstance(sensor.instrument, Microphone) and problem.motion is not None:
-            raise InputError("a microphone is for plates whose supports are at rest; leave out the sensor, or the motion", "sensors")
+        if isinstance(sensor.instrument, (ForceSensor, Microphone)) and problem.motion is not None:
+            words = "microphones and force sensors are for plates whose supports are at rest; leave out the sensor, or the motion"
+            raise InputError(words, "sensors")
         _check_place(modes, sensor)
         meter = _limited(sensor)
         rate = sensor.rate if meter is None else finer_rate(sensor.rate, meter.resonance)

@@ -6,7 +6,7 @@ from typing import Literal, Protocol
 
 from vibroimpact.dynamics.sensors.pole_pairs import Section
 
-Quantity = Literal["acceleration", "velocity", "displacement", "voltage", "strain", "pressure"]
+Quantity = Literal["acceleration", "velocity", "displacement", "voltage", "strain", "pressure", "force"]
 UNITS: dict[Quantity, str] = {
     "acceleration": "m/s2",
     "velocity": "m/s",
@@ -14,6 +14,7 @@ UNITS: dict[Quantity, str] = {
     "voltage": "V",
     "strain": "m/m",
     "pressure": "Pa",
+    "force": "N",
 }
 """The SI unit of each quantity."""
 MOTIONS: dict[Quantity, int] = {"displacement": 0, "velocity": 1, "acceleration": 2}
