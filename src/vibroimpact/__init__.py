@@ -74,7 +74,9 @@ if TYPE_CHECKING:
     from vibroimpact.dynamics.sensors.electronics import Amplifier as Amplifier
     from vibroimpact.dynamics.sensors.electronics import Converter as Converter
     from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer as Accelerometer
+    from vibroimpact.dynamics.sensors.instruments.force_sensor import ForceSensor as ForceSensor
     from vibroimpact.dynamics.sensors.instruments.geophone import Geophone as Geophone
+    from vibroimpact.dynamics.sensors.instruments.microphone import Microphone as Microphone
     from vibroimpact.dynamics.sensors.instruments.strain_gauge import StrainGauge as StrainGauge
     from vibroimpact.dynamics.sensors.recording import Signal as Signal
     from vibroimpact.dynamics.sensors.sensor import Sensor as Sensor
@@ -163,12 +165,14 @@ _HOME = {
     "ContactLaw": "contact.law",
     "Converter": "dynamics.sensors.electronics",
     "FeatureTable": "signals.feature_table",
+    "ForceSensor": "dynamics.sensors.instruments.force_sensor",
     "FrictionCalibration": "calibration.friction.calibrate",
     "Geophone": "dynamics.sensors.instruments.geophone",
     "InputError": "errors",
     "Material": "materials",
     "LabelledSignals": "recognition.labelled_signals",
     "Mesh": "structures.mesh",
+    "Microphone": "dynamics.sensors.instruments.microphone",
     "ModalBasis": "structures.modal_model",
     "MovingBody": "dynamics.system",
     "Oblique": "dynamics.oblique.statement",

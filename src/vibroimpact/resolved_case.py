@@ -74,6 +74,8 @@ class ResolvedSensor(TypedDict, total=False):
     accelerometer: Mapping[str, Any]
     geophone: Mapping[str, Any]
     strain_gauge: Mapping[str, Any]
+    force: Mapping[str, Any]
+    microphone: Mapping[str, Any]
     amplifier: Mapping[str, Any]
     converter: Mapping[str, Any]
 

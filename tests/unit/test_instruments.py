@@ -12,6 +12,7 @@ from rich.console import Console
 
 import vibroimpact as vi
 from vibroimpact.cases.build import resolved_case
+from vibroimpact.cases.elastic.meshes import meshes_of as check_meshes
 from vibroimpact.cases.sensor_doubts import sensor_doubts
 from vibroimpact.dynamics.sensors.instruments.instrument import UNITS
 from vibroimpact.dynamics.sensors.recording import Signal
@@ -19,6 +20,7 @@ from vibroimpact.exporting.formats.uff58 import _QUANTITIES
 from vibroimpact.results.csv_files import signal_csv
 from vibroimpact.runs.case_explained import case_explained
 
+MICROPHONE = {"distance": "300 mm"}
 GEOPHONE = {"natural_frequency": "10 Hz", "sensitivity": "27.6 V s/m"}
 
 
@@ -56,6 +58,19 @@ def case(**sensor: Any) -> vi.Case:
         ({"instrument": "strain-gauge", "direction": [1, 0, 1]}, "a strain gauge lies in the face"),
         ({"instrument": "strain-gauge", "quantity": "voltage"}, "a strain gauge reads strain; leave out quantity"),
         ({"strain_gauge": {"sensitivty": 1}}, r'unknown key "sensitivty"; .* Did you mean "sensitivity"'),
+        ({"instrument": "microphone"}, r'"a1"\.microphone: a microphone has properties; give them in a table microphone'),
+        ({"microphone": {"distance": "0.1 mm"}}, r'"a1"\.microphone\.distance: "0.1 mm" is not allowed'),
+        ({"microphone": {"distanse": "10 mm"}}, r'unknown key "distanse"; .* Did you mean "distance"'),
+        (
+            {"microphone": MICROPHONE, "direction": "x"},
+            r'"a1"\.direction: a microphone hears all directions alike',
+        ),
+        ({"microphone": MICROPHONE, "filter": "none"}, r'"a1"\.filter: the samples of a microphone are those behind "sigma-delta"'),
+        ({"microphone": MICROPHONE, "position": "a set"}, r'"a1"\.position: a plate that is meshed here has no set "a set"'),
+        ({"microphone": {**MICROPHONE, "sensitivity": "50 mV"}}, "is a voltage; what is wanted is a voltage over pressure"),
+        ({"instrument": "force", "quantity": "voltage"}, "a force sensor reads force; leave out quantity"),
+        ({"force": {"sensitivity": "10 mV"}}, "is a voltage; what is wanted is a voltage over force"),
+        ({"force": {"sensitivitty": 1}}, r'unknown key "sensitivitty"; .* Did you mean "sensitivity"'),
         ({"amplifier": {"noise": "1 mV"}}, r'"a1"\.amplifier\.noise: "1 mV" is a voltage; what is wanted is an acceleration'),
         ({"amplifier": {"gain": 0}}, r'"a1"\.amplifier\.gain: 0 is not allowed'),
         ({"geophone": GEOPHONE, "converter": {"range": -1}}, r'"a1"\.converter\.range: -1 is not allowed; it must be greater than 0 V'),
@@ -75,13 +90,17 @@ def test_what_does_not_fit_is_named(sensor: dict[str, Any], message: str) -> Non
         {"instrument": "accelerometer", "amplifier": {"noise": "1 g"}},
         {"instrument": "strain-gauge", "face": "lower", "converter": {"range": 1e-3}},
         {"strain_gauge": {"sensitivity": "2 V"}, "direction": [1, 2, 0], "amplifier": {"gain": 1000}},
+        {"microphone": MICROPHONE, "face": "lower", "amplifier": {"noise": "1 mPa"}},
+        {"microphone": {**MICROPHONE, "sensitivity": "50 mV/Pa", "speed_of_sound": 340}, "position": [2, 0], "converter": {"range": "1 V"}},
+        {"instrument": "force", "position": [-0.26, 0], "amplifier": {"noise": "10 mN"}},
+        {"force": {"sensitivity": "10 mV/N"}, "direction": "x", "position": [-0.26, 0], "converter": {"range": "5 V", "bits": 16}},
         {"quantity": "velocity", "converter": {"range": "1 m/s", "bits": 12}},
     ],
 )
 def test_the_resolved_case_is_the_same_case(sensor: dict[str, Any]) -> None:
     given = case(**sensor)
     (resolved,) = resolved_case(given)["sensors"]
-    assert case(**{key: value for key, value in resolved.items() if key not in ("name", "position")}).sensors == given.sensors
+    assert case(**{key: value for key, value in resolved.items() if key != "name"}).sensors == given.sensors
     (again,) = vi.read_case(dict(resolved_case(given))).sensors
     assert again.sensor() == given.sensors[0].sensor()
 
@@ -111,20 +130,31 @@ def test_a_run_with_instruments_is_told_and_read_back(tmp_path: Path) -> None:
     """In the folder, the page, universal files and the explanation of the case; voltage and strain are what the sensors' parts say."""
     given = case(geophone=GEOPHONE, amplifier={"hum": "1 mV"}, converter={"range": "10 V", "bits": 16}, rate="10 kHz")
     whole = dict(resolved_case(given))
-    whole["sensors"] = [*whole["sensors"], {"name": "e", "position": [0.1, 0.05], "instrument": "strain-gauge"}]
+    whole["sensors"] = [
+        *whole["sensors"],
+        {"name": "e", "position": [0.1, 0.05], "instrument": "strain-gauge"},
+        {"name": "m", "position": [0.0, 0.0], "microphone": MICROPHONE},
+        {"name": "r", "position": [-0.26, 0.0], "instrument": "force"},
+    ]
     response = vi.simulate(vi.read_case(whole))
     response.save(tmp_path / "run")
     again = vi.read_result(tmp_path / "run")
     assert {name: (one.sensor.quantity, one.sensor.unit) for name, one in again.signals.items()} == {
         "a1": ("voltage", "V"),
         "e": ("strain", "m/m"),
+        "m": ("pressure", "Pa"),
+        "r": ("force", "N"),
     }
     for name, signal in response.signals().items():
         np.testing.assert_array_equal(again.signals[name].value, signal.value)
         assert np.isfinite(signal.uncertainty)
         assert signal.largest > 0.0
     assert (tmp_path / "run" / "sensors" / "e.csv").read_text().startswith("time_s,strain_m_m\n")
+    assert (tmp_path / "run" / "sensors" / "m.csv").read_text().startswith("time_s,pressure_Pa\n")
+    assert (tmp_path / "run" / "sensors" / "r.csv").read_text().startswith("time_s,force_N\n")
     words = case_text_of(whole)
+    assert "force of the support at (-0.26, 0) m, by a force sensor (ideal)" in words
+    assert "pressure at (0, 0) m, upper face, by a microphone (distance 0.3 m; air density 1.2 kg/m3; speed of sound 343.2 m/s)" in words
     assert "strain at (0.1, 0.05) m, upper face, by a strain gauge (ideal)" in words
     assert "by a geophone (natural frequency 10 Hz; sensitivity 27.6 V s/m; damping ratio 0.6)" in words
     assert "amplifier (gain 1; noise 0 V; hum of 0.001 V at 50 Hz), converter (range 10 V; 16 bits)" in words
@@ -135,3 +165,59 @@ def case_text_of(table: dict[str, Any]) -> str:
     console = Console(width=400, file=StringIO())
     console.print(case_explained(vi.read_case(table)))
     return " ".join(console.file.getvalue().split())  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize(
+    ("sensor", "name"), [({"microphone": MICROPHONE}, "a microphone"), ({"instrument": "force", "position": [-0.26, 0]}, "a force sensor")]
+)
+def test_what_is_for_plates_at_rest(sensor: dict[str, Any], name: str) -> None:
+    shaken = dict(resolved_case(case(**sensor)))
+    shaken["plate"] = {**shaken["plate"], "motion": {"amplitude": "0.1 mm", "frequency": "50 Hz"}}
+    with pytest.raises(vi.InputError, match=rf'"a1"\.instrument: {name} is for plates whose supports are at rest; leave out the sensor'):
+        vi.simulate(vi.read_case(shaken))
+
+
+def test_low_sound_of_a_plate_in_no_baffle_is_doubted() -> None:
+    """Half a wavelength of 343.2 m/s is as long as 0.42 m at 409 Hz."""
+    resolved = resolved_case(case(microphone=MICROPHONE))
+    time = np.arange(5000) / 50e3
+    low, high = (np.sin(2.0 * np.pi * frequency * time) for frequency in (300.0, 2000.0))
+    said = sensor_doubts(resolved, {"a1": Signal(vi.Sensor("a1", "pressure"), low + high, 0.0)}, 1e3, 1e-3)
+    assert len(said) == 1
+    assert '50 % of the power of the microphone "a1" lies below 408.6\N{NO-BREAK SPACE}Hz' in said[0]
+    assert not sensor_doubts(resolved, {"a1": Signal(vi.Sensor("a1", "pressure"), 0.1 * low + high, 0.0)}, 1e3, 1e-3)
+
+
+def test_microphones_of_the_plates_modes_are_needed() -> None:
+    response = vi.simulate(case(microphone=MICROPHONE, rate="10 kHz"))
+    microphone = vi.Microphone()
+    with pytest.raises(vi.InputError, match='do not know the paths of sound to a microphone "other"'):
+        response.signals(vi.Sensor("other", "pressure", instrument=microphone))
+    with pytest.raises(vi.InputError, match="serve for 10000 samples per second at most; ask for a lower rate than 20000 Hz"):
+        response.signals(vi.Sensor("a1", "pressure", rate=20e3, instrument=microphone))
+    slower = response.signals(vi.Sensor("a1", "pressure", rate=5e3, instrument=microphone))["a1"]
+    assert slower.largest > 0.0
+
+
+def test_a_free_plate_sounds_as_a_whole_too() -> None:
+    """Far away its rigid rise is heard as its area."""
+    case_of_free = dict(resolved_case(case(microphone={"distance": 50.0})))
+    case_of_free["plate"] = {**case_of_free["plate"], "supports": "free"}
+    case_of_free["drop"] = {"speed": 1.0, "gravity": 0.0}
+    plate = vi.simulate(vi.read_case(case_of_free)).problem.plate
+    assert plate.rigid is not None
+    heard = plate.rigid.sounds["a1"].weights.sum(axis=1)
+    rise = plate.rigid.participation[:, 2] / plate.rigid.mass
+    np.testing.assert_allclose(heard, 0.52 * 0.42 / (2.0 * np.pi * 50.0) * rise, rtol=0.0, atol=1e-4 * np.abs(heard).max())
+
+
+@pytest.mark.parametrize(
+    ("position", "message"),
+    [
+        ([0.0, 0.0], r'"a1"\.position: there is no support at \(0, 0\) m; there are: edge x-min clamped; edge x-max clamped; edge y-min'),
+        ([0.26, 0.21], r"\(0\.26, 0\.21\) m is as near to edge x-max clamped and edge y-max clamped; give a place on one of them"),
+    ],
+)
+def test_a_force_sensor_is_under_one_support(position: list[float], message: str) -> None:
+    with pytest.raises(vi.InputError, match=message):
+        check_meshes(case(instrument="force", position=position))

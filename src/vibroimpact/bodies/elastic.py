@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
 import numpy as np
@@ -16,9 +16,11 @@ from vibroimpact.structures.modal_model import ModalBasis, ModalModel, modal_bas
 from vibroimpact.structures.mode_count import OF_AN_EDGE
 from vibroimpact.structures.plate_waves import wave_numbers
 from vibroimpact.structures.recipe import PlateOfPlates, PlateOfSolids, Recipe, Reduction, Shape, SphereOfSolids
+from vibroimpact.structures.sound_paths import Listener
+from vibroimpact.structures.support_force import SupportForces, support_forces
 from vibroimpact.structures.supports.edge import Edge
 from vibroimpact.structures.supports.support import Support
-from vibroimpact.structures.surface import Side, Spot
+from vibroimpact.structures.surface import Side, Spot, place_of
 
 _PER_WAVE = 3.0  # second-order bricks per shortest shear wavelength
 _ACROSS = 8  # least number of elements from pole to pole, for errors of 0.03 % of the lowest modes
@@ -49,6 +51,10 @@ class ElasticBody:
         Sensors of motion by name.
     strained : mapping of str to (spot, side), optional
         Sensors of strain by name.
+    heard : mapping of str to Listener, optional
+        Microphones by name.
+    pressed : mapping of str to (spot, side), optional
+        Sensors of the force of supports by name.
     """
 
     recipe: Recipe
@@ -57,11 +63,13 @@ class ElasticBody:
     damping: Damping = ConstantRatio(0.0)
     watched: Mapping[str, tuple[Spot, Side]] = field(default_factory=dict)
     strained: Mapping[str, tuple[Spot, Side]] = field(default_factory=dict)
+    heard: Mapping[str, Listener] = field(default_factory=dict)
+    pressed: Mapping[str, tuple[Spot, Side]] = field(default_factory=dict)
 
     @property
     def sensors(self) -> dict[str, tuple[Spot, Side]]:
-        """All sensors by name."""
-        return {**self.watched, **self.strained}
+        """All sensors on the body by name."""
+        return {**self.watched, **self.strained, **self.pressed}
 
     def basis(self, model: ModalModel) -> ModalBasis:
         """Return the modes of the recipe at the contact point and at the sensors.
@@ -71,11 +79,20 @@ class ElasticBody:
         InputError
             If a point is not on the body, or a set is not in its mesh.
         """
-        return modal_basis(model, self.damping, self.contact, self.side, self.watched, self.strained)
+        basis = modal_basis(model, self.damping, self.contact, self.side, self.watched, self.strained, self.heard)
+        if not self.pressed:
+            return basis
+        forces = self.support_forces(model).of_modes(model)
+        return replace(basis, points={**basis.points, **dict(zip(self.pressed, forces, strict=True))})
+
+    def support_forces(self, model: ModalModel, tell: Callable[[str], None] | None = None) -> SupportForces:
+        """Return the forces of supports at the sensors of force; parameters and errors are those of `support_forces`."""
+        place = place_of(model.mesh, self.contact, self.side)
+        return support_forces(self.recipe, place, self.side, [spot for spot, _ in self.pressed.values()], tell)
 
     def rigid_motions(self, model: ModalModel) -> ModalBasis | None:
         """Return the rigid motions that the supports permit, at the same points, as modes of frequency zero; None if there are none."""
-        return rigid_basis(model, (self.contact, self.side), self.watched, self.strained)
+        return rigid_basis(model, (self.contact, self.side), self.watched, [*self.strained, *self.pressed], self.heard)
 
 
 def sphere_recipe(radius: float, material: Material, reduction: Reduction, **mesh: Any) -> Recipe:

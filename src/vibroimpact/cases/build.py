@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any, Literal, cast
 from vibroimpact.calibration.section import calibrate_table
 from vibroimpact.cases.elastic.positions import check_positions
 from vibroimpact.cases.fields.elastic_body import BroughtMeshTable
+from vibroimpact.cases.fields.instruments import AT_REST, INSTRUMENTS
+from vibroimpact.cases.fields.item_labels import item_label
 from vibroimpact.cases.fields.material import material_table
 from vibroimpact.cases.motion import motion_length
 from vibroimpact.cases.oblique import friction_law_of, oblique_keys
@@ -53,6 +55,10 @@ def check_case(case: CaseTable) -> None:
     if case.sensors and case.plate.model == "rigid" and case.plate.motion is None:
         remedy = 'give it model = "elastic", or leave out the sensors' if case.plate.radius is None else "leave out the sensors"
         raise InputError(f"the plate is rigid, so that its points do not move; {remedy}", "sensors")
+    for number, sensor in enumerate(case.sensors):
+        if case.plate.motion is not None and sensor.instrument in AT_REST:
+            words = f"{INSTRUMENTS[sensor.instrument]} is for plates whose supports are at rest; leave out the sensor, or the motion"
+            raise InputError(words, f"{item_label('sensors', [{'name': one.name} for one in case.sensors], number)}.instrument")
     local = case.contact.local
     if local.local_compliance == "identified" and case.sphere.model == "elastic":
         raise InputError('the local element of "identified" stands for the deformation of the sphere; leave it "rigid"', "sphere.model")

@@ -17,7 +17,15 @@ from vibroimpact.calibration.section import CalibrateSection, SpeedsTable
 from vibroimpact.cases.build import check_case
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.fields.fault_messages import fault_messages
-from vibroimpact.cases.fields.instruments import AccelerometerTable, AmplifierTable, ConverterTable, GeophoneTable, StrainGaugeTable
+from vibroimpact.cases.fields.instruments import (
+    AccelerometerTable,
+    AmplifierTable,
+    ConverterTable,
+    ForceTable,
+    GeophoneTable,
+    MicrophoneTable,
+    StrainGaugeTable,
+)
 from vibroimpact.cases.fields.item_labels import path_in_words
 from vibroimpact.cases.fields.material import InlineMaterial
 from vibroimpact.cases.fields.motion import MotionTable
@@ -46,7 +54,9 @@ _SECTIONS: dict[tuple[str, ...], type[BaseModel]] = {
     ("sensors", "accelerometer"): AccelerometerTable,
     ("sensors", "amplifier"): AmplifierTable,
     ("sensors", "converter"): ConverterTable,
+    ("sensors", "force"): ForceTable,
     ("sensors", "geophone"): GeophoneTable,
+    ("sensors", "microphone"): MicrophoneTable,
     ("sensors", "strain_gauge"): StrainGaugeTable,
     ("plate", "motion"): MotionTable,
 }

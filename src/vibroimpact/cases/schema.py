@@ -29,7 +29,9 @@ from vibroimpact.cases.fields.instruments import (
     AccelerometerTable,
     AmplifierTable,
     ConverterTable,
+    ForceTable,
     GeophoneTable,
+    MicrophoneTable,
     StrainGaugeTable,
     read_in_unit,
 )
@@ -40,9 +42,12 @@ from vibroimpact.cases.fields.section import Section, check_alternatives
 from vibroimpact.cases.fields.size_limits import MOST_ITEMS, Name, at_most
 from vibroimpact.cases.fields.supports import SupportsField
 from vibroimpact.cases.slips.lengths import likely_lengths
+from vibroimpact.dynamics.air import AIR_DENSITY
 from vibroimpact.dynamics.problem import MOST_IMPACTS, STANDARD_GRAVITY
 from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer
+from vibroimpact.dynamics.sensors.instruments.force_sensor import ForceSensor
 from vibroimpact.dynamics.sensors.instruments.instrument import MOTIONS, Instrument
+from vibroimpact.dynamics.sensors.instruments.microphone import Microphone
 from vibroimpact.dynamics.sensors.instruments.strain_gauge import StrainGauge
 from vibroimpact.dynamics.sensors.sensor import FILTERS, Sensor
 from vibroimpact.errors import InputError, did_you_mean
@@ -179,17 +184,17 @@ def _one_of(names: Collection[str]) -> BeforeValidator:
 
 
 class SensorSection(Section):
-    """A point of the plate that is watched."""
+    """A point of the plate that is watched, or of the air that is listened to."""
 
     name: Name = Field(min_length=1, description="what it is called in tables and figures")
     position: tuple[Annotated[float, Quantity("m", "x")], Annotated[float, Quantity("m", "y")]] | Name = Field(
         description="x and y on the plate, from its centre [m]; or the name of a set of a mesh that was brought"
     )
-    face: Literal["upper", "lower"] = Field("upper", description="the side of the plate that it is on")
-    instrument: Annotated[Literal["accelerometer", "geophone", "strain-gauge"] | None, _one_of(INSTRUMENTS)] = Field(
+    face: Literal["upper", "lower"] = Field("upper", description="the side of the plate that it is on, or that a microphone hears")
+    instrument: Annotated[Literal["accelerometer", "geophone", "strain-gauge", "microphone", "force"] | None, _one_of(INSTRUMENTS)] = Field(
         None, description="what reads it; by default that of the table that is given, or else the motion is read as it is"
     )
-    quantity: Literal["acceleration", "velocity", "displacement", "voltage", "strain"] | None = Field(
+    quantity: Literal["acceleration", "velocity", "displacement", "voltage", "strain", "pressure", "force"] | None = Field(
         None, description="what it takes: acceleration by default, or what the instrument puts out"
     )
     direction: Literal["x", "y", "z"] | tuple[float, float, float] = Field("z", description="along which it takes it; z is upwards")
@@ -201,6 +206,8 @@ class SensorSection(Section):
     accelerometer: AccelerometerTable | None = Field(None, description="resonance, range, noise, resolution and sensitivity of one")
     geophone: GeophoneTable | None = Field(None, description="natural frequency, sensitivity, damping and low-pass of one")
     strain_gauge: StrainGaugeTable | None = Field(None, description="sensitivity of one")
+    force: ForceTable | None = Field(None, description="sensitivity of a force sensor between the plate and the support at the position")
+    microphone: MicrophoneTable | None = Field(None, description="distance and sensitivity of one, and its air")
     amplifier: AmplifierTable | None = Field(None, description="gain, noise and hum behind the instrument")
     converter: ConverterTable | None = Field(None, description="range and bits of what samples it")
 
@@ -211,6 +218,8 @@ class SensorSection(Section):
         instrument = self._instrument()
         if isinstance(instrument, StrainGauge):
             self._lay_in_face()
+        if isinstance(instrument, Microphone) and self.direction not in ("z", (0.0, 0.0, 1.0)):
+            raise InputError("a microphone hears all directions alike; leave out the direction", "direction")
         if instrument is None and self.quantity not in (None, *MOTIONS):
             raise InputError(f'{self.quantity} is what an instrument puts out; name one, such as instrument = "geophone"', "quantity")
         if instrument is not None and self.quantity not in (None, instrument.quantity):
@@ -247,9 +256,10 @@ class SensorSection(Section):
         if (table := tables[kind]) is not None:
             found: Instrument = table.instrument()
             return found
-        if kind == "geophone":
+        if kind in ("geophone", "microphone"):
             raise InputError(f"{INSTRUMENTS[kind]} has properties; give them in a table {kind} = {{ ... }}", kind)
-        return Accelerometer() if kind == "accelerometer" else StrainGauge()
+        ideal: dict[str, Instrument] = {"accelerometer": Accelerometer(), "strain-gauge": StrainGauge(), "force": ForceSensor()}
+        return ideal[kind]
 
     def sensor(self) -> Sensor:
         """Return the sensor, with its direction as a unit vector."""
@@ -320,4 +330,7 @@ class CaseTable(Section):
         twice = next((name for name, often in Counter(sensor.name for sensor in self.sensors).items() if often > 1), None)
         if twice is not None:
             raise InputError(f"two sensors are called {shown(twice)}; each needs a name of its own", "sensors")
+        for sensor in self.sensors:
+            if sensor.microphone is not None and sensor.microphone.air_density is None:
+                sensor.microphone.__dict__["air_density"] = AIR_DENSITY if self.drop.air is None else self.drop.air.density
         return self

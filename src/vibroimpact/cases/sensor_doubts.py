@@ -16,6 +16,7 @@ from vibroimpact.units.display import text
 _PROMISED = 0.01  # relative to the rms value: error of a signal by truncated modes above which it is doubted
 _NEAR = 2.0  # thicknesses of the plate: distance from the contact within which a sensor is near it
 _CUTS = 1.5  # over the contact duration: approximate cut-off frequency of the force spectrum
+_LOW = 0.05  # part of the power of a microphone at frequencies that need a baffle, above which it is doubted
 _ENOUGH = 1.2  # recommended range over the peak magnitude
 
 
@@ -38,11 +39,13 @@ def sensor_doubts(case: ResolvedCase, signals: Mapping[str, Signal], highest: fl
     >>> sensor_doubts({}, {}, 1e4, 1e-4)
     []
     """
-    places = {one["name"]: one["position"] for one in case.get("sensors", ())}
+    places = {one["name"]: one["position"] for one in case.get("sensors", ()) if "microphone" not in one}
+    speeds = {one["name"]: one["microphone"]["speed_of_sound"] for one in case.get("sensors", ()) if "microphone" in one}
     ranges = {one["name"]: one.get("accelerometer", {}).get("range") for one in case.get("sensors", ())}
     converters = {one["name"]: one["converter"] for one in case.get("sensors", ()) if "converter" in one}
     found = [doubt for name, signal in signals.items() for doubt in _range_doubts(signal, ranges.get(name))]
     found += [doubt for name, signal in signals.items() if name in converters for doubt in _converter_doubts(signal, converters[name])]
+    found += [doubt for name, signal in signals.items() if name in speeds for doubt in _baffle_doubts(case, signal, speeds[name])]
     alike: dict[
         tuple[str, str], dict[str, float]
     ] = {}  # sensors with the same cause and remedy share a sentence: relative errors by their names
@@ -94,6 +97,23 @@ def _converter_doubts(signal: Signal, converter: Mapping[str, Any]) -> list[str]
             f'the converter of sensor "{name}" reads nothing: its step is {text(read.step, unit)}; give it more bits, or the amplifier gain'
         ]
     return []
+
+
+def _baffle_doubts(case: ResolvedCase, signal: Signal, speed: float) -> list[str]:
+    """Return the doubt about sound so low that it would go round the edges of a plate that is in no baffle; none if there is little."""
+    size = case.get("plate", {}).get("size")
+    power = np.abs(np.fft.rfft(signal.value)) ** 2
+    if size is None or not power.any():
+        return []
+    lowest = speed / (2.0 * min(size[:2]))
+    part = float(power[np.fft.rfftfreq(len(signal.value), 1.0 / signal.sensor.rate) < lowest].sum() / power.sum())
+    if part < _LOW:
+        return []
+    return [
+        f'{_per_cent(part)} of the power of the microphone "{signal.sensor.name}" lies below {text(lowest, "Hz")}, where half a '
+        "wavelength is longer than the plate is wide: the plate is taken to lie in a rigid plane, and without one its two sides cancel "
+        "there; look at higher frequencies"
+    ]
 
 
 def _remedy(signal: Signal, highest: float) -> str:

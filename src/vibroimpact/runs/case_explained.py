@@ -138,8 +138,9 @@ def _coupling_rows(case: Case) -> list[tuple[str, str]]:
     rows = [("local compliance", "; ".join(words))] if words else []
     for sensor in case.sensors:
         place = sensor.position if isinstance(sensor.position, str) else f"({sensor.position[0]:g}, {sensor.position[1]:g}) m"
+        where = f"of the support at {place}" if sensor.instrument == "force" else f"at {place}, {sensor.face} face"
         words = [
-            f"{sensor.quantity} at {place}, {sensor.face} face",
+            f"{sensor.quantity} {where}",
             *_instrument(sensor),
             f"{sensor.rate:g} Hz",
             _filter(sensor),

@@ -18,6 +18,7 @@ from vibroimpact.structures.geometry import MassProperties
 from vibroimpact.structures.memory_cache import MemoryCache
 from vibroimpact.structures.mesh import Mesh
 from vibroimpact.structures.modes import Eigenmodes
+from vibroimpact.structures.sound_paths import Listener, SoundPaths, sound_paths
 from vibroimpact.structures.supports.constraints import HeldStructure
 from vibroimpact.structures.surface import Side, Spot, place_of, surface_motion
 from vibroimpact.structures.surface_strain import surface_strain
@@ -152,6 +153,11 @@ class ModalModel:
         rows = surface_strain(self.mesh, place, side, self.thickness)
         return self.cached(f"strain {side} {place}", lambda: self.modal_values(rows))
 
+    def sound(self, listener: Listener) -> SoundPaths:
+        """Return the paths of sound of the modes to a point, from the cache or computed; errors are those of `sound_paths`."""
+        numbers = math.ceil(math.dist(self.mesh.nodes.min(axis=0), self.mesh.nodes.max(axis=0)) / (listener.speed * listener.step))
+        return self.cached(f"sound {listener}", lambda: sound_paths(self.mesh, listener, self.shapes), numbers)
+
     def modal_values(self, motion: csr_array) -> Floats:
         """Return linear functions of the degrees of freedom, the rows of a sparse array, evaluated for each mode, (modes, rows)."""
         dofs = np.unique(motion.indices)  # a few of many columns
@@ -216,7 +222,8 @@ class ModalBasis:
     participation : array, shape (modes, 3)
         Momentum of each mode [kg^1/2]; over the mass it is the displacement of the centre of mass.
     points : mapping of str to array, shape (modes, 3)
-        Displacements of the sensors in each mode [kg^-1/2]; of strain gauges the strains along x and y and of shear [kg^-1/2 m^-1].
+        Displacements of the sensors in each mode [kg^-1/2]; of strain gauges the strains along x and y and of shear [kg^-1/2 m^-1];
+        of force sensors the forces of the supports [N m^-1 kg^-1/2].
     mass : float, default NaN
         Mass of the body [kg].
     rotation : array, shape (modes, 3), optional
@@ -225,11 +232,13 @@ class ModalBasis:
         Estimated relative error of each frequency [-]; NaN where unknown.
     residuals : mapping of str to array, shape (3,)
         Residual compliances: static displacements of the sensors under a unit vertical force at the contact point, less those of these
-        modes [m/N]; of strain gauges the strains [1/N].
+        modes [m/N]; of strain gauges the strains [1/N]; of force sensors the forces [-].
     along : array, shape (modes, 2), optional
         Displacement of the contact point along x and y in each mode [kg^-1/2], by which friction moves the body.
     turning : array, shape (modes, 3), optional
         Rotation about x, y and z in each rigid motion [kg^-1/2 m^-1], by which moments at the contact turn the body; none by default.
+    sounds : mapping of str to SoundPaths
+        Paths of sound to the microphones.
     """
 
     frequencies: Floats
@@ -243,6 +252,7 @@ class ModalBasis:
     residuals: Mapping[str, Floats] = field(default_factory=dict)
     along: Floats | None = None
     turning: Floats | None = None
+    sounds: Mapping[str, SoundPaths] = field(default_factory=dict)
 
     @property
     def angular_frequencies(self) -> Floats:
@@ -257,6 +267,7 @@ def modal_basis(
     side: Side,
     points: Mapping[str, tuple[Spot, Side]] | None = None,
     strained: Mapping[str, tuple[Spot, Side]] | None = None,
+    heard: Mapping[str, Listener] | None = None,
 ) -> ModalBasis:
     """Return the modes of a model at its contact point and at its sensors.
 
@@ -275,6 +286,8 @@ def modal_basis(
         Sensors of motion by name.
     strained : mapping of str to (spot, side), optional
         Sensors of strain by name.
+    heard : mapping of str to Listener, optional
+        Microphones by name.
 
     Raises
     ------
@@ -297,11 +310,16 @@ def modal_basis(
         _rotation(model.properties, model.participation[:, 3:]),
         model.frequency_errors,
         along=touched[:, :2],
+        sounds={name: model.sound(listener) for name, listener in (heard or {}).items()},
     )
 
 
 def rigid_basis(
-    model: ModalModel, contact: tuple[Spot, Side], points: Mapping[str, tuple[Spot, Side]], strained: Iterable[str] = ()
+    model: ModalModel,
+    contact: tuple[Spot, Side],
+    points: Mapping[str, tuple[Spot, Side]],
+    strained: Iterable[str] = (),
+    heard: Mapping[str, Listener] | None = None,
 ) -> ModalBasis | None:
     """Return the rigid motions that the supports do not prevent as modes of frequency zero; None if there are none.
 
@@ -315,6 +333,8 @@ def rigid_basis(
         Sensors of motion by name.
     strained : iterable of str, optional
         Names of sensors of strain, which rigid motions leave zero.
+    heard : mapping of str to Listener, optional
+        Microphones by name.
     """
     if not len(model.rigid_coefficients):
         return None
@@ -329,6 +349,9 @@ def rigid_basis(
         place = surface_motion(model.mesh, np.array([place_of(model.mesh, spot, side)]), side, model.thickness)[1][0]
         return np.asarray(along + np.cross(turning, place - properties.centre))
 
+    nodes = np.zeros((len(motions), len(model.mesh.nodes), model.mesh.dofs_per_node))  # faces move by the displacements of their nodes
+    nodes[:, :, :3] = along[:, None] + np.cross(turning[:, None], model.mesh.nodes - properties.centre)
+    shapes = nodes.reshape(len(motions), -1)
     touched = seen(*contact)
     return ModalBasis(
         np.zeros(len(motions)),
@@ -340,6 +363,7 @@ def rigid_basis(
         _rotation(properties, turning @ properties.inertia),
         along=touched[:, :2],
         turning=turning,
+        sounds={name: sound_paths(model.mesh, listener, shapes) for name, listener in (heard or {}).items()},
     )
 
 

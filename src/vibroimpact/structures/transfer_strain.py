@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -17,7 +18,7 @@ from vibroimpact.structures.surface import Side
 from vibroimpact.structures.surface_strain import surface_strain
 from vibroimpact.structures.transfer_compliance import Point
 
-_KIND = "strain"
+_KIND = "compliance"
 _RADIUS = 0.75  # of the disc of the force, in thicknesses
 
 
@@ -68,12 +69,13 @@ def strain_key(recipe: Recipe, place: tuple[float, float], side: Side, points: S
 
 def computed_strains(recipe: Recipe, place: tuple[float, float], side: Side, points: Sequence[Point]) -> Floats:
     """Return the strains under a force, computed anew; parameters and errors are those of `transfer_strains`."""
-    layered = isinstance(recipe.shape, PlateOfPlates) and not is_thin(recipe)
-    square = mean_square(1.0, recipe.poissons_ratio, shear_factor(recipe.poissons_ratio)) if layered else 0.0
-
-    def spread(thickness: float) -> Average:
-        return Average(_RADIUS * thickness, 3.0 - 6.0 * square / _RADIUS**2)
-
-    structure, _, displacements = response_to_spread_force(recipe, place, side, spread)
+    structure, _, displacements = response_to_spread_force(recipe, place, side, partial(spread_at_face, recipe))
     strains = [surface_strain(structure.mesh, point, face, structure.thickness) @ displacements for point, face in points]
     return np.array(strains)
+
+
+def spread_at_face(recipe: Recipe, thickness: float) -> Average:
+    """Return the distribution of a force whose static response is that of the modes of a plate at its face, not of plate theory."""
+    layered = isinstance(recipe.shape, PlateOfPlates) and not is_thin(recipe)
+    square = mean_square(1.0, recipe.poissons_ratio, shear_factor(recipe.poissons_ratio)) if layered else 0.0
+    return Average(_RADIUS * thickness, 3.0 - 6.0 * square / _RADIUS**2)

@@ -11,9 +11,11 @@ from vibroimpact.cases.fields.elastic_body import BroughtMeshTable, PlateMeshTab
 from vibroimpact.cases.fields.section import derived
 from vibroimpact.cases.fields.supports import supports_of, supports_table
 from vibroimpact.cases.rigid import elastic_names
+from vibroimpact.dynamics.sensors.antialias import FINENESS
 from vibroimpact.errors import InputError
 from vibroimpact.structures.recipe import ImportedMesh, Recipe, mesh_features
 from vibroimpact.structures.rectangle import rectangle_blocks
+from vibroimpact.structures.sound_paths import Listener
 from vibroimpact.structures.supports.support import Support
 from vibroimpact.structures.surface import Spot
 
@@ -79,10 +81,22 @@ def _plate(case: CaseTable) -> ElasticBody:
     contact: Spot = case.drop.position
     if isinstance(section.mesh, BroughtMeshTable) and section.mesh.contact:
         contact = section.mesh.contact
-    places = {sensor.name: (sensor.position, sensor.face) for sensor in case.sensors}
+    places = {sensor.name: (sensor.position, sensor.face) for sensor in case.sensors if sensor.microphone is None}
     strained = {sensor.name: places.pop(sensor.name) for sensor in case.sensors if sensor.instrument == "strain-gauge"}
+    pressed = {sensor.name: places.pop(sensor.name) for sensor in case.sensors if sensor.instrument == "force"}
     damping = damping_of(section.damping, section.material.loss_factor)
-    return ElasticBody(_plate_recipe(case, contact), "upper", contact, damping, places, strained)
+    return ElasticBody(_plate_recipe(case, contact), "upper", contact, damping, places, strained, _heard(case), pressed)
+
+
+def _heard(case: CaseTable) -> dict[str, Listener]:
+    """Return where the microphones are, by the names of their sensors."""
+    return {
+        sensor.name: Listener(
+            sensor.position, sensor.face, sensor.microphone.distance, sensor.microphone.speed_of_sound, 1.0 / (FINENESS * sensor.rate)
+        )
+        for sensor in case.sensors
+        if sensor.microphone is not None
+    }
 
 
 def _plate_recipe(case: CaseTable, contact: Spot) -> Recipe:

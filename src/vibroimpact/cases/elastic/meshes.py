@@ -14,6 +14,7 @@ from vibroimpact.structures.geometry import check_mesh, mass_properties
 from vibroimpact.structures.mesh import Mesh
 from vibroimpact.structures.recipe import ImportedMesh
 from vibroimpact.structures.structure import Structure
+from vibroimpact.structures.support_force import support_at
 from vibroimpact.structures.supports.constraints import Constraints
 from vibroimpact.structures.surface import Side, Spot, place_of, surface_motion
 
@@ -44,6 +45,11 @@ def meshes_of(case: CaseTable) -> dict[str, Mesh]:
         names = [{"name": one} for one in body.sensors]
         for number, (spot, face) in enumerate(body.sensors.values()):
             _check_spot(mesh, spot, face, f"{item_label('sensors', names, number)}.position")
+        for sensor, listener in body.heard.items():
+            try:
+                place_of(mesh, listener.spot, listener.side)
+            except InputError as error:
+                raise InputError(error.message, f"{item_label('sensors', [{'name': sensor}], 0)}.position") from None
         if name == "plate":
             _check_supports(case, body, mesh)
         found[name] = mesh
@@ -59,7 +65,7 @@ def _check_spot(mesh: Mesh, spot: Spot, side: Side, key: str) -> None:
 
 
 def _check_supports(case: CaseTable, body: ElasticBody, mesh: Mesh) -> None:
-    """Check that each support finds degrees of freedom to constrain that no other support constrains."""
+    """Check that each support finds degrees of freedom to constrain that no other does, and each force sensor a support."""
     tables = case.plate.supports if isinstance(case.plate.supports, tuple) else ()
     # constraints depend on the mesh and its mass properties only, so zero matrices and unit density serve
     dofs = mesh.dofs_per_node * len(mesh.nodes)
@@ -73,3 +79,8 @@ def _check_supports(case: CaseTable, body: ElasticBody, mesh: Mesh) -> None:
                 support.hold(constraints)
             except InputError as error:
                 raise InputError(error.message, item_label("plate.supports", kinds, number)) from None
+    for name, (spot, _) in body.pressed.items():
+        try:
+            support_at(constraints.structure, body.recipe.supports, spot)
+        except InputError as error:
+            raise InputError(error.message, f"{item_label('sensors', [{'name': name}], 0)}.position") from None

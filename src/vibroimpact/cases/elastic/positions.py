@@ -34,7 +34,8 @@ def check_positions(case: CaseTable) -> None:
         try:
             if isinstance(sensor.position, str):
                 raise InputError(f'a plate that is meshed here has no set "{sensor.position}"; give x and y')
-            _check_point(sensor.position, half, "position")
+            if sensor.microphone is None:
+                _check_point(sensor.position, half, "position")
         except InputError as error:
             names = [{"name": sensor.name} for sensor in case.sensors]
             raise InputError(error.message, f"{item_label('sensors', names, number)}.position") from None

@@ -8,6 +8,7 @@ from dataclasses import replace
 from vibroimpact.arrays import Floats
 from vibroimpact.cases.elastic.modes import BodyModes, contact_place
 from vibroimpact.structures.modal_model import ModalBasis
+from vibroimpact.structures.support_force import support_force_key
 from vibroimpact.structures.surface import Side, Spot, place_of
 from vibroimpact.structures.transfer_compliance import Point, transfer_compliances, transfer_key
 from vibroimpact.structures.transfer_strain import strain_key, transfer_strains
@@ -37,6 +38,8 @@ def with_residuals(body: BodyModes, basis: ModalBasis, tell: Callable[[str], Non
         found |= dict(zip(body.body.watched, moved, strict=True))
     if body.body.strained:
         found |= dict(zip(body.body.strained, transfer_strains(recipe, place, side, _points(body, body.body.strained), tell), strict=True))
+    if body.body.pressed:
+        found |= dict(zip(body.body.pressed, body.body.support_forces(body.model, tell).static, strict=True))
     weights = basis.contact / basis.angular_frequencies**2
     return replace(basis, residuals={name: static - weights @ basis.points[name] for name, static in found.items()})
 
@@ -44,8 +47,10 @@ def with_residuals(body: BodyModes, basis: ModalBasis, tell: Callable[[str], Non
 def residual_keys(body: BodyModes) -> list[str]:
     """Return the keys of the compliances of `with_residuals` in the mode store."""
     recipe, (place, side), watched, strained = body.body.recipe, contact_place(body), body.body.watched, body.body.strained
+    pressed = [spot for spot, _ in body.body.pressed.values()]
     moved = [transfer_key(recipe, place, side, _points(body, watched), _FACES)] if watched else []
-    return moved + ([strain_key(recipe, place, side, _points(body, strained))] if strained else [])
+    pulled = [strain_key(recipe, place, side, _points(body, strained))] if strained else []
+    return moved + pulled + ([support_force_key(recipe, place, side, pressed)] if pressed else [])
 
 
 def _points(body: BodyModes, sensors: Mapping[str, tuple[Spot, Side]]) -> list[Point]:

@@ -10,16 +10,30 @@ from pydantic_core import CoreSchema, core_schema
 
 from vibroimpact.cases.fields.quantities import Quantity, read_quantity
 from vibroimpact.cases.fields.section import Section
+from vibroimpact.dynamics.air import AIR_DENSITY
 from vibroimpact.dynamics.sensors.electronics import Amplifier, Converter
 from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer
+from vibroimpact.dynamics.sensors.instruments.force_sensor import ForceSensor
 from vibroimpact.dynamics.sensors.instruments.geophone import Geophone
 from vibroimpact.dynamics.sensors.instruments.instrument import Instrument
+from vibroimpact.dynamics.sensors.instruments.microphone import Microphone
 from vibroimpact.dynamics.sensors.instruments.strain_gauge import StrainGauge
 from vibroimpact.errors import InputError
 from vibroimpact.ranges import Range
 
-INSTRUMENTS = {"accelerometer": "an accelerometer", "geophone": "a geophone", "strain-gauge": "a strain gauge"}
+INSTRUMENTS = {
+    "accelerometer": "an accelerometer",
+    "geophone": "a geophone",
+    "strain-gauge": "a strain gauge",
+    "microphone": "a microphone",
+    "force": "a force sensor",
+}
 """What instruments are called in a case, where the key of their table has "_" for "-", and in a sentence."""
+
+AT_REST = ("force", "microphone")
+"""Instruments for plates whose supports are at rest."""
+SPEED_OF_SOUND = 343.2  # m/s, of dry air at 20 C: sqrt(1.4 * 287.05 J/(kg K) * 293.15 K)
+_NEAREST = 1e-3  # m: the paths of sound to a closer point would take long to integrate, and no microphone is as small
 
 Seed = Annotated[int, Field(ge=0, strict=True)]
 
@@ -63,6 +77,31 @@ class StrainGaugeTable(Section):
     def instrument(self) -> Instrument:
         """Return the strain gauge."""
         return StrainGauge(**self.model_dump())
+
+
+class MicrophoneTable(Section):
+    """A microphone in the air beyond a face of the plate."""
+
+    distance: Annotated[float, Quantity("m", "its distance from the plane of the face", Range(at_least=_NEAREST))]
+    sensitivity: Annotated[float, Quantity("V/Pa", "voltage over the sound pressure, which it then puts out", Range(above=0))] | None = None
+    air_density: (
+        Annotated[float, Quantity("kg/m^3", "density of the air; by default that of `drop.air`, or that at 20 C", Range(above=0))] | None
+    ) = None
+    speed_of_sound: Annotated[float, Quantity("m/s", "speed of sound in the air; by default that at 20 C", Range(above=0))] = SPEED_OF_SOUND
+
+    def instrument(self) -> Instrument:
+        """Return the microphone."""
+        return Microphone(self.sensitivity, self.air_density or AIR_DENSITY)
+
+
+class ForceTable(Section):
+    """A force sensor between the plate and the support at its position."""
+
+    sensitivity: Annotated[float, Quantity("V/N", "voltage over force, which it then puts out", Range(above=0))] | None = None
+
+    def instrument(self) -> Instrument:
+        """Return the force sensor."""
+        return ForceSensor(**self.model_dump())
 
 
 @dataclass(frozen=True)

@@ -23,6 +23,7 @@ from vibroimpact.dynamics.sensors.antialias import FINENESS, HALF_LENGTH, kernel
 from vibroimpact.dynamics.sensors.measuring_chain import MeasuringChain
 from vibroimpact.dynamics.sensors.pulses import gauss_rule
 from vibroimpact.dynamics.vibrating.oscillators import Oscillators
+from vibroimpact.structures.lagrange_shares import STENCIL, lagrange_shares
 
 _ROWS = 64
 """Points of the table that are computed at once."""
@@ -32,10 +33,6 @@ _KEPT = 2_000_000
 """Largest table of states, in numbers, that is cached for the next drop on the same plate: 16 MB."""
 _WIDE = 1000
 """Number of impulse points from which on Fourier transforms are faster than sums."""
-_LAGRANGE = np.arange(-2, 4)
-"""Stencil of the interpolation in the table, relative to a point."""
-_CARDINAL = np.linalg.inv(np.vander(_LAGRANGE.astype(float)))
-"""Coefficients of the cardinal polynomials of this stencil, highest power first."""
 
 
 @dataclass(frozen=True)
@@ -89,7 +86,7 @@ def filtered_chain(chain: MeasuringChain, rate: float, beyond: float) -> Filtere
     """
     oscillators, pairs = chain.oscillators, chain.pairs
     derivatives = kernel_derivatives()
-    points, more = derivatives.shape[1], math.ceil(beyond * FINENESS * rate) + len(_LAGRANGE)
+    points, more = derivatives.shape[1], math.ceil(beyond * FINENESS * rate) + len(STENCIL)
     weights = [np.concatenate(list(chain.outputs * shape), axis=-1).T for shape in oscillators.shape]  # (2 n, S) of each port
     answers = np.zeros((*chain.direct.shape[:2], points + more))
     parts = (oscillators.angular_frequency.tobytes(), oscillators.damping_ratio.tobytes(), rate)
@@ -171,8 +168,7 @@ def _drives(oscillators: Oscillators, rate: float, step: float, cells: int) -> F
 
 def _spread_on_grid(places: Floats, amounts: Floats) -> tuple[int, Floats]:
     """Return amounts at places spread over integer points, as the transpose of Lagrange interpolation: the first point, and the values."""
-    cells = np.floor(places).astype(int)
-    shares = np.vander(places - cells, len(_LAGRANGE)) @ _CARDINAL
-    first = int(cells.min()) + int(_LAGRANGE[0])
-    shared = np.bincount((cells[:, None] + _LAGRANGE - first).ravel(), weights=(shares * amounts[:, None]).ravel())
+    points, shares = lagrange_shares(places)
+    first = int(points.min())
+    shared = np.bincount((points - first).ravel(), weights=(shares * amounts[:, None]).ravel())
     return first, np.asarray(shared, dtype=np.float64)

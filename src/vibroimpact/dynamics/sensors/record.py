@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import zlib
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.problem import Problem
-from vibroimpact.dynamics.sensors.antialias import antialias_of, gain_at
+from vibroimpact.dynamics.sensors.antialias import FINENESS, antialias_of, gain_at
 from vibroimpact.dynamics.sensors.electronics import amplified, seeds
 from vibroimpact.dynamics.sensors.filtered_chain import filtered_chain
 from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer
+from vibroimpact.dynamics.sensors.instruments.force_sensor import ForceSensor
+from vibroimpact.dynamics.sensors.instruments.microphone import Microphone
+from vibroimpact.dynamics.sensors.left_out import next_octave
 from vibroimpact.dynamics.sensors.measuring_chain import MeasuringChain, measuring_chain
 from vibroimpact.dynamics.sensors.overload import RINGING, Overload, clipped_part, finer_rate, overload
 from vibroimpact.dynamics.sensors.pole_pairs import Section
@@ -28,6 +30,7 @@ from vibroimpact.dynamics.sensors.sampled import (
     sample_filtered_chain,
 )
 from vibroimpact.dynamics.sensors.sensor import Sensor, sample_count
+from vibroimpact.dynamics.sensors.sound import heard
 from vibroimpact.dynamics.sensors.steady_outputs import steady_outputs
 from vibroimpact.dynamics.vibrating.bodies import bases_of_plate
 from vibroimpact.dynamics.vibrating.oscillators import Oscillators
@@ -35,6 +38,7 @@ from vibroimpact.errors import InputError
 
 if TYPE_CHECKING:
     from vibroimpact.dynamics.vibrating.segments import VibratingSegment
+    from vibroimpact.structures.modal_model import ModalBasis  # which loads sparse matrices
 
 MOST_SAMPLES = 100_000_000
 """Largest number of samples of one sensor; more do not fit into memory."""
@@ -69,9 +73,13 @@ def record(problem: Problem, segments: Sequence[VibratingSegment], sensors: Sequ
     _check(problem, sensors, end)
     ports = ports_of(segments)
     groups: dict[tuple[float, str, float | None, tuple[Section, ...]], list[Sensor]] = {}
-    for sensor in sensors:
-        groups.setdefault((sensor.rate, sensor.filter, sensor.corner, sensor.sections), []).append(sensor)
     signals: dict[str, Signal] = {}
+    for sensor in sensors:
+        if isinstance(sensor.instrument, Microphone):
+            value, uncertainty = heard(problem, _plate(problem, ports), ports, segments, sensor, sample_count(end, sensor.rate))
+            signals[sensor.name] = Signal(sensor, _digitised(sensor, value), uncertainty)
+        else:
+            groups.setdefault((sensor.rate, sensor.filter, sensor.corner, sensor.sections), []).append(sensor)
     for group in groups.values():
         signals |= _recorded(problem, ports, segments, group, end)
     return {sensor.name: signals[sensor.name] for sensor in sensors}
@@ -83,14 +91,32 @@ def _check(problem: Problem, sensors: Sequence[Sensor], end: float) -> None:
     if modes is None and problem.motion is None:
         raise InputError("the plate is rigid, so that its points do not move; give it modes", "sensors")
     for sensor in sensors:
-        if modes is not None and sensor.name not in modes.points:
-            raise InputError(f'the modes of the plate do not know a point "{sensor.name}"', "sensors")
+        if isinstance(sensor.instrument, (ForceSensor, Microphone)) and problem.motion is not None:
+            words = "microphones and force sensors are for plates whose supports are at rest; leave out the sensor, or the motion"
+            raise InputError(words, "sensors")
+        _check_place(modes, sensor)
         meter = _limited(sensor)
         rate = sensor.rate if meter is None else finer_rate(sensor.rate, meter.resonance)
         count = sample_count(end, rate) * (len(sensors) if rate == sensor.rate else 1)
         if count > MOST_SAMPLES:
             why = "" if rate == sensor.rate else ", at which the clipping of its range is followed,"
             raise InputError(f"{count:.3g} samples{why} are more than {MOST_SAMPLES:.0e}; ask for a lower rate", "sensors")
+
+
+def _check_place(modes: ModalBasis | None, sensor: Sensor) -> None:
+    """Raise InputError if the modes of the plate do not know where a sensor is, or do not tell the delays of sound finely enough."""
+    if modes is None:
+        return
+    if not isinstance(sensor.instrument, Microphone):
+        if sensor.name not in modes.points:
+            raise InputError(f'the modes of the plate do not know a point "{sensor.name}"', "sensors")
+        return
+    if sensor.name not in modes.sounds:
+        raise InputError(f'the modes of the plate do not know the paths of sound to a microphone "{sensor.name}"', "sensors")
+    highest = 1.0 / (FINENESS * modes.sounds[sensor.name].step)
+    if sensor.rate > 1.000001 * highest:
+        words = f'the paths of sound to the microphone "{sensor.name}" serve for {highest:g} samples per second at most'
+        raise InputError(f"{words}; ask for a lower rate than {sensor.rate:g} Hz", "sensors")
 
 
 def _plate(problem: Problem, ports: Ports) -> Oscillators:
@@ -181,14 +207,8 @@ def _chain(problem: Problem, ports: Ports, group: Sequence[Sensor], sections: Se
 
 
 def _next_octave_chain(chain: MeasuringChain, steeper: Floats, poles: Sequence[Section]) -> MeasuringChain:
-    """Return the chain of the modes left out of the next octave, beyond their quasi-static response, as an estimate.
-
-    They are modelled on the last octave kept, at twice the frequencies; twice as many are assumed, as for the bending of a plate.
-    """
-    plate = chain.plate
-    last = np.flatnonzero(plate.angular_frequency > 0.5 * plate.angular_frequency.max())
-    above, shapes_above = plate.pick(last), 2.0 * steeper * chain.shapes[:, last]
-    above = replace(above, angular_frequency=2.0 * above.angular_frequency)
+    """Return the chain of the modes left out of the next octave, beyond their quasi-static response, as an estimate."""
+    above, shapes_above = next_octave(chain.plate, steeper * chain.shapes)
     static = -(shapes_above * above.shape[:, None] / above.angular_frequency**2).sum(axis=2)
     return measuring_chain(above, shapes_above, static, chain.orders, poles)
 

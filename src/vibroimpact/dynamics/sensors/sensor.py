@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from vibroimpact.dynamics.sensors.electronics import Amplifier, Converter, seeds
 from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer
 from vibroimpact.dynamics.sensors.instruments.instrument import MOTIONS, UNITS, Direction, Instrument, Quantity
+from vibroimpact.dynamics.sensors.instruments.microphone import Microphone
 from vibroimpact.dynamics.sensors.instruments.strain_gauge import StrainGauge
 from vibroimpact.dynamics.sensors.pole_pairs import Section
 from vibroimpact.errors import InputError, did_you_mean
@@ -45,7 +46,8 @@ class Sensor:
     Raises
     ------
     InputError
-        If the instrument puts out another quantity, there is no such filter, it takes no corner, or the corner is not below half the rate.
+        If the instrument puts out another quantity or has another filter, there is no such filter, it takes no corner, or the corner is not
+        below half the rate.
     """
 
     name: str
@@ -65,6 +67,8 @@ class Sensor:
         if self.filter not in FILTERS:
             known = ", ".join(f'"{name}"' for name in FILTERS)
             raise InputError(f'there is no filter "{self.filter}"; there are {known}.{did_you_mean(self.filter, FILTERS)}', "filter")
+        if isinstance(self.instrument, Microphone) and self.filter != "sigma-delta":
+            raise InputError('the samples of a microphone are those behind "sigma-delta"; leave out the filter', "filter")
         if self.corner is not None and self.filter != "butterworth":
             raise InputError(f'the filter "{self.filter}" takes no corner; leave it out, or take "butterworth"', "corner")
         if self.corner is not None and self.corner >= 0.5 * self.rate:

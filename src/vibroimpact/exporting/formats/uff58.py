@@ -33,7 +33,7 @@ _LINE = 80
 """Characters of a line of text."""
 _MOST_NAMED = 10
 """Largest number of sensors that a note names."""
-_QUANTITIES = {"displacement": 8, "velocity": 11, "acceleration": 12, "voltage": 1, "strain": 3}
+_QUANTITIES = {"displacement": 8, "velocity": 11, "acceleration": 12, "voltage": 1, "strain": 3, "pressure": 15, "force": 9}
 """Data types of dataset 58; 1 is "general", as voltage has none of its own."""
 _ALONG_PLATE = {"position": 8, "velocity": 11, "spin": 11, "friction": 13}
 

@@ -184,6 +184,13 @@ class Constraints:
         self._size += len(stiffness)
         return np.arange(self._size - len(stiffness), self._size)
 
+    @property
+    def touched(self) -> Integers:
+        """Degrees of freedom that the supports hold, tie or spring."""
+        tied = [dof for one, tie in self._ties.items() for dof in (one, *tie)]
+        parts = [dofs for dofs, _ in self._added] + [bed.indices for bed in self._beds] + [np.array(tied, dtype=np.int64)]
+        return np.unique(np.concatenate(parts))
+
     def held(self) -> HeldStructure:
         """Return the structure with its supports, reduced to the free degrees of freedom."""
         structure = self.structure

@@ -6,8 +6,16 @@ from typing import Literal, Protocol
 
 from vibroimpact.dynamics.sensors.pole_pairs import Section
 
-Quantity = Literal["acceleration", "velocity", "displacement", "voltage", "strain"]
-UNITS: dict[Quantity, str] = {"acceleration": "m/s2", "velocity": "m/s", "displacement": "m", "voltage": "V", "strain": "m/m"}
+Quantity = Literal["acceleration", "velocity", "displacement", "voltage", "strain", "pressure", "force"]
+UNITS: dict[Quantity, str] = {
+    "acceleration": "m/s2",
+    "velocity": "m/s",
+    "displacement": "m",
+    "voltage": "V",
+    "strain": "m/m",
+    "pressure": "Pa",
+    "force": "N",
+}
 """The SI unit of each quantity."""
 MOTIONS: dict[Quantity, int] = {"displacement": 0, "velocity": 1, "acceleration": 2}
 """Order of the derivative of the displacement that each quantity of a point in motion is."""
