@@ -47,7 +47,7 @@ def is_quick(command: str) -> bool:
 
 
 def write_records(folder: Path) -> None:
-    """Write the records of bounces that the commands name."""
+    """Write the records of bounces that commands and examples name."""
     sound = heard(0, 0.7, 7, decibels=30.0).record
     wavfile.write(folder / "bounces.wav", round(sound.rate), (0.5 * sound.value / np.abs(sound.value).max()).astype("f4"))
     plate = heard(1, 0.6, 6, decibels=30.0, rate=8e3).record
@@ -108,6 +108,7 @@ def test_readme_shows_what_the_demo_prints(variable: vi.Response) -> None:
 )
 def test_documented_python_runs(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
+    write_records(tmp_path)
     names: dict = {}
     for block in blocks(page, "python"):
         exec(compile(block, str(page), "exec"), names)

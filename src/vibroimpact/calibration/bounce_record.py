@@ -53,8 +53,9 @@ def impacts_in_bounces(bounces: Bounces, *, gravity: float, first_speed: float, 
     restitution = flown.start / speeds
     heard = abs(np.log(restitution[0] / restitution[1])) <= np.log(_UNLIKE)
     kept = slice(0 if heard else 1, None)
-    others = f"{len(bounces.others)} other sounds are no bounces"
-    first = f"the first is not that of the drop, at {first_speed:.4g} m/s, and only begins the first flight"
+    first = f"; the first is not that of the drop, at {first_speed:.4g} m/s, and only begins the first flight"
+    sounds = len(bounces.others)
+    others = f"; {sounds} other sound{'s are' if sounds > 1 else ' is'} no bounce" if sounds else ""
     return Observations(
         speeds[kept],
         {"separation_speed": flown.start[kept]},
@@ -66,5 +67,5 @@ def impacts_in_bounces(bounces: Bounces, *, gravity: float, first_speed: float, 
         noise_from="the times of the touches",
         doubts=bounces.doubts,
         flights=flights,
-        notes=(f"{number + 1} touches are heard; {others if heard else first}.",),
+        notes=(f"{number + 1} touches are heard{others}{'' if heard else first}.",),
     )

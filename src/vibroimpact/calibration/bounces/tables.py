@@ -9,7 +9,6 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.calibration.bounces.rebounds import Rebounds
 from vibroimpact.calibration.bounces.speed_laws import CONSTANT, LINEAR, POWER, SpeedLaw
-from vibroimpact.calibration.fitting import half_width
 from vibroimpact.calibration.report import Cells
 from vibroimpact.units.display import MISSING, column_texts, digits, fixed, text
 
@@ -51,9 +50,9 @@ def drop_sentence(found: Rebounds) -> str:
     """Return from how high the ball fell before the first touch."""
     if found.height is not None:
         return f"It fell by {text(found.height, 'm')} before the first touch, as given."
-    height = f"{text(found.drop_height, 'm', 3)} (± {text(half_width(found.confidence, np.inf) * found.drop_deviation, 'm', 2)})"
+    about = text(found.drop_height, "m", 3)
     return (
-        f"It fell by about {height} before the first touch, if it bounced there with the mean restitution; the height, if it is known, "
+        f"It fell by about {about} before the first touch, if it bounced there with the mean restitution; the height, if it is known, "
         "gives the restitution of that impact."
     )
 
