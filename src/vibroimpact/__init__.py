@@ -23,6 +23,11 @@ if TYPE_CHECKING:
     from vibroimpact.bounds.bound import bound_of as bound_of
     from vibroimpact.bounds.folder import save_bound as save_bound
     from vibroimpact.bounds.observations import Channel as Channel
+    from vibroimpact.calibration.bounce_record import impacts_in_bounces as impacts_in_bounces
+    from vibroimpact.calibration.bounces.charts import bounce_charts as bounce_charts
+    from vibroimpact.calibration.bounces.folder import save_rebounds as save_rebounds
+    from vibroimpact.calibration.bounces.rebounds import Rebounds as Rebounds
+    from vibroimpact.calibration.bounces.rebounds import rebounds_of as rebounds_of
     from vibroimpact.calibration.calibrate import calibrate as calibrate
     from vibroimpact.calibration.calibrate_case import calibrate_case as calibrate_case
     from vibroimpact.calibration.calibrate_case import calibrated_case as calibrated_case
@@ -123,8 +128,11 @@ if TYPE_CHECKING:
     from vibroimpact.runs.notebook import plot_result as plot_result
     from vibroimpact.runs.notebook import result_html as result_html
     from vibroimpact.runs.save import save_result as save_result
+    from vibroimpact.signals.bounces.find import Bounces as Bounces
+    from vibroimpact.signals.bounces.find import find_bounces as find_bounces
     from vibroimpact.signals.feature_table import FeatureTable as FeatureTable
     from vibroimpact.signals.feature_table import feature_table as feature_table
+    from vibroimpact.signals.one_record import one_record as one_record
     from vibroimpact.signals.onset import from_onset as from_onset
     from vibroimpact.signals.onset import onset_time as onset_time
     from vibroimpact.signals.packets import Packets as Packets
@@ -156,6 +164,7 @@ _HOME = {
     "Body": "bodies.body",
     "BodyModes": "cases.elastic.modes",
     "BodyMotion": "dynamics.simulate_system",
+    "Bounces": "signals.bounces.find",
     "Bound": "bounds.bound",
     "Calibration": "calibration.calibration",
     "Case": "cases.case",
@@ -184,6 +193,7 @@ _HOME = {
     "PointContact": "dynamics.system",
     "Problem": "dynamics.problem",
     "QuasiStatic": "contact.quasi_static",
+    "Rebounds": "calibration.bounces.rebounds",
     "Record": "signals.record",
     "Recogniser": "recognition.recogniser",
     "Recognised": "recognition.apply",
@@ -201,8 +211,9 @@ _HOME = {
     "SystemResponse": "dynamics.simulate_system",
     "VibroimpactError": "errors",
     "achieved_restitution": "dynamics.restitution",
-    "bound_of": "bounds.bound",
     "apply_recogniser": "recognition.apply",
+    "bounce_charts": "calibration.bounces.charts",
+    "bound_of": "bounds.bound",
     "calibrate": "calibration.calibrate",
     "calibrate_case": "calibration.calibrate_case",
     "calibrate_friction": "calibration.friction.calibrate",
@@ -219,6 +230,7 @@ _HOME = {
     "export_result": "exporting.export_result",
     "feature_table": "signals.feature_table",
     "features": "signals.registry",
+    "find_bounces": "signals.bounces.find",
     "find_contact_law": "contact.registry",
     "find_feature": "signals.registry",
     "find_friction_law": "contact.registry",
@@ -227,6 +239,7 @@ _HOME = {
     "friction_laws": "contact.registry",
     "from_onset": "signals.onset",
     "identify_local_element": "dynamics.local_element",
+    "impacts_in_bounces": "calibration.bounce_record",
     "impacts_in_force": "calibration.force_record",
     "impacts_in_position": "calibration.position_record",
     "integrated_restitution": "dynamics.restitution",
@@ -241,6 +254,7 @@ _HOME = {
     "material_library": "materials",
     "modal_damping": "calibration.tunables",
     "mode_charts": "modes.charts",
+    "one_record": "signals.one_record",
     "onset_time": "signals.onset",
     "packet_records": "signals.packets",
     "plot_result": "runs.notebook",
@@ -254,6 +268,7 @@ _HOME = {
     "read_result": "results.folder",
     "read_study": "studies.study",
     "read_sweep": "studies.sweep",
+    "rebounds_of": "calibration.bounces.rebounds",
     "recognise": "recognition.recognise",
     "record_table": "signals.record_table",
     "remake_report": "remake",
@@ -269,6 +284,7 @@ _HOME = {
     "save_comparison": "comparison.folder",
     "save_figures": "figures",
     "save_modes": "modes.folder",
+    "save_rebounds": "calibration.bounces.folder",
     "save_recognised": "recognition.apply",
     "save_recognition": "recognition.folder",
     "save_result": "runs.save",

@@ -13,9 +13,12 @@ from collections.abc import Callable
 from io import StringIO
 from pathlib import Path
 
+import numpy as np
 import pytest
+from scipy.io import wavfile
 
 import vibroimpact as vi
+from heard import heard
 from vibroimpact.cli import main
 from vibroimpact.dynamics.columns import IMPACT_COLUMNS
 
@@ -43,6 +46,15 @@ def is_quick(command: str) -> bool:
     return not {"paper:type3", "elastic.toml", "figures", "features", "dataset"} & set(command.split())
 
 
+def write_records(folder: Path) -> None:
+    """Write the records of bounces that commands and examples name."""
+    sound = heard(0, 0.7, 7, decibels=30.0).record
+    wavfile.write(folder / "bounces.wav", round(sound.rate), (0.5 * sound.value / np.abs(sound.value).max()).astype("f4"))
+    plate = heard(1, 0.6, 6, decibels=30.0, rate=8e3).record
+    rows = (f"{at!r},{value!r}\n" for at, value in zip(plate.time.tolist(), plate.value.tolist(), strict=True))
+    (folder / "plate.csv").write_text("time [s],geophone [V]\n" + "".join(rows))
+
+
 @pytest.mark.parametrize(
     ("pages", "chosen"),
     [
@@ -61,6 +73,7 @@ def test_documented_commands_run(
     for block in blocks(ROOT / "docs" / "case-file.md", "toml"):
         name = re.match(r"# (\S+\.toml)\n", block)  # a block may say what its file is called
         (tmp_path / (name[1] if name else "case.toml")).write_text(block)
+    write_records(tmp_path)
     made: dict[str, str] = {}
     for command in dict.fromkeys(asked):
         words, _, folder = command.partition(" -o ")
@@ -95,6 +108,7 @@ def test_readme_shows_what_the_demo_prints(variable: vi.Response) -> None:
 )
 def test_documented_python_runs(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
+    write_records(tmp_path)
     names: dict = {}
     for block in blocks(page, "python"):
         exec(compile(block, str(page), "exec"), names)

@@ -1,4 +1,4 @@
-"""Measurements in a file: one impact per row, rebound heights, or a record of position, force or the sphere's acceleration."""
+"""Measurements in a file: one impact per row, rebound heights, or a record: position, force, the sphere's acceleration, bounces heard."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from vibroimpact.arrays import Floats
+from vibroimpact.calibration.bounce_record import impacts_in_bounces
 from vibroimpact.calibration.evaluate_measurement import Measurement, speed_at_touch
 from vibroimpact.calibration.flights import Flights, VacuumFlights, vacuum_height
 from vibroimpact.calibration.force_record import impacts_in_force
@@ -24,6 +25,8 @@ from vibroimpact.cases.rigid import mass_of_sphere
 from vibroimpact.errors import InputError
 from vibroimpact.measurements.record_file import SPHERE_ACCELERATION, is_universal, read_universal_record
 from vibroimpact.measurements.table_file import TableFile, read_table_file, strictly_increasing
+from vibroimpact.signals.bounces.find import find_bounces
+from vibroimpact.signals.one_record import one_record
 
 _MATCHABLE = {name: quantity.unit for name, quantity in MATCHABLE.items()}
 DEVIATION = "_standard_deviation"
@@ -42,6 +45,9 @@ _COLUMNS = {
     **_MATCHABLE,
     **{f"{name}{DEVIATION}": unit for name, unit in {"restitution": "", "rebound_height": "m", **_MATCHABLE}.items()},
 }
+_HEARD = (".wav", ".nc", ".nc4", ".h5")
+"""Endings of files that are records of sound or vibration, in which bounces are heard."""
+
 _RECORDED = ("position", "force", "sphere_acceleration")
 _KINDS = (
     "approach_speed with restitution, separation_speed, rebound_height, max_force, max_indentation or duration; rebound_height; "
@@ -71,6 +77,10 @@ def file_measurement(case: Case, target: FileTarget, by_rebound: bool) -> Measur
     InputError
         If it can't be read or contains no impacts; the message names the line.
     """
+    if target.channel is not None or Path(target.file).suffix.lower() in _HEARD:
+        return _naming_file(target.file, _heard_measurement(case, target))
+    if target.contact_duration is not None:
+        raise InputError("it goes with bounces that are heard; name their channel, or leave this out", "target.contact_duration")
     if is_universal(target.file):
         found = read_universal_record(target.file, target.function, by_rebound)
         if found.quantity == "acceleration" and found.identification != SPHERE_ACCELERATION:
@@ -100,6 +110,24 @@ def file_measurement(case: Case, target: FileTarget, by_rebound: bool) -> Measur
         return _naming_file(target.file, _record_measurement(case, Recorded(table.columns["time"], values, table.lines), by_rebound))
     except InputError as error:
         raise in_file(target.file, error) from None
+
+
+def _heard_measurement(case: Case, target: FileTarget) -> Measurement:
+    """Return the measurement of a record in which bounces are heard."""
+    if target.function is not None:
+        raise InputError("the channel says which record it is; leave this out", "target.function")
+    gravity = case.drop.gravity
+    if gravity == 0.0:
+        raise InputError("without gravity a sphere rises for ever, and is heard once", "target")
+    try:
+        bounces = find_bounces(one_record(target.file, target.channel), target.contact_duration or 0.0)
+    except InputError as error:
+        raise in_file(target.file, error) from None
+
+    def evaluated(flights: Flights | None) -> Observations:
+        return impacts_in_bounces(bounces, gravity=gravity, first_speed=speed_at_touch(case, flights), flights=flights)
+
+    return Measurement(evaluated, gravity * float(bounces.flight.max()) ** 2 / 8.0)
 
 
 def _record_measurement(case: Case, record: Recorded, by_rebound: bool) -> Measurement:

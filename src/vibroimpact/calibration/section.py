@@ -83,10 +83,17 @@ class ImpactTarget(Section):
 
 
 class FileTarget(Section):
-    """A file: impacts, rebound heights, or a record of position, force or the sphere's acceleration."""
+    """A file: impacts, rebound heights, a record of position, force or the sphere's acceleration, or one in which bounces are heard."""
 
-    file: str = Field(description="a CSV file whose header names its columns with their units, or a universal file (UFF 58) with a record")
+    file: str = Field(
+        description="a CSV file whose header names its columns with their units, a universal file (UFF 58) with a record, or a WAV or "
+        "NetCDF file in which bounces are heard"
+    )
     function: str | None = Field(None, description="which function of a universal file, by its first line of identification or its number")
+    channel: str | None = Field(
+        None, description="the channel in which bounces are heard: of a WAV or NetCDF file that has several, or of a file of another kind"
+    )
+    contact_duration: Annotated[float, Quantity("s", "how long the contacts last between flights that are heard", _POSITIVE)] | None = None
 
 
 Target = ContactSection | RestitutionTarget | HeightsTarget | ImpactTarget | FileTarget

@@ -17,7 +17,7 @@ def calibration_summary(case: Case, told: CalibrationReport) -> RenderableType:
         Text(case.name or "a drop", style="bold"),
         Text(f"{told.law}, so that {told.matched}"),
         Text(),
-        _table(told.values),
+        cells_table(told.values),
         Text(),
         Text(told.function, style="bold"),
         *(Text(f" {sentence}") for sentence in told.fit),
@@ -26,13 +26,14 @@ def calibration_summary(case: Case, told: CalibrationReport) -> RenderableType:
         parts += [Text(), *(Text(sentence) for sentence in told.given)]
     if told.differences:
         parts += [Text(), Text("What is still wrong", style="bold")]
-        parts.append(Columns([Group(Text(f" {title}"), _table(cells)) for title, cells in told.differences.items()], padding=(0, 4)))
+        parts.append(Columns([Group(Text(f" {title}"), cells_table(cells)) for title, cells in told.differences.items()], padding=(0, 4)))
         parts.append(Text(f" {told.ways}", style="dim"))
     parts += [Text(), *(Text(f"Doubt: {doubt}.") for doubt in told.doubts)] if told.doubts else []
     return Group(*parts)
 
 
-def _table(cells: Cells) -> TerminalTable:
+def cells_table(cells: Cells) -> TerminalTable:
+    """Return a table as text for the terminal."""
     (first, *headers), rows = cells
     names, *columns = zip(*rows, strict=True)
     key = TerminalColumn(first[0], names, text=True)

@@ -1,4 +1,4 @@
-"""The command `calibrate`, which finds the damping for a required or measured rebound."""
+"""The command `calibrate`, which finds the damping for a required or measured rebound, or the restitution of bounces that are heard."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
+from vibroimpact.cli.completion import RECORDS, complete_case_or_record
 from vibroimpact.cli.shared import (
-    CaseArgument,
     Changes,
     Figures,
     Force,
@@ -22,34 +22,69 @@ from vibroimpact.cli.shared import (
     show,
     stem,
 )
+from vibroimpact.errors import InputError
 
 
 @app.command()
 def calibrate(
-    case: CaseArgument,
+    case: Annotated[
+        str,
+        typer.Argument(
+            metavar="CASE|RECORD",
+            autocompletion=complete_case_or_record,
+            help='A TOML file, a shipped case such as "paper:calibration", or a record of bounces: WAV, CSV, UFF, NetCDF-4.',
+        ),
+    ],
     output: Annotated[
         Path | None, typer.Option("-o", "--output", metavar="DIR", help="The folder to make; by default CASE-calibrated.")
     ] = None,
     changes: Changes = None,
+    channel: Annotated[
+        str | None, typer.Option("--channel", metavar="NAME", help="Of a record with several channels, the one to take.")
+    ] = None,
+    gravity: Annotated[
+        str | None,
+        typer.Option("--gravity", metavar="VALUE", help='Of the flights of a record, such as "9.81 m/s^2"; by default 9.80665 m/s^2.'),
+    ] = None,
+    height: Annotated[
+        str | None,
+        typer.Option("--height", metavar="LENGTH", help='Through which the ball fell before the first touch of a record, such as "0.3 m".'),
+    ] = None,
+    contact: Annotated[
+        str | None,
+        typer.Option("--contact", metavar="TIME", help='How long a contact of a record lasts, such as "0.2 ms"; by default no time.'),
+    ] = None,
     figures: Figures = False,
     force: Force = False,
     as_json: Json = False,
 ) -> None:
-    """Find the damping with which a sphere bounces as it is wanted to, or was measured to.
+    """Find the damping with which a sphere bounces as it is wanted to, or was measured to; or the restitution of bounces that are heard.
 
-    The [calibrate] section of the case says what to match: a contact law, a restitution, or measurements. Without it the
-    damping of Adams' IMPACT is found with which the sphere bounces as under the law of the case.
+    The [calibrate] section of a case says what to match: a contact law, a restitution, or measurements. Without it the
+    damping of Adams' IMPACT is found with which the sphere bounces as under the law of the case. Of a record of sound or
+    vibration, the times between bounces give restitution and speed of each impact.
     """
+    from vibroimpact.results.folder import check_free
+
+    target = Path(f"{stem(case)}-calibrated") if output is None else output
+    given = {"--channel": channel, "--gravity": gravity, "--height": height, "--contact": contact}
+    if Path(case).suffix.lower() in RECORDS:
+        if changes:
+            raise InputError("--set changes the keys of a case, and a record has none")
+        check_free(target, force=force)
+        _listen(Path(case), target, channel, gravity, height, contact, figures=figures, force=force, as_json=as_json)
+        return
+    for option, value in given.items():
+        if value is not None:
+            raise InputError(f"{option} goes with a record of bounces ({', '.join(RECORDS)}); a case has its own keys")
     from vibroimpact.calibration.calibrate_case import calibrate_case, load_calibration
     from vibroimpact.calibration.folder import save_calibration
     from vibroimpact.calibration.reported import report_of
     from vibroimpact.calibration.text import calibration_summary
     from vibroimpact.cases.reader import prefix_errors
     from vibroimpact.report.progress import patient_progress
-    from vibroimpact.results.folder import check_free
 
     what = load_calibration(case, settings_of(changes))
-    target = Path(f"{stem(case)}-calibrated") if output is None else output
     check_free(target, force=force)
     screen = console(err=as_json)
     with exit_on_interrupt():
@@ -63,3 +98,53 @@ def calibrate(
         as_json=as_json,
     )
     say(f"wrote {folder / 'report.html'}", err=as_json)
+
+
+def _listen(
+    file: Path,
+    target: Path,
+    channel: str | None,
+    gravity: str | None,
+    height: str | None,
+    contact: str | None,
+    *,
+    figures: bool,
+    force: bool,
+    as_json: bool,
+) -> None:
+    """Find the restitution of bounces in a record, and print and write it."""
+    from vibroimpact.calibration.bounces.document import bounce_document
+    from vibroimpact.calibration.bounces.folder import save_rebounds
+    from vibroimpact.calibration.bounces.rebounds import rebounds_of
+    from vibroimpact.calibration.bounces.text import bounce_summary
+    from vibroimpact.dynamics.problem import STANDARD_GRAVITY
+    from vibroimpact.files.reading import with_path
+    from vibroimpact.signals.bounces.find import find_bounces
+    from vibroimpact.signals.one_record import one_record
+
+    with exit_on_interrupt():
+        lasts = 0.0 if contact is None else _quantity("--contact", contact, "s")
+        acceleration = STANDARD_GRAVITY if gravity is None else _quantity("--gravity", gravity, "m/s^2")
+        fallen = None if height is None else _quantity("--height", height, "m")
+        record = one_record(file, channel)
+        try:
+            found = rebounds_of(find_bounces(record, lasts), gravity=acceleration, height=fallen)
+        except InputError as error:
+            raise with_path(file, error) from None
+        folder = save_rebounds(found, target, force=force, figures=("png",) if figures else ())
+    show(lambda: {"folder": str(folder), **bounce_document(found)}, lambda: bounce_summary(found), as_json=as_json)
+    say(f"wrote {folder / 'report.html'}", err=as_json)
+
+
+def _quantity(option: str, words: str, unit: str) -> float:
+    """Return the value of an option in SI; a bare number is in it already."""
+    from vibroimpact.units.reading import to_si
+
+    try:
+        return to_si(float(words), unit)
+    except ValueError:
+        pass
+    try:
+        return to_si(words, unit)
+    except InputError as error:
+        raise InputError(f"{option}: {error.message}") from None

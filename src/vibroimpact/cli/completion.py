@@ -17,6 +17,9 @@ PROGRAM, VARIABLE = "vibroimpact", "_VIBROIMPACT_COMPLETE"
 WORDS = Path(__file__).with_name("completion.json")
 """The names and keys, which `completion_words` collects."""
 
+RECORDS = (".wav", ".csv", ".txt", ".uff", ".unv", ".nc", ".nc4", ".h5")
+"""Endings of the files of records."""
+
 _LIBRARY = Path(__file__).parents[1] / "cases" / "library"
 _SPECIAL = set(" \t\n\"'\\$`*?[]{}()<>|&;!#~")  # letters that a shell would read otherwise
 
@@ -35,8 +38,18 @@ def complete_case(incomplete: str) -> list[str]:
     >>> complete_case("paper:type1-t")
     ['paper:type1-theory']
     """
-    shipped = sorted(f"{path.parent.name}:{path.stem}" for path in _LIBRARY.glob("*/*.toml"))
-    return [*_starting(incomplete, shipped), *_files(incomplete)]
+    return [*_starting(incomplete, _shipped()), *_files(incomplete, (".toml",))]
+
+
+def complete_case_or_record(incomplete: str) -> list[str]:
+    """Return what `complete_case` does, and the files of records.
+
+    Examples
+    --------
+    >>> complete_case_or_record("paper:type1-t")
+    ['paper:type1-theory']
+    """
+    return [*_starting(incomplete, _shipped()), *_files(incomplete, (".toml", *RECORDS))]
 
 
 def complete_change(incomplete: str) -> list[str]:
@@ -126,8 +139,12 @@ def _assignments(incomplete: str, words: dict[str, list[str]]) -> list[str]:
     return [f"{one}={word}" for one in keys for word in (words[one] if len(words[one]) > 1 else ("", *(words[one] or ["VALUE"])))]
 
 
-def _files(incomplete: str) -> list[str]:
-    """Return TOML files and folders; of a single folder what is in it, as a shell would add a blank to one."""
+def _shipped() -> list[str]:
+    return sorted(f"{path.parent.name}:{path.stem}" for path in _LIBRARY.glob("*/*.toml"))
+
+
+def _files(incomplete: str, endings: tuple[str, ...]) -> list[str]:
+    """Return the files with these endings and folders; of a single folder what is in it, as a shell would add a blank to one."""
     before, slash, start = incomplete.rpartition("/")
     found = []
     with suppress(OSError):
@@ -136,9 +153,9 @@ def _files(incomplete: str) -> list[str]:
             hidden = entry.name.startswith(".") and not start.startswith(".")
             if not entry.name.startswith(start) or hidden or _SPECIAL & set(name) or not name.isprintable():
                 continue
-            if is_folder or entry.suffix == ".toml":
+            if is_folder or entry.suffix in endings:
                 found.append(f"{name}/" if is_folder else name)
-    return _files(found[0]) if len(found) == 1 and found[0].endswith("/") else found
+    return _files(found[0], endings) if len(found) == 1 and found[0].endswith("/") else found
 
 
 def concerns_completion() -> bool:

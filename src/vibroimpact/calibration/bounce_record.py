@@ -1,0 +1,71 @@
+"""Impacts in a record in which a ball is heard to bounce."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vibroimpact.calibration.flights import Flights, VacuumFlights
+from vibroimpact.calibration.observations import Observations
+from vibroimpact.signals.bounces.find import Bounces
+
+_UNLIKE = 1.25
+"""Ratio of the restitution of the first impact to that of the second up to which it is that of the drop."""
+
+
+def impacts_in_bounces(bounces: Bounces, *, gravity: float, first_speed: float, flights: Flights | None = None) -> Observations:
+    r"""Return the impacts of a sphere that is heard to bounce.
+
+    Both speeds of a flight follow from its duration, :math:`g T / 2` in a vacuum. The first impact that is heard is that of the drop if its
+    speed of approach gives it a restitution like that of the second; otherwise it only begins the first flight.
+
+    Parameters
+    ----------
+    bounces : Bounces
+        The touches.
+    gravity : float
+        Acceleration of gravity [m/s^2], > 0.
+    first_speed : float
+        Approach speed of the first impact of the drop [m/s].
+    flights : Flights, optional
+        Model of the flights; a vacuum by default.
+
+    Returns
+    -------
+    Observations
+        Separation speeds, with standard deviations from those of the times.
+
+    Examples
+    --------
+    >>> from vibroimpact.signals.record import Record
+    >>> touches = np.array([0.0, 0.4, 0.72, 0.976])
+    >>> heard = Bounces(Record("microphone", np.zeros(48000), 48e3, "Pa"), touches, np.full(4, 1e-5), np.ones(4), np.zeros(0), ())
+    >>> found = impacts_in_bounces(heard, gravity=10.0, first_speed=2.5)
+    >>> found.speeds.round(3).tolist(), found.wanted["separation_speed"].round(3).tolist()
+    ([2.5, 2.0, 1.6], [2.0, 1.6, 1.28])
+    """
+    flown = (flights or VacuumFlights(gravity)).end_speeds(bounces.flight)
+    number = len(bounces.flight)
+    lasts = np.diff(np.eye(number + 1), axis=0) * bounces.deviation  # of the flights, by each touch
+    after = flown.start_slope[:, None] * lasts
+    before = np.vstack([np.zeros(number + 1), (flown.end_slope[:, None] * lasts)[:-1]])
+    speeds = np.append(first_speed, flown.end[:-1])
+    labels = tuple(f"impact {one + 1}, {at:.6g} s" for one, at in enumerate(bounces.time[:-1]))
+    restitution = flown.start / speeds
+    heard = abs(np.log(restitution[0] / restitution[1])) <= np.log(_UNLIKE)
+    kept = slice(0 if heard else 1, None)
+    first = f"; the first is not that of the drop, at {first_speed:.4g} m/s, and only begins the first flight"
+    sounds = len(bounces.others)
+    others = f"; {sounds} other sound{'s are' if sounds > 1 else ' is'} no bounce" if sounds else ""
+    return Observations(
+        speeds[kept],
+        {"separation_speed": flown.start[kept]},
+        before[kept],
+        {"separation_speed": after[kept]},
+        deviations_known=True,
+        labels=labels[kept],
+        of_the_drop=bool(heard),
+        noise_from="the times of the touches",
+        doubts=bounces.doubts,
+        flights=flights,
+        notes=(f"{number + 1} touches are heard{others}{'' if heard else first}.",),
+    )

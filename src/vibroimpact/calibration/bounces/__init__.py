@@ -1,0 +1,1 @@
+"""Restitution from the bounces that are heard in a record, without a case."""

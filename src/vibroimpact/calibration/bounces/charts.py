@@ -1,0 +1,60 @@
+"""Charts of bounces: the record with the touches in it, and restitution over the approach speed."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vibroimpact.calibration.bounces.rebounds import Rebounds
+from vibroimpact.charts.axis import Axis
+from vibroimpact.charts.chart import Chart, Panel
+from vibroimpact.charts.decimation import decimated
+from vibroimpact.charts.marks import Band, Line, Mark, Points
+from vibroimpact.charts.palette import series
+
+_COLUMNS = 25_000
+"""Columns into which a long record is divided; up to four samples of each are drawn."""
+
+_SMOOTH = 200
+
+
+def bounce_charts(found: Rebounds) -> list[Chart]:
+    """Return the charts `record` and `restitution`.
+
+    Parameters
+    ----------
+    found : Rebounds
+        The impacts.
+    """
+    return [_record_chart(found), _restitution_chart(found)]
+
+
+def _record_chart(found: Rebounds) -> Chart:
+    bounces, record = found.bounces, found.bounces.record
+    names = tuple(f"impact {number + 1}" for number in range(len(bounces.time)))
+    marks: list[Mark] = [
+        Line(*decimated(record.time, record.value, _COLUMNS), record.name, "under"),
+        Points(bounces.time, bounces.peak, "bounces of the ball", "matched", names),
+    ]
+    if len(bounces.others):
+        level = np.full(len(bounces.others), float(np.abs(bounces.peak).max()))
+        marks.append(Points(bounces.others, level, "other sounds", "muted", bounces.reasons))
+    label = f"{record.name[:1].upper()}{record.name[1:]}"
+    panel = Panel(Axis("Time", "s"), Axis(label, "" if record.unit == "1" else record.unit), tuple(marks))
+    caption = "The record, the bounces of the ball at the value of largest magnitude, and crossed what else was heard."
+    return Chart("record", "Bounces in the record", ((panel,),), caption, height=2.6)
+
+
+def _restitution_chart(found: Rebounds) -> Chart:
+    known = np.isfinite(found.restitution)
+    speed, (low, high) = found.approach_speed[known], found.intervals[known].T
+    names = tuple(f"impact {number + 1}" for number in np.flatnonzero(known))
+    smooth = np.linspace(speed.min(), speed.max(), _SMOOTH)
+    marks: list[Mark] = []
+    ends = found.laws[-1].band(smooth, found.confidence)
+    if np.isfinite(ends).all():
+        marks.append(Band(smooth, *ends, f"{100.0 * found.confidence:g} % band of the {found.laws[-1].name} law", "band"))
+    marks += [Line(smooth, law(smooth), law.name, series(number)) for number, law in enumerate(found.laws)]
+    marks.append(Points(speed, found.restitution[known], "impacts", "matched", names, low=low, high=high))
+    panel = Panel(Axis("Approach speed", "m/s"), Axis("Restitution"), tuple(marks))
+    caption = f"Each impact between two flights that are heard, with its interval at {100.0 * found.confidence:g} %, and the fits."
+    return Chart("restitution", "Restitution over the approach speed", ((panel,),), caption, height=3.2)

@@ -1,0 +1,65 @@
+"""Write the folder of a record of bounces: data and the report page, and figures where they are asked for."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from os import PathLike
+from pathlib import Path
+
+from vibroimpact._version import __version__
+from vibroimpact.calibration.bounces.charts import bounce_charts
+from vibroimpact.calibration.bounces.document import bounce_document, bounce_rows
+from vibroimpact.calibration.bounces.rebounds import Rebounds
+from vibroimpact.calibration.bounces.tables import contact_sentence, drop_sentence, impact_cells, law_sentences, other_sentences
+from vibroimpact.charts.figures_folder import write_figures
+from vibroimpact.report.page import render_page
+from vibroimpact.results.csv_files import write_csv
+from vibroimpact.results.folder import SUMMARY, new_folder
+
+
+def save_rebounds(found: Rebounds, directory: str | PathLike[str], *, force: bool = False, figures: Sequence[str] = ()) -> Path:
+    """Write `bounces.csv`, `summary.json` and `report.html` into a new folder, atomically.
+
+    Parameters
+    ----------
+    found : Rebounds
+        The impacts, as `rebounds_of` returns them.
+    directory : path
+        The folder to create.
+    force : bool, default False
+        Replace an existing folder.
+    figures : sequence of str
+        Formats in which the charts are also written as files, into a folder `figures`: of "png", "svg" and "pdf".
+
+    Returns
+    -------
+    pathlib.Path
+        The folder.
+
+    Raises
+    ------
+    InputError
+        If the folder exists already, or can't be written.
+    """
+    rows, charts, record = bounce_rows(found), bounce_charts(found), found.bounces.record
+    with new_folder(directory, force=force) as folder:
+        write_csv(rows, list(rows[0]), folder / "bounces.csv")
+        (folder / SUMMARY).write_text(json.dumps(bounce_document(found), indent=2, allow_nan=False) + "\n", encoding="utf-8")
+        write_figures(charts, folder, figures)
+        headers, cells = impact_cells(found)
+        page = render_page(
+            __package__,
+            charts,
+            name=record.name,
+            status=f"{len(rows)} touches of a bouncing ball.",
+            fits=law_sentences(found),
+            doubts=found.doubts,
+            headers=headers,
+            rows=cells,
+            notes=[drop_sentence(found), contact_sentence(found), *other_sentences(found)],
+            source=record.source,
+            version=__version__,
+        )
+        (folder / "report.html").write_text(page, encoding="utf-8")
+    return Path(directory)

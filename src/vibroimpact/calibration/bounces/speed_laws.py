@@ -1,0 +1,121 @@
+"""Restitution as a function of the approach speed: constant, linear or a power, with intervals."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.calibration.fitting import half_width
+
+CONSTANT, LINEAR, POWER = "constant", "linear", "power"
+
+_ROUNDS = 200
+
+
+@dataclass(frozen=True)
+class SpeedLaw:
+    r"""A restitution as a function of the approach speed, fitted by generalized least squares.
+
+    Parameters
+    ----------
+    name : str
+        "constant", :math:`e = a`; "linear", :math:`e = a + b v`; or "power", :math:`e = a v^b`.
+    coefficients : array, shape (1,) or (2,)
+        a, and b; of the power law those for v in m/s.
+    covariance : array
+        Their covariance; of the power law that of :math:`\ln a` and b.
+    freedom : float
+        Degrees of freedom of the scatter; infinite if the uncertainty of the restitutions explains it.
+    scatter : float
+        Standard deviation of the restitutions about the function beside their own uncertainty; of the power law relative.
+    """
+
+    name: str
+    coefficients: Floats
+    covariance: Floats
+    freedom: float
+    scatter: float
+
+    def __call__(self, speed: Floats) -> Floats:
+        """Return the restitution at approach speeds [m/s]."""
+        first, second = (*self.coefficients, 0.0)[:2]
+        return np.asarray(first * speed**second if self.name == POWER else first + second * speed)
+
+    def intervals(self, confidence: float) -> Floats:
+        """Return the confidence intervals of the coefficients, (k, 2)."""
+        half = half_width(confidence, self.freedom) * np.sqrt(np.diag(self.covariance))
+        ends = np.stack([self.coefficients - half, self.coefficients + half], axis=1)
+        if self.name == POWER:
+            ends[0] = self.coefficients[0] * np.exp([-half[0], half[0]])
+        return ends
+
+    def band(self, speed: Floats, confidence: float) -> tuple[Floats, Floats]:
+        """Return the ends of the confidence band of the restitution at approach speeds [m/s]."""
+        power = self.name == POWER
+        design = np.vander(np.log(speed) if power else speed, len(self.coefficients), increasing=True)
+        half = half_width(confidence, self.freedom) * np.sqrt(np.einsum("ni,ij,nj->n", design, self.covariance, design))
+        value = self(speed)
+        return (value * np.exp(-half), value * np.exp(half)) if power else (value - half, value + half)
+
+
+def speed_laws(speed: Floats, restitution: Floats, covariance: Floats) -> list[SpeedLaw]:
+    """Return the fits to restitutions at several speeds: those with fewer coefficients than there are restitutions, the constant always.
+
+    Real bounces scatter by more than times are uncertain: to their covariance that of a scatter is added, such that the sum of squared
+    residuals is what is expected (Paule and Mandel 1982, J. Res. Natl. Bur. Stand. 87:377).
+
+    Parameters
+    ----------
+    speed, restitution : array, shape (n,)
+        Approach speeds [m/s] and restitutions.
+    covariance : array, shape (n, n)
+        Covariance of the restitutions.
+
+    Examples
+    --------
+    >>> speed = np.array([1.0, 2.0, 4.0, 8.0])
+    >>> [law.coefficients.round(6).tolist() for law in speed_laws(speed, 0.8 * speed**-0.25, 1e-6 * np.eye(4))][-1]
+    [0.8, -0.25]
+    """
+    found = [_fitted(CONSTANT, np.ones((len(speed), 1)), restitution, covariance)]
+    if len(speed) > 2 and np.ptp(speed) > 0.0:
+        found.append(_fitted(LINEAR, np.vander(speed, 2, increasing=True), restitution, covariance))
+        relative = covariance / np.outer(restitution, restitution)
+        power = _fitted(POWER, np.vander(np.log(speed), 2, increasing=True), np.log(restitution), relative)
+        found.append(power)
+    return found
+
+
+def _fitted(name: str, design: Floats, value: Floats, covariance: Floats) -> SpeedLaw:
+    freedom = len(value) - design.shape[1]
+
+    def fit(added: float) -> tuple[Floats, Floats, float]:
+        root = np.linalg.cholesky(covariance + added * np.eye(len(value)))
+        white, target = np.linalg.solve(root, design), np.linalg.solve(root, value)
+        inverse = np.linalg.pinv(white)
+        solution = inverse @ target
+        return solution, inverse @ inverse.T, float(np.sum((target - white @ solution) ** 2))
+
+    added = _where(lambda one: fit(one)[2] - freedom, float(np.var(value))) if freedom else 0.0
+    coefficients, spread, _ = fit(added)
+    if name == POWER:
+        coefficients = np.array([np.exp(coefficients[0]), coefficients[1]])
+    return SpeedLaw(name, coefficients, spread, freedom if added else np.inf, float(np.sqrt(added)))
+
+
+def _where(excess: Callable[[float], float], most: float) -> float:
+    """Return where a falling function of the added variance is zero; 0 if it is not above zero there."""
+    if excess(0.0) <= 0.0:
+        return 0.0
+    low, high = 0.0, most
+    while excess(high) > 0.0:
+        high *= 2.0
+    for _ in range(_ROUNDS):
+        middle = 0.5 * (low + high)
+        if not low < middle < high:
+            break
+        low, high = (middle, high) if excess(middle) > 0.0 else (low, middle)
+    return high

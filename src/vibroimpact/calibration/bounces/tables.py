@@ -1,0 +1,107 @@
+"""Rebounds as text, for the terminal and the page."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.calibration.bounces.rebounds import Rebounds
+from vibroimpact.calibration.bounces.speed_laws import CONSTANT, LINEAR, POWER, SpeedLaw
+from vibroimpact.calibration.report import Cells
+from vibroimpact.units.display import MISSING, column_texts, digits, fixed, text
+
+_MOST = 20
+"""Touches that are no bounces, told one by one."""
+
+_MOST_DECIMALS = 6
+
+
+def impact_cells(found: Rebounds) -> Cells:
+    """Return headers with units, and a row per impact."""
+    per_cent = f"{100.0 * found.confidence:g} %"
+    headers = [
+        ("Impact", ""),
+        ("Time", "s"),
+        ("Approach speed", "m/s"),
+        ("Separation speed", "m/s"),
+        ("Restitution", ""),
+        (f"Interval, {per_cent}", ""),
+    ]
+    decimals = decimals_of(found.deviation)
+    columns = [
+        [str(number + 1) for number in range(len(found.restitution))],
+        column_texts(found.bounces.time, 6),
+        column_texts(found.approach_speed),
+        column_texts(found.separation_speed),
+        [_fixed(value, decimals) for value in found.restitution],
+        [f"{_fixed(low, decimals)} to {_fixed(high, decimals)}" if math.isfinite(low) else MISSING for low, high in found.intervals],
+    ]
+    return headers, [list(row) for row in zip(*columns, strict=True)]
+
+
+def law_sentences(found: Rebounds) -> list[str]:
+    """Return the fits over the approach speed, a sentence each."""
+    return [_sentence(law, found) for law in found.laws]
+
+
+def drop_sentence(found: Rebounds) -> str:
+    """Return from how high the ball fell before the first touch."""
+    if found.height is not None:
+        return f"It fell by {text(found.height, 'm')} before the first touch, as given."
+    about = text(found.drop_height, "m", 3)
+    return (
+        f"It fell by about {about} before the first touch, if it bounced there with the mean restitution; the height, if it is known, "
+        "gives the restitution of that impact."
+    )
+
+
+def contact_sentence(found: Rebounds) -> str:
+    """Return what a contact changes, whose duration is part of the time between touches."""
+    contact, flight = found.bounces.contact, found.bounces.flight
+    if contact:
+        return f"Flights are the times between touches less {text(contact, 's')} of contact."
+    shift = 1e-4 * float(np.max((1.0 - found.bounces.restitution) / flight[:-1]))
+    return f"Contacts count as instants: each 0.1 ms that they last makes a restitution too large, by {digits(shift, 2)} at most."
+
+
+def other_sentences(found: Rebounds) -> list[str]:
+    """Return what else is heard."""
+    pairs = list(zip(found.bounces.others, found.bounces.reasons, strict=True))
+    told = [f"Not a bounce, at {text(float(time), 's')}: {reason}." for time, reason in pairs[:_MOST]]
+    return told if len(pairs) <= _MOST else [*told, f"{len(pairs) - _MOST} others are no bounces either; summary.json has them."]
+
+
+def decimals_of(deviation: Floats) -> int:
+    """Return the decimals with which restitutions are told: two digits of the smallest uncertainty, six at most.
+
+    Examples
+    --------
+    >>> decimals_of(np.array([np.nan, 0.0012, 0.03]))
+    4
+    """
+    least = float(np.nanmin(deviation))
+    return int(np.clip(1 - math.floor(math.log10(least)), 3, _MOST_DECIMALS)) if least > 0.0 else _MOST_DECIMALS
+
+
+def _sentence(law: SpeedLaw, found: Rebounds) -> str:
+    ends = law.intervals(found.confidence)
+    first, *second = [f"{digits(value, 4)} ({_range(low, high)})" for value, (low, high) in zip(law.coefficients, ends, strict=True)]
+    said = {
+        CONSTANT: f"Constant: e = {first}",
+        LINEAR: f"Linear: e = a + b v with a = {first} and b = {''.join(second)} s/m",
+        POWER: f"Power: e = a v^b with a = {first}, v in m/s, and b = {''.join(second)}",
+    }[law.name]
+    if not law.scatter:
+        return f"{said}."
+    scatter = f"{digits(100.0 * law.scatter, 2)} %" if law.name == POWER else digits(law.scatter, 2)
+    return f"{said}; the restitutions scatter by {scatter} about it."
+
+
+def _range(low: float, high: float) -> str:
+    return f"{digits(low, 4)} to {digits(high, 4)}" if math.isfinite(low) and math.isfinite(high) else "interval unknown"
+
+
+def _fixed(value: float, decimals: int) -> str:
+    return fixed(float(value), decimals) if math.isfinite(value) else MISSING

@@ -1,0 +1,208 @@
+"""Bounces found in a record, with their times and restitutions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from math import comb
+
+import numpy as np
+
+from vibroimpact.arrays import Floats, Indices
+from vibroimpact.errors import InputError
+from vibroimpact.signals.bounces.alignment import aligned
+from vibroimpact.signals.bounces.chain import HIGHEST, LOWEST, longest_chain
+from vibroimpact.signals.bounces.touches import FEWEST, WINDOW, Touches, find_touches, without_hum
+from vibroimpact.signals.feature_table import feature_table
+from vibroimpact.signals.record import Record
+
+_CLEAR = 3.0
+"""Rise, in thresholds, from which on a touch is as clear as can be."""
+
+_JITTER = 2e-4
+"""Standard deviation of the times that touches are found at before they are aligned [s]."""
+
+_DOUBLE = 6e-3
+"""Time after a bounce in which a further touch is a second contact of it [s]."""
+
+_OVERDRIVEN = 0.01
+"""Part of clipped samples above which a record is refused."""
+
+_CHANCE = 0.1
+"""Expected number of such chains among as many touches at random times, from which on a chain is refused."""
+
+_BETWEEN = 3
+"""Bounces of which each other touch between them needs so many."""
+
+_TIGHT = 0.005
+"""Least scatter of the logarithm of the restitution that counts for that."""
+
+
+@dataclass(frozen=True)
+class Bounces:
+    """Bounces of a ball in a record.
+
+    Parameters
+    ----------
+    record : Record
+        The record.
+    time : array, shape (n,)
+        When the ball touches, n >= 3 [s].
+    deviation : array, shape (n,)
+        Standard deviations of these times, of differences between them, from noise and differences in sound [s].
+    peak : array, shape (n,)
+        The value of largest magnitude within 2 ms of each, in the unit of the record.
+    others : array, shape (m,)
+        Times of touches that are no bounces of this ball [s].
+    reasons : tuple of str
+        Why each of those is none.
+    doubts : tuple of str
+        Warnings, as sentences.
+    contact : float, default 0
+        Duration of the contacts, which is no part of the flights between the touches [s].
+    """
+
+    record: Record
+    time: Floats
+    deviation: Floats
+    peak: Floats
+    others: Floats
+    reasons: tuple[str, ...]
+    doubts: tuple[str, ...] = ()
+    contact: float = 0.0
+
+    @property
+    def flight(self) -> Floats:
+        """Durations of the flights: times between successive touches, less that of a contact, (n - 1,) [s]."""
+        return np.diff(self.time) - self.contact
+
+    @property
+    def restitution(self) -> Floats:
+        r"""Restitution of each impact but the first and the last, :math:`e_n = T_n / T_{n-1}` of the flights, (n - 2,)."""
+        return self.flight[1:] / self.flight[:-1]
+
+    @property
+    def by_time(self) -> Floats:
+        """Derivatives of the restitutions with respect to the times, (n - 2, n) [1/s]."""
+        slope = np.zeros((len(self.time) - 2, len(self.time)))
+        row = np.arange(len(slope))
+        before = self.flight[:-1]
+        slope[row, row] = self.restitution / before
+        slope[row, row + 1] = -(1.0 + self.restitution) / before
+        slope[row, row + 2] = 1.0 / before
+        return slope
+
+    @property
+    def covariance(self) -> Floats:
+        """Covariance of the restitutions, (n - 2, n - 2): successive ones share two times."""
+        noise = self.by_time * self.deviation
+        return np.asarray(noise @ noise.T)
+
+
+def find_bounces(record: Record, contact: float = 0.0) -> Bounces:
+    """Return the bounces of a ball in a record of sound, of a vibration or of a force.
+
+    Touches are sudden rises of the power above 500 Hz. Those are bounces whose intervals shrink by a factor that changes slowly; clicks,
+    second contacts and other noises are told as others. Bounces that are too quiet at the end, and what comes before the first that is
+    heard, may be missing. The times are refined by what the sounds have in common.
+
+    Parameters
+    ----------
+    record : Record
+        The record.
+    contact : float, default 0
+        Duration of the contacts [s], if it is known; without it restitutions are too large by :math:`1 - e` times the contact over the
+        flight.
+
+    Raises
+    ------
+    InputError
+        If it holds no bounces, or can't tell: the message says why.
+
+    References
+    ----------
+    Bernstein, A. D. (1977). Listening to the coefficient of restitution. Am. J. Phys. 45, 41-44.
+
+    Examples
+    --------
+    >>> time = np.arange(48000) / 48e3
+    >>> def tap(at): return np.where(time >= at, np.exp(-(time - at).clip(0.0) / 1e-3) * np.sin(2e4 * (time - at)), 0.0)
+    >>> found = find_bounces(Record("microphone", tap(0.1) + tap(0.4) + tap(0.43) + tap(0.55) + tap(0.625), 48e3, "Pa"))
+    >>> found.restitution.round(4).tolist(), found.others.round(3).tolist()
+    ([0.5, 0.5], [0.43])
+    """
+    doubts = _checked(record)
+    value = without_hum(replace(record, value=record.value / np.abs(record.value).max()))
+    found = find_touches(value, record.rate)
+    heard = np.flatnonzero(~found.click)
+    if len(heard) < 3:
+        said = ("no touch is", "one touch is", "two touches are")[len(heard)]
+        raise InputError(f"{said} heard in it, and a restitution takes three: two times of flight")
+    time = found.sample / record.rate
+    chain = heard[longest_chain(time[heard], np.minimum(found.rise[heard] / found.threshold, _CLEAR), _JITTER)]
+    if not len(chain):
+        words = f"the times between {len(heard)} touches do not shrink as those of bounces do, by {LOWEST:g} to {HIGHEST:g} each"
+        raise InputError(f"it holds no bounces: {words}")
+    others = np.setdiff1d(np.arange(len(time)), chain)
+    reasons = _reasons(found, time, chain, others)
+    strange = time[others[[reason == _ELSE for reason in reasons]]]
+    doubts += _chance_doubts(time[chain], strange, record.duration)
+    at, deviation = aligned(value, record.rate, found.sample[chain])
+    if not np.all(np.diff(at) > max(contact * record.rate, 0.0)):
+        raise InputError(f"the last bounces follow each other within {'the contact' if contact else 'their sounds'}; end the record sooner")
+    window = max(FEWEST, round(WINDOW * record.rate))
+    sounds = [record.value[sample : sample + window] for sample in found.sample[chain]]
+    peak = np.array([sound[np.argmax(np.abs(sound))] for sound in sounds])
+    start, rate = record.start, record.rate
+    return Bounces(record, start + at / rate, deviation / rate, peak, start + time[others], reasons, doubts, contact)
+
+
+_ELSE = "its time is not that of a bounce"
+
+
+def _checked(record: Record) -> tuple[str, ...]:
+    """Return doubts about a record in which bounces are to be sought; raise InputError if they can't be."""
+    value = record.value
+    if not len(value):
+        raise InputError("it has no samples")
+    if not np.isfinite(value).all():
+        raise InputError("a sample is not a finite number")
+    if value.min() == value.max():
+        raise InputError("it is silent: all samples are the same")
+    shortest = 3 * max(FEWEST, round(WINDOW * record.rate))
+    if len(value) < shortest:
+        raise InputError(f"it is too short: it has {len(value)} samples, and at {record.rate:g} Hz three touches take {shortest} at least")
+    clipped = float(feature_table([value], record.rate, ["clipped_part"])["clipped_part"][0])
+    if clipped > _OVERDRIVEN:
+        part = f"{100.0 * clipped:.2g} % of its samples are at its largest or lowest value"
+        raise InputError(f"it is clipped: {part}; record it at a lower gain")
+    return (f"{100.0 * clipped:.2g} % of the samples are clipped, at the largest or the lowest value",) if clipped else ()
+
+
+def _reasons(found: Touches, time: Floats, chain: Indices, others: Indices) -> tuple[str, ...]:
+    """Return why each of the others is no bounce."""
+    since = time[others] - time[chain][np.clip(np.searchsorted(time[chain], time[others]) - 1, 0, None)]
+    return tuple(
+        "it is a click, of a few samples" if found.click[one] else "it is a second contact" if 0.0 < late <= _DOUBLE else _ELSE
+        for one, late in zip(others, since, strict=True)
+    )
+
+
+def _chance_doubts(chain: Floats, strange: Floats, duration: float) -> tuple[str, ...]:
+    """Return doubts whether a chain is one; raise InputError if touches at random times, or those of music, would have such chains too."""
+    heard, why = len(chain) + len(strange), ""
+    if len(chain) == 3:
+        if not len(strange):
+            return ("there are three touches alone: nothing tells whether they are bounces of one ball",)
+        why = "as any three might; among other touches it takes four"
+    else:
+        interval = np.diff(chain)
+        change = np.diff(np.log(interval[1:] / interval[:-1]))
+        scatter = float(np.hypot(np.sqrt(np.mean(change**2)), _TIGHT))
+        hit = -np.expm1(-heard / duration * 4.0 * scatter * interval[2:])
+        if comb(heard, 3) * float(np.prod(hit)) > _CHANCE:
+            why = "as some would of as many at random times"
+        elif _BETWEEN * np.count_nonzero((strange > chain[0]) & (strange < chain[-1])) > len(chain):
+            why = "and too many lie between them"
+    if why:
+        raise InputError(f"it holds no series of bounces: of its {heard} touches {len(chain)} at most come in intervals that shrink, {why}")
+    return ()

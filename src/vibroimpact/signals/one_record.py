@@ -1,0 +1,53 @@
+"""One channel of a file of records."""
+
+from __future__ import annotations
+
+from itertools import islice
+from os import PathLike
+
+from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.files.reading import with_path
+from vibroimpact.shown import shown
+from vibroimpact.signals.read_records import read_records
+from vibroimpact.signals.record import Record
+
+_TOLD = 10
+"""Channels that a message names at most."""
+
+
+def one_record(path: str | PathLike[str], channel: str | None = None) -> Record:
+    """Return the record of a channel of a file, or of a folder; of its only one without a name.
+
+    Parameters
+    ----------
+    path : path
+        The file, as `read_records` reads it.
+    channel : str, optional
+        Name of the channel.
+
+    Raises
+    ------
+    InputError
+        If the file can't be read, there is no such channel, or there are several records without a name or of that name.
+    """
+    names, found = [], []
+    for record in read_records(path):
+        names.append(record.name)
+        if channel in (None, record.name):
+            found.append(record)
+        if len(found) > 1:
+            break
+    if not found:
+        every = list(dict.fromkeys(names))
+        there = f"it has {_listed(every)}.{did_you_mean(channel or '', every)}" if every else "it has no record"
+        raise with_path(path, InputError(f"there is no channel {shown(channel)}; {there}" if channel is not None else there))
+    if len(found) > 1:
+        every = list(dict.fromkeys(record.name for record in islice(read_records(path), _TOLD + 1) if channel in (None, record.name)))
+        several = f"it has several channels, {_listed(every)}; name one by channel"
+        one = f"several signals have the name {shown(every[0])}; take a file with one of them"
+        raise with_path(path, InputError(several if len(every) > 1 else one))
+    return found[0]
+
+
+def _listed(names: list[str]) -> str:
+    return ", ".join(shown(name) for name in names[:_TOLD]) + (" and more" if len(names) > _TOLD else "")
