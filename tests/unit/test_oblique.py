@@ -510,6 +510,17 @@ def case_of(**changes: Any) -> vi.Case:
     return vi.read_case(on_elastic(**changes))
 
 
+@pytest.mark.parametrize("spin", [30.0, 100.0])
+def test_the_ledger_of_a_spin_about_the_normal_closes_on_a_plate_that_vibrates(spin: float) -> None:
+    """Soft and slow, so that the slip ends within the contact: the moment of twisting changes fast there."""
+    soft = {"radius": "20 mm", "material": {"density": 2600, "youngs_modulus": "2 GPa", "poissons_ratio": 0.3}}
+    drop = {"velocity": [0.5, -0.2, -1.1], "spin": [10, -20, spin]}
+    contact = {"law": "thornton", "yield_pressure": "1 GPa", "friction": {"law": "mindlin", "coefficient": 0.3}}
+    plate = {**ELASTIC_PLATE, "size": ["400 mm", "300 mm", "10 mm"], "modes": 12, "supports": "simply-supported", "damping": 0.0}
+    response = vi.simulate(case_of(sphere=soft, plate=plate, drop=drop, contact=contact, run={"impacts": 1}))
+    assert response.energy["closure_relative"] < 1e-9
+
+
 def test_an_oblique_drop_on_a_plate_that_vibrates(tmp_path: Path) -> None:
     """Each impact is where the sphere is by then; history, ledger, sensors and folder have both its motion and the plate's."""
     response = vi.simulate(case_of())

@@ -99,7 +99,8 @@ class RubbedStretch:
 
     `start`, `end`: at its ends. `force`: of friction, against the slip [N], and `slip`: velocity of the contact point of the sphere past
     the surface [m/s], at the nodes (2, N); where moments act also these [N m], and the spin past the surface [rad/s] (5, N).
-    `surface_work`: work of friction on the body below [J]. `imbalance`: error of the balance of energy of the contact point [J].
+    `surface_work`: work of friction on the body below [J]. `imbalance`: error of the balances of energy of the contact point and of
+    the spin [J].
     """
 
     rule: Rule
@@ -248,16 +249,27 @@ class FrictionForces:
 
     def _spins(self, force: Floats) -> Floats:
         """Return the spins of the spheres at the nodes [rad/s] (B, 3, N), under friction forces and moments."""
+        return np.asarray(self.spin[:, :, None] - self.length[:, None, None] * (self._slowed_spins(force) @ self.basis.rule.integral.T))
+
+    def _slowed_spins(self, force: Floats) -> Floats:
+        """Return by how much friction forces and moments slow the spins [rad/s^2] (B, 3, N)."""
         slowed = force[:, 2:] / self.inertia[:, None, None]
         slowed[:, :2] += self.turn[:, None, None] * force[:, :2]
-        return np.asarray(self.spin[:, :, None] - self.length[:, None, None] * (slowed @ self.basis.rule.integral.T))
+        return np.asarray(slowed)
+
+    def _spin_imbalances(self, spins: Floats) -> Floats:
+        """Return the error of the balance of energy of the spins, from these at the nodes (B, 3, N): [J] (B,)."""
+        slowed, integral = self._slowed_spins(self.force), self.length[:, None] * self.basis.rule.integral[-1]
+        change = -np.einsum("bkn,bn->bk", slowed, integral)
+        gain = (change * (self.spin + 0.5 * change)).sum(axis=1)
+        return np.asarray(self.inertia * (gain + np.einsum("bkn,bkn,bn->b", slowed, spins, integral)))
 
     def stretches(self, normal: Floats) -> list[RubbedStretch]:
         """Return the friction through the stretches, under the normal forces at the nodes [N] (B, N)."""
         rule, across, slowed = self.basis.rule, self.length[:, None, None], self._slowed
         velocity, below = self._velocities(), self._surfaces(normal, self.force, "rate")
         own = np.append(velocity, self._spins(self.force), axis=1) if len(self.force[0]) > 2 else velocity
-        slips = own + below
+        slips, of_spins = own + below, self._spin_imbalances(own[:, 2:]) if len(own[0]) > 2 else np.zeros(len(own))
         time = across[:, :, 0] * rule.time[-1]
         moved = (self.velocity + 0.5 * self.pull * time) * time - across[:, :, 0] ** 2 * (slowed @ rule.integral_twice[-1])
         found = []
@@ -276,7 +288,8 @@ class FrictionForces:
             )
             gain = 0.5 * (end.velocity - start.velocity) @ (end.velocity + start.velocity) - start.pull @ moved[number]
             lost = length * float(rule.integral[-1] @ (start.mass * slowed[number] * velocity[number]).sum(axis=0))
-            stretch = RubbedStretch(rule, length, start, end, force, slip, given, float(start.mass * gain) + lost)
+            imbalance = abs(float(start.mass * gain) + lost) + abs(float(of_spins[number]))
+            stretch = RubbedStretch(rule, length, start, end, force, slip, given, imbalance)
             if len(force) > 2:
                 turned, way = (part[:, 0] for part in stretch.turned(self.length[number : number + 1]))
                 stretch = replace(stretch, end=replace(end, spin=own[number, 2:, -1], turned=turned, turned_way=way))
