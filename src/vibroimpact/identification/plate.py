@@ -163,9 +163,7 @@ def plate_of(case: CaseTable, window: float, frequency_error: float = 0.0, progr
     if case.plate.model == "rigid":
         raise InputError('the plate is rigid, so that its points do not move; give it model = "elastic"', "plate.model")
     if case.plate.motion is not None:
-        raise InputError(
-            "sensors on a plate that moves see its motion too; only an impact on a plate at rest is identified", "plate.motion"
-        )
+        raise InputError("only an impact on a plate that is at rest before it is identified; leave this out", "plate.motion")
     if not case.sensors:
         raise InputError("the case has no sensors; say where those of the records are", "sensors")
     if isinstance(case.plate.mesh, BroughtMeshTable) and case.plate.mesh.contact:

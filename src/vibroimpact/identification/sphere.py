@@ -119,7 +119,7 @@ def fit_sphere(plate: Plate, measured: Measured, start: Candidate, place: Place 
         noise = noise * np.sqrt(np.mean(left**2, axis=1))
         fit = gauss_newton(lambda given: weighted(given, noise), fit.parameters, most)
     found = _explained(plate, measured, fit.parameters * np.append(np.ones(_FITTED), prior))
-    scale = max(1.0, float(np.mean((found.left / noise[:, None]) ** 2)))
+    scale = float(fit.residual @ fit.residual) / (measured.value.size - _FITTED)  # what the prior adds counts as data
     covariance, half = scale * fit.covariance, np.array(plate.half)
     told = np.ix_([2, 3, _FITTED], [2, 3, _FITTED])  # radius, speed and c
     of_force = found.force_slopes * [1.0, 1.0, prior[0]]
