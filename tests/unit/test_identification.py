@@ -132,7 +132,7 @@ def test_the_marginal_likelihood_is_that_of_the_records() -> None:
 def test_force_place_size_and_speed_at_40_decibels() -> None:
     """Simulated with twice the modes of the model: largest force 5 %, impulse 2 %, place half a thickness."""
     within = []
-    for number, (radius, speed, place) in enumerate(drawn(4, seed=11)):
+    for number, (radius, speed, place) in enumerate(drawn(10, seed=11)):
         impact = an_impact(radius, speed, place)
         found = identify_on(plate(), records_of(impact, 40.0, seed=number))
         told = found.estimates
@@ -216,6 +216,7 @@ def test_records_that_are_refused(change: Any, words: str) -> None:
         ({"drop": {"speed": 2.0, "angle": 0.2}}, "along the normal alone|is identified"),
         ({"sensors": [{**SMALL["sensors"][0], "filter": "none"}, SMALL["sensors"][1]]}, "anti-alias"),
         ({"contact": {"law": "hertz", "finite_sphere": True}}, "size of the sphere"),
+        ({"sensors": [{**SMALL["sensors"][0], "microphone": {"distance": 0.2}}, SMALL["sensors"][1]]}, "hears the whole plate|is in m/s2"),
     ],
 )
 def test_cases_that_are_refused(changed: dict[str, Any], words: str) -> None:

@@ -18,6 +18,7 @@ from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.sensors.antialias import FINENESS, HALF_LENGTH, antialias_of
 from vibroimpact.dynamics.sensors.filtered_chain import add_responses, filtered_chain
+from vibroimpact.dynamics.sensors.instruments.microphone import Microphone
 from vibroimpact.dynamics.sensors.measuring_chain import MeasuringChain, measuring_chain
 from vibroimpact.dynamics.sensors.sensor import Sensor
 from vibroimpact.dynamics.vibrating.bodies import bases_of_plate
@@ -91,11 +92,13 @@ def place_responses(problem: Problem, sensors: Sequence[Sensor], duration: float
     Raises
     ------
     InputError
-        If the rates differ, or a sensor has no anti-alias filter.
+        If the rates differ, or a sensor is a microphone or has no anti-alias filter.
     """
     if len({sensor.rate for sensor in sensors}) != 1:
         raise InputError("the sensors have different rates; identify with sensors of one rate", "sensors")
     for sensor in sensors:
+        if isinstance(sensor.instrument, Microphone):
+            raise InputError(f'sensor "{sensor.name}": a microphone hears the whole plate; identify with sensors on it', "sensors")
         if sensor.filter == "none":
             words = "without an anti-alias filter frequencies above half the rate fold into the band, and can't be told from those in it"
             raise InputError(f'sensor "{sensor.name}": {words}; state its filter', "sensors")

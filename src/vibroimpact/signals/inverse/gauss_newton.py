@@ -85,7 +85,7 @@ def gauss_newton(
 
 
 def _covariance(slopes: Floats) -> Floats:
-    """Return the inverse of the normal matrix, of columns scaled alike; along what the data do not tell it is huge."""
+    """Return the inverse of the normal matrix, by columns scaled alike; zero for a parameter that the model does not depend on."""
     scale = np.linalg.norm(slopes, axis=0)
     scale = np.where(scale > 0.0, scale, 1.0)
     return np.asarray(np.linalg.pinv((slopes / scale).T @ (slopes / scale), rcond=1e-13, hermitian=True) / np.outer(scale, scale))
