@@ -21,6 +21,7 @@ FLOORS = {  # top to bottom: what a floor is, its colour, its rooms and what the
         {
             "runs": "one case: folder,\nreport, animation",
             "comparison": "one case under\nseveral laws",
+            "identification": "force, place, size\nand speed from records",
             "calibration": "parameters from\nmeasurements",
             "studies": "many drops,\ndataset, report",
             "bounds": "what no classifier\ncan tell",

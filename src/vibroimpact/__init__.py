@@ -100,6 +100,10 @@ if TYPE_CHECKING:
     from vibroimpact.exporting.export_format import export_formats as export_formats
     from vibroimpact.exporting.export_result import export_result as export_result
     from vibroimpact.figures import save_figures as save_figures
+    from vibroimpact.identification.folder import save_identification as save_identification
+    from vibroimpact.identification.identify import Identification as Identification
+    from vibroimpact.identification.identify import identify as identify
+    from vibroimpact.identification.identify import identify_force as identify_force
     from vibroimpact.laws.curves import law_chart as law_chart
     from vibroimpact.materials import Material as Material
     from vibroimpact.materials import find_material as find_material
@@ -177,6 +181,7 @@ _HOME = {
     "ForceSensor": "dynamics.sensors.instruments.force_sensor",
     "FrictionCalibration": "calibration.friction.calibrate",
     "Geophone": "dynamics.sensors.instruments.geophone",
+    "Identification": "identification.identify",
     "InputError": "errors",
     "Material": "materials",
     "LabelledSignals": "recognition.labelled_signals",
@@ -238,6 +243,8 @@ _HOME = {
     "find_packets": "signals.packets",
     "friction_laws": "contact.registry",
     "from_onset": "signals.onset",
+    "identify": "identification.identify",
+    "identify_force": "identification.identify",
     "identify_local_element": "dynamics.local_element",
     "impacts_in_bounces": "calibration.bounce_record",
     "impacts_in_force": "calibration.force_record",
@@ -283,6 +290,7 @@ _HOME = {
     "save_charts": "charts.files",
     "save_comparison": "comparison.folder",
     "save_figures": "figures",
+    "save_identification": "identification.folder",
     "save_modes": "modes.folder",
     "save_rebounds": "calibration.bounces.folder",
     "save_recognised": "recognition.apply",

@@ -34,7 +34,7 @@ LAYERS = [
     # what people do, each whole
     {"modes"},
     {"runs"},
-    {"comparison", "calibration", "studies", "laws"},
+    {"comparison", "calibration", "studies", "laws", "identification"},
     {"bounds"},
     {"recognition"},
     {"exporting", "paper"},

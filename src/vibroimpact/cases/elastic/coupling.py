@@ -285,7 +285,7 @@ def couple_bodies(
         models=coupling.models,
     )
     if problem.oblique is not None and "plate" in coupling.modes:
-        found = replace(found, at_place=partial(_at_place, case, found))
+        found = replace(found, at_place=partial(at_place, case, found))
     local = case.contact.local
     if local.local_compliance != "identified":
         return found
@@ -303,7 +303,7 @@ def couple_bodies(
     return replace(found, local_element=element, facts={**coupling.facts, **facts})
 
 
-def _at_place(case: CaseTable, problem: Problem, place: tuple[float, float]) -> Problem:
+def at_place(case: CaseTable, problem: Problem, place: tuple[float, float]) -> Problem:
     """Return the problem of a case with the contact at another place of its plate [m]."""
     coupling = coupling_of(case.model_copy(update={"drop": case.drop.model_copy(update={"position": place})}))
     plate = replace(problem.plate, modes=coupling.modes["plate"], rigid=coupling.rigid)

@@ -58,18 +58,36 @@ class FilteredChain:
 
     def add(self, values: Floats, port: int, times: Floats, impulses: Floats, last: int) -> None:
         """Add the response to impulses at a port [N s] to `values` (S, samples), which begin at time zero, for samples before `last`."""
-        whole = self.answers[port]
-        first, spread = _spread_on_grid(times * (self.rate * FINENESS), impulses)
-        width = len(spread)
-        begin = max(0, -((HALF_LENGTH * FINENESS - first) // FINENESS))  # the first sample whose kernel reaches the impulses
-        end = min(last, values.shape[1])
-        if end <= begin:
-            return
-        at = begin * FINENESS - (first + width - 1) + HALF_LENGTH * FINENESS  # index of the last impulse point in the responses
-        before, after = max(0, -at), (end - 1 - begin) * FINENESS + at + width - whole.shape[1]
-        answers = np.pad(whole, ((0, 0), (before, max(0, after))))
-        answers = answers[:, at + before : at + before + (end - 1 - begin) * FINENESS + width]
-        values[:, begin:end] -= _correlate(answers, spread[::-1])
+        add_responses(values, self.answers[port], self.rate, times, -impulses, last)
+
+
+def add_responses(values: Floats, whole: Floats, rate: float, times: Floats, impulses: Floats, last: int) -> None:
+    """Add responses to impulses.
+
+    Parameters
+    ----------
+    values : array, shape (S, samples)
+        Samples from time zero on, to which is added.
+    whole : array, shape (S, points)
+        Responses to a unit impulse, `FINENESS` points per sample, from `HALF_LENGTH` samples before it on.
+    rate : float
+        Samples per second [Hz].
+    times, impulses : array, shape (n,)
+        The impulses and their times [s].
+    last : int
+        Samples before this one are added to.
+    """
+    first, spread = _spread_on_grid(times * (rate * FINENESS), impulses)
+    width = len(spread)
+    begin = max(0, -((HALF_LENGTH * FINENESS - first) // FINENESS))  # the first sample whose kernel reaches the impulses
+    end = min(last, values.shape[1])
+    if end <= begin:
+        return
+    at = begin * FINENESS - (first + width - 1) + HALF_LENGTH * FINENESS  # index of the last impulse point in the responses
+    before, after = max(0, -at), (end - 1 - begin) * FINENESS + at + width - whole.shape[1]
+    answers = np.pad(whole, ((0, 0), (before, max(0, after))))
+    answers = answers[:, at + before : at + before + (end - 1 - begin) * FINENESS + width]
+    values[:, begin:end] += _correlate(answers, spread[::-1])
 
 
 def filtered_chain(chain: MeasuringChain, rate: float, beyond: float) -> FilteredChain:

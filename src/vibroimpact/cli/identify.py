@@ -1,0 +1,99 @@
+"""The command `identify`, which tells from records what hit the plate, where and how."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from vibroimpact.cli.shared import (
+    CaseArgument,
+    Changes,
+    Figures,
+    Force,
+    Json,
+    app,
+    console,
+    exit_on_interrupt,
+    say,
+    settings_of,
+    show,
+    stem,
+)
+from vibroimpact.errors import InputError
+
+
+@app.command()
+def identify(
+    case: CaseArgument,
+    records: Annotated[
+        list[Path], typer.Argument(metavar="RECORD...", help="Records of one fall: CSV, WAV, UFF, NetCDF-4 or the folder of a run.")
+    ],
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", metavar="DIR", help="The folder to make; by default CASE-identified.")
+    ] = None,
+    place: Annotated[
+        str | None, typer.Option("--place", metavar="X,Y", help='Where the force was, such as "60 mm, 40 mm"; by default it is sought.')
+    ] = None,
+    window: Annotated[
+        str, typer.Option("--window", metavar="TIME", help="Time from first touch on that is used; it ends before the next impact.")
+    ] = "5 ms",
+    frequency_error: Annotated[
+        float,
+        typer.Option(
+            "--frequency-error", metavar="PART", help="How far the plate's frequencies may be off, beside the mesh: 0.01 for 1 %."
+        ),
+    ] = 0.0,
+    changes: Changes = None,
+    figures: Figures = False,
+    force: Force = False,
+    as_json: Json = False,
+) -> None:
+    """Tell from records of sensors what hit the plate: force, place, size and speed, with intervals.
+
+    The case gives the plate, the sensors, which have the names of the records, and the material of the sphere.
+    """
+    from vibroimpact.cases.reader import load_case
+    from vibroimpact.identification.document import summary_of_identification
+    from vibroimpact.identification.folder import save_identification
+    from vibroimpact.identification.identify import identify as identified
+    from vibroimpact.identification.text import identification_summary
+    from vibroimpact.report.progress import patient_progress
+    from vibroimpact.results.folder import check_free
+    from vibroimpact.signals.read_records import read_records
+    from vibroimpact.units.reading import to_si
+
+    found = load_case(case, settings_of(changes))
+    target = Path(f"{stem(case)}-identified") if output is None else output
+    check_free(target, force=force)
+    where = None if place is None else _place_in(place)
+    length = to_si(window, "s")
+    heard = [record for path in records for record in read_records(path)]
+    with exit_on_interrupt():
+        with patient_progress("identifying", console(err=as_json)) as progress:
+            told = identified(found, heard, place=where, window=length, frequency_error=frequency_error, progress=progress)
+        folder = save_identification(told, target, force=force, figures=("png",) if figures else ())
+    show(
+        lambda: {"folder": str(folder), **summary_of_identification(told)},
+        lambda: identification_summary(told),
+        as_json=as_json,
+    )
+    say(f"wrote {folder / 'report.html'}", err=as_json)
+
+
+def _place_in(text: str) -> tuple[float, float]:
+    """Return x and y in a text, in metres.
+
+    Examples
+    --------
+    >>> _place_in("60 mm, 40 mm")
+    (0.06, 0.04)
+    """
+    from vibroimpact.units.reading import to_si
+
+    parts = [part.strip() for part in text.split(",")]
+    if len(parts) != 2 or not all(parts):
+        raise InputError(f'--place "{text}": give x and y, separated by a comma, such as "60 mm, 40 mm"')
+    x, y = (to_si(part, "m") for part in parts)
+    return x, y

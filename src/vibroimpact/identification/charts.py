@@ -1,0 +1,67 @@
+"""The charts of an identification: the records and what explains them, the force, and the place."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vibroimpact.charts.axis import Axis
+from vibroimpact.charts.chart import Chart, Panel
+from vibroimpact.charts.marks import Band, Line, Map, Points
+from vibroimpact.identification.estimate import Estimate
+from vibroimpact.identification.identify import Identification
+from vibroimpact.shown import shortened, visible
+
+_HEIGHT = 3.2
+
+
+def identification_charts(found: Identification) -> list[Chart]:
+    """Return the charts `records`, `force` and, if the place was sought, `place`."""
+    return [_records_chart(found), _force_chart(found), *([_place_chart(found)] if found.search.misfit.size > 1 else [])]
+
+
+def _records_chart(found: Identification) -> Chart:
+    measured = found.measured
+    time = np.arange(measured.value.shape[1]) / measured.rate - found.sphere.parameters[4]
+    axis, rows = Axis("Time since first touch", "s"), []
+    for sensor, value, left in zip(measured.sensors, measured.value, found.sphere.residual, strict=True):
+        name = shortened(visible(sensor.name), 40)
+        lines = (Line(time, value, "record"), Line(time, value - left, "fit", "fit"), Line(time, left, "what is left", "mark line"))
+        rows.append((Panel(axis, Axis(sensor.quantity.capitalize(), sensor.unit), lines, name),))
+    caption = "Each record, the signal of the sphere that explains all of them, and the difference."
+    return Chart("records", "Records and fit", tuple(rows), caption, _HEIGHT)
+
+
+def _force_chart(found: Identification) -> Chart:
+    force, contact = found.force, found.sphere.force
+    touch = float(found.sphere.parameters[4])
+    time, spread = force.time - touch, Estimate(0.0, 1.0).interval[1] * force.found.deviation
+    marks = (
+        Band(time, force.found.force - spread, force.found.force + spread, "95 %", "band"),
+        Line(time, force.found.force, "from the records alone"),
+        Line(contact.time, contact.value, "contact of the sphere that was found", "fit"),
+    )
+    panel = Panel(Axis("Time since first touch", "s"), Axis("Contact force", "N"), marks)
+    caption = (
+        "The force from the records alone, with its 95 % band, and that of the sphere that was found under the contact law of the case."
+    )
+    return Chart("force", "Contact force", ((panel,),), caption, _HEIGHT)
+
+
+def _place_chart(found: Identification) -> Chart:
+    search, sensors = found.search, {sensor.name: sensor for sensor in found.measured.sensors}
+    there = [(one.name, one.position) for one in found.plate.case.sensors if one.name in sensors and not isinstance(one.position, str)]
+    names, at = [shortened(visible(name), 40) for name, _ in there], np.array([place for _, place in there]).reshape(-1, 2)
+    scale = Axis("Part of the records' energy that a pulse there explains", range=(0.0, 1.0))
+    places = np.array([found.sphere.parameters[:2].tolist(), *(one.place for one in search.candidates[1:])])
+    texts = ("the force", *("as likely" for _ in search.candidates[1:]))
+    marks = (
+        Map(search.x, search.y, 1.0 - search.misfit, scale),
+        Points(at[:, 0], at[:, 1], "sensors", "sensor", tuple(names)),
+        Points(places[:, 0], places[:, 1], "place of the force", "matched", texts),
+    )
+    panel = Panel(Axis("x on the plate", "m"), Axis("y on the plate", "m"), marks)
+    caption = (
+        "What the best pulse of force at each place explains of the records. Where it is high at several places, the records do not tell "
+        "them apart. The place is that of the final fit."
+    )
+    return Chart("place", "Place of the force", ((panel,),), caption, 4.6)

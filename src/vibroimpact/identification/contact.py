@@ -1,0 +1,68 @@
+"""The contact force of a sphere of some size and speed, as the case's contact law has it on the elastic plate."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.cases.rigid import rigid_problem
+from vibroimpact.cases.schema import CaseTable
+from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.simulate import simulate
+
+_NODES = np.polynomial.legendre.leggauss(96)
+"""Nodes on [-1, 1] and weights of the quadrature of a force."""
+
+
+@dataclass(frozen=True)
+class ContactForce:
+    """A contact force.
+
+    Parameters
+    ----------
+    time, impulse : array, shape (n,)
+        Times since first touch [s] and impulses [N s] that stand for it.
+    value : array, shape (n,)
+        The force at these times [N].
+    facts : array, shape (3,)
+        Largest force [N], impulse [N s] and duration [s].
+    """
+
+    time: Floats
+    impulse: Floats
+    value: Floats
+    facts: Floats
+
+
+def contact_forces(case: CaseTable, plate: Problem, radius: Floats, speed: Floats) -> list[ContactForce]:
+    """Return the contact forces of spheres.
+
+    Parameters
+    ----------
+    case : CaseTable
+        The case: material of the sphere, contact law.
+    plate : Problem
+        Its problem with the contact at a place.
+    radius, speed : array, shape (n,)
+        Radius [m] and approach speed [m/s] of each sphere.
+    """
+    sphere = case.sphere.model_copy(update={"radius": radius})
+    drop = case.drop.model_copy(update={"speed": speed, "height": None, "velocity": None, "air": None})
+    rigid = rigid_problem(case.model_copy(update={"sphere": sphere, "drop": drop}))
+    response = simulate(
+        replace(
+            plate, sphere=rigid.sphere, laws=rigid.laws, height=None, velocity=0.0, speed=speed, air=None, sensors=(), sensitivity=False
+        )
+    )
+    nodes, weights = _NODES
+    found = []
+    for number in range(len(radius)):
+        one = response.drop(number)
+        duration, peak = (float(one.impacts[name][0]) for name in ("duration_s", "max_force_N"))
+        time = 0.5 * duration * (1.0 + nodes)
+        value = one.at(time, ["force_N"])["force_N"]
+        impulse = 0.5 * duration * weights * value
+        found.append(ContactForce(time, impulse, value, np.array([peak, impulse.sum(), duration])))
+    return found

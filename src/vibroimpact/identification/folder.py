@@ -1,0 +1,67 @@
+"""Writes an identification as a folder: the force, the summary, the case and a report."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from os import PathLike
+from pathlib import Path
+
+import numpy as np
+import tomli_w
+
+from vibroimpact._version import __version__
+from vibroimpact.cases.build import resolved_case
+from vibroimpact.charts.figures_folder import write_figures
+from vibroimpact.identification.charts import identification_charts
+from vibroimpact.identification.document import HEADERS, identification_rows, summary_of_identification
+from vibroimpact.identification.estimate import Estimate
+from vibroimpact.identification.identify import Identification
+from vibroimpact.report.page import render_page
+from vibroimpact.results.csv_files import write_csv
+from vibroimpact.results.folder import SUMMARY, new_folder
+
+_COLUMNS = ["time_s", "force_N", "force_low_N", "force_high_N"]
+
+
+def save_identification(found: Identification, directory: str | PathLike[str], *, force: bool = False, figures: Sequence[str] = ()) -> Path:
+    """Write an identification atomically: `force.csv`, `summary.json`, `case.toml` and a report.
+
+    Parameters
+    ----------
+    found : Identification
+        The identification.
+    directory : path
+        The folder to create.
+    force : bool, default False
+        Replace an existing folder.
+    figures : sequence of str
+        Formats in which the charts are also written as files, into a folder `figures`: of "png", "svg" and "pdf".
+
+    Raises
+    ------
+    InputError
+        If the folder exists and may not be replaced, or it can't be written to.
+    """
+    with new_folder(directory, force=force) as folder:
+        recovered = found.force.found
+        spread = Estimate(0.0, 1.0).interval[1] * recovered.deviation
+        columns = (found.measured.start + found.force.time, recovered.force, recovered.force - spread, recovered.force + spread)
+        rows = [dict(zip(_COLUMNS, row, strict=True)) for row in np.stack(columns, axis=1).tolist()]
+        write_csv(rows, _COLUMNS, folder / "force.csv")
+        summary = summary_of_identification(found)
+        (folder / SUMMARY).write_text(json.dumps(summary, indent=2, allow_nan=False) + "\n", encoding="utf-8")
+        (folder / "case.toml").write_text(tomli_w.dumps(resolved_case(found.plate.case)), encoding="utf-8")
+        charts = identification_charts(found)
+        write_figures(charts, folder, figures)
+        page = render_page(
+            __package__,
+            charts,
+            name=found.plate.case.name or "An impact",
+            headers=list(HEADERS),
+            rows=identification_rows(found),
+            doubts=found.doubts,
+            version=__version__,
+        )
+        (folder / "report.html").write_text(page, encoding="utf-8")
+    return Path(directory)

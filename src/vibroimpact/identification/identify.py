@@ -1,0 +1,223 @@
+"""Identification: from records of sensors on a plate to the force, its place, and the size and speed of the sphere, with intervals."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from vibroimpact.bodies.rigid import rigid_sphere
+from vibroimpact.cases.schema import CaseTable
+from vibroimpact.errors import InputError
+from vibroimpact.identification.doubts import doubts_about
+from vibroimpact.identification.estimate import Estimate
+from vibroimpact.identification.force import Force, force_behind
+from vibroimpact.identification.measured import Measured, measured_of
+from vibroimpact.identification.plate import Place, Plate, plate_of
+from vibroimpact.identification.pulses import Search, search_place
+from vibroimpact.identification.sphere import SphereFit, fit_sphere
+from vibroimpact.signals.record import Record
+
+WINDOW = 5e-3
+"""Time from first touch on that is used unless another is given [s]."""
+_TOLD = 0.5
+"""Least product of band and duration for which a force has a shape that is heard."""
+_VAGUE = 0.5
+"""Standard deviation of the logarithm of the duration from which on it is not told."""
+
+
+@dataclass(frozen=True, eq=False)
+class Identification:
+    """What records tell of an impact.
+
+    Parameters
+    ----------
+    plate : Plate
+        The plate.
+    measured : Measured
+        The records around first touch.
+    search : Search
+        The search for the place.
+    sphere : SphereFit
+        The sphere whose contact explains the records.
+    force : Force
+        The force from the records alone, without a contact law.
+    estimates : dict of str to Estimate
+        What was found, by names that end in their units: `place_x_m`, `place_y_m`, `first_touch_s`, `radius_m`, `mass_kg`, `speed_m_s`,
+        `duration_s`, `max_force_N` and `impulse_N_s` from the contact that was fitted; `recovered_max_force_N` and
+        `recovered_impulse_N_s` from the records alone. A place that was given has no deviation.
+    doubts : tuple of str
+        What could not be told, and why.
+    """
+
+    plate: Plate
+    measured: Measured
+    search: Search
+    sphere: SphereFit
+    force: Force
+    estimates: dict[str, Estimate]
+    doubts: tuple[str, ...]
+
+
+def identify(
+    case: CaseTable,
+    records: Sequence[Record],
+    *,
+    place: Place | None = None,
+    window: float = WINDOW,
+    frequency_error: float = 0.0,
+    progress: Callable[[float], None] | None = None,
+) -> Identification:
+    """Return what records tell of an impact on an elastic plate.
+
+    Parameters
+    ----------
+    case : Case
+        The plate with its supports and damping, the sensors, the material of the sphere and the contact law. Radius, speed and place in
+        it are not used.
+    records : sequence of Record
+        Records of one fall, named after the sensors.
+    place : tuple of two floats, optional
+        x and y of the impact [m]; by default it is sought.
+    window : float, default 5e-3
+        Time from first touch on that is used [s]; it must end before the next impact.
+    frequency_error : float, default 0
+        Standard deviation of the relative error of the plate's frequencies, beside the estimated error of the mesh [-].
+    progress : callable, optional
+        Called with the fraction done while modes are computed.
+
+    Raises
+    ------
+    InputError
+        If the plate is rigid, a record has no sensor, is too short, or its sampling is too slow for the contact.
+
+    Notes
+    -----
+    First a Hertzian pulse is sought over the plate, its impulse, duration and instant being eliminated at each place. From there the case's
+    contact, computed on the elastic plate, is fitted to the records by least squares: place, radius, speed and first touch. Intervals
+    follow from what the fit leaves, with the errors of the plate's frequencies and of the modes left out as unknowns with a prior.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> plate = {"size": [0.3, 0.3, 0.02], "material": "steel", "model": "elastic", "modes": 20, "supports": "clamped", "damping": 0.01}
+    >>> case = vi.read_case({
+    ...     "sphere": {"radius": 0.02, "material": "rock-paper"}, "plate": plate, "drop": {"speed": 2.0, "position": [0.02, 0.01]},
+    ...     "contact": {"law": "hertz"}, "run": {"impacts": 1},
+    ...     "sensors": [{"name": "a", "position": [0.1, 0.03], "rate": 20e3}, {"name": "b", "position": [-0.05, 0.08], "rate": 20e3}],
+    ... })
+    >>> signals = vi.simulate(case).signals()
+    >>> found = identify(case, [Record(name, one.value, 20e3, "m/s2") for name, one in signals.items()])
+    >>> [round(found.estimates[name].value, 3) for name in ("radius_m", "speed_m_s", "place_x_m", "place_y_m")]
+    [0.02, 2.0, 0.02, 0.01]
+    """
+    plate = prepared_plate(case, window, frequency_error, progress)
+    return identify_on(plate, records, place)
+
+
+def prepared_plate(
+    case: CaseTable, window: float = WINDOW, frequency_error: float = 0.0, progress: Callable[[float], None] | None = None
+) -> Plate:
+    """Return the plate of a case for `identify_on`, which identifies many impacts on it.
+
+    Parameters
+    ----------
+    case, window, frequency_error, progress
+        As those of `identify`.
+
+    Raises
+    ------
+    InputError
+        If the plate is rigid, the case has no sensors, or a number is not allowed.
+    """
+    if not 0.0 < window <= 1.0:
+        raise InputError(f"a window of {window:g} s is not allowed; it is above 0 and at most 1 s")
+    if not 0.0 <= frequency_error < 0.5:
+        raise InputError(f"an error of frequencies of {frequency_error:g} is not allowed; 0.01 is 1 %, and it is below 0.5")
+    return plate_of(case, window, frequency_error, progress)
+
+
+def identify_on(plate: Plate, records: Sequence[Record], place: Place | None = None) -> Identification:
+    """Return what records tell of an impact on a plate.
+
+    Parameters
+    ----------
+    plate : Plate
+        The plate, from `prepared_plate`.
+    records, place
+        As those of `identify`.
+
+    Raises
+    ------
+    InputError
+        As `identify`.
+    """
+    measured, search = _started(plate, records, place)
+    sphere = fit_sphere(plate, measured, search.candidates[0], place)
+    force = force_behind(plate, measured, sphere.problem, float(sphere.parameters[4]), float(sphere.force.facts[2]))
+    estimates = _estimates(plate.case, measured, sphere, force)
+    doubts = doubts_about(plate, measured, search, sphere, place is None)
+    return Identification(plate, measured, search, sphere, force, estimates, tuple(doubts))
+
+
+def identify_force(case: CaseTable, records: Sequence[Record], place: Place, *, window: float = WINDOW) -> Force:
+    """Return the force behind records at a place that is known, from the records alone: no contact law is assumed.
+
+    Parameters
+    ----------
+    case, records, place, window
+        As those of `identify`.
+
+    Raises
+    ------
+    InputError
+        As `identify`.
+    """
+    plate = prepared_plate(case, window)
+    measured, search = _started(plate, records, place)
+    pulse = search.candidates[0]
+    return force_behind(plate, measured, plate.at(place), pulse.touch, pulse.duration)
+
+
+def _started(plate: Plate, records: Sequence[Record], place: Place | None) -> tuple[Measured, Search]:
+    """Return records around first touch, and the pulse that explains them.
+
+    Raises
+    ------
+    InputError
+        If a place lies outside the plate, a record is not one of a sensor, or its sampling is too slow for the contact.
+    """
+    if place is not None and any(abs(at) > half for at, half in zip(place, plate.half, strict=True)):
+        x, y = plate.half
+        raise InputError(f"the place ({place[0]:g}, {place[1]:g}) m is not on the plate, or at its edge; it reaches to ({x:g}, {y:g}) m")
+    measured = measured_of(plate.problem.sensors, records, plate.window)
+    search = search_place(plate, measured, place)
+    pulse = search.candidates[0]
+    if pulse.duration * measured.band < _TOLD or pulse.spread > _VAGUE:
+        words = f"the sensors hear up to {measured.band:.4g} Hz, which tells contacts of {1e6 * _TOLD / measured.band:.3g} us or longer"
+        raise InputError(f"the records do not tell how long the contact lasts: {words}; sample faster than at {measured.rate:g} Hz")
+    return measured, search
+
+
+def _estimates(case: CaseTable, measured: Measured, sphere: SphereFit, force: Force) -> dict[str, Estimate]:
+    """Return what was found, by names that end in their units."""
+    at_x, at_y, radius, speed, touch = sphere.parameters.tolist()
+    deviations = np.sqrt(np.diag(sphere.covariance)).tolist()
+    of_force = np.sqrt(np.diag(sphere.force_covariance)).tolist()
+    peak, impulse, duration = (Estimate(*pair) for pair in zip(sphere.force.facts.tolist(), of_force, strict=True))
+    mass = float(rigid_sphere(math.exp(radius), case.sphere.material).mass)
+    return {
+        "place_x_m": Estimate(at_x, deviations[0]),
+        "place_y_m": Estimate(at_y, deviations[1]),
+        "first_touch_s": Estimate(measured.start + touch, deviations[4]),
+        "radius_m": Estimate(math.exp(radius), deviations[2], logarithmic=True),
+        "mass_kg": Estimate(mass, 3.0 * deviations[2], logarithmic=True),
+        "speed_m_s": Estimate(math.exp(speed), deviations[3], logarithmic=True),
+        "duration_s": duration,
+        "max_force_N": peak,
+        "impulse_N_s": impulse,
+        "recovered_max_force_N": Estimate(*force.peak),
+        "recovered_impulse_N_s": Estimate(*force.impulse),
+    }

@@ -1,0 +1,128 @@
+"""Records of the sensors of a case on a common time, around the first touch."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.dynamics.sensors.antialias import HALF_LENGTH
+from vibroimpact.dynamics.sensors.sensor import Sensor
+from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.shown import shown
+from vibroimpact.signals.onset import onset_time
+from vibroimpact.signals.record import Record
+
+_LEAST = 64
+"""Least number of samples from first touch on."""
+_QUIET = 16
+"""Least number of samples before first touch that tell the noise."""
+_UNKNOWN = 0.01
+"""Noise, relative to the rms value, that is assumed until a fit tells it."""
+_STRAIN = ("1", "m/m")
+"""Unit of a strain, as a record has it and as a sensor."""
+_SAME = 1e-3
+"""Relative difference of rates, and difference of instants in sampling periods, that is none."""
+
+
+@dataclass(frozen=True)
+class Measured:
+    """Records of sensors around the first touch.
+
+    Parameters
+    ----------
+    sensors : tuple of Sensor
+        The sensors.
+    value : array, shape (S, samples)
+        Their samples.
+    rate : float
+        Samples per second [Hz].
+    start : float
+        Time of the first sample [s].
+    onset : float
+        When the first of the records rises, after the first sample [s].
+    noise : array, shape (S,)
+        Standard deviation of the noise of each.
+    quiet : bool
+        Whether the noise is that before first touch; else it is a guess.
+    """
+
+    sensors: tuple[Sensor, ...]
+    value: Floats
+    rate: float
+    start: float
+    onset: float
+    noise: Floats
+    quiet: bool
+
+    @property
+    def band(self) -> float:
+        """Highest frequency that the sensors pass [Hz]."""
+        return min(0.45 * self.rate if one.filter == "sigma-delta" else one.corner or 0.4 * self.rate for one in self.sensors)
+
+
+def measured_of(sensors: Sequence[Sensor], records: Sequence[Record], window: float) -> Measured:
+    """Return records around their first touch, for the sensors that they are named after.
+
+    Parameters
+    ----------
+    sensors : sequence of Sensor
+        The sensors of a case.
+    records : sequence of Record
+        The records.
+    window : float
+        Time from first touch on that is used [s].
+
+    Raises
+    ------
+    InputError
+        If there is no sensor of that name, its unit or rate is another, two records have one name, they were not sampled at the same
+        instants, or one is too short, not finite or constant.
+    """
+    known = {sensor.name: sensor for sensor in sensors}
+    chosen: dict[str, Record] = {}
+    for record in records:
+        if record.name not in known:
+            there = ", ".join(f'"{name}"' for name in known)
+            raise InputError(f"the case has no sensor {shown(record.name)}; it has {there}.{did_you_mean(record.name, known)}")
+        if record.name in chosen:
+            raise InputError(f"there are two records {shown(record.name)}; give those of one fall")
+        _check(record, known[record.name])
+        chosen[record.name] = record
+    if not chosen:
+        raise InputError("there is no record; give the files with those of the sensors")
+    found, used = list(chosen.values()), tuple(known[name] for name in chosen)
+    rate = used[0].rate
+    start = max(record.start for record in found)
+    end = min(record.start + len(record.value) / rate for record in found)
+    offsets = [(start - record.start) * rate for record in found]
+    if any(abs(offset - round(offset)) > _SAME * max(1.0, offset) for offset in offsets):
+        raise InputError("the records were not sampled at the same instants; give those of one acquisition")
+    onset = min(onset_time(record) for record in found)
+    first = max(0, round((onset - start) * rate) - HALF_LENGTH - 1)
+    last = min(round((onset + window - start) * rate), round((end - start) * rate))
+    if last - round((onset - start) * rate) < _LEAST:
+        words = f"the records have {max(0, last - round((onset - start) * rate))} samples in common from first touch on, to at most"
+        raise InputError(f"{words} {1e3 * window:g} ms; {_LEAST} are needed, which are {1e3 * _LEAST / rate:.3g} ms at {rate:g} Hz")
+    whole = [record.value[round(offset) :] for record, offset in zip(found, offsets, strict=True)]
+    value = np.stack([one[first:last] for one in whole])
+    quiet = first >= _QUIET
+    noise = np.std([one[:first] for one in whole], axis=1) if quiet else np.zeros(len(whole))
+    rms = np.sqrt(np.mean(value**2, axis=1))
+    quiet = bool(quiet and np.all(noise > 1e-9 * rms))
+    return Measured(used, value, rate, start + first / rate, onset - start - first / rate, noise if quiet else _UNKNOWN * rms, quiet)
+
+
+def _check(record: Record, sensor: Sensor) -> None:
+    """Raise InputError unless a record can be that of a sensor."""
+    if record.unit != sensor.unit and (record.unit, sensor.unit) != _STRAIN:
+        raise InputError(f"the record {shown(record.name)} is in {record.unit}, and the sensor of that name reads {sensor.unit}")
+    if abs(record.rate / sensor.rate - 1.0) > _SAME:
+        words = f"the record {shown(record.name)} has {record.rate:g} samples per second, and the sensor of that name {sensor.rate:g}"
+        raise InputError(f"{words}; write rate = {record.rate:g} in the case, with the anti-alias filter that the record has")
+    if not np.isfinite(record.value).all():
+        raise InputError(f"the record {shown(record.name)} has samples that are not finite numbers")
+    if not len(record.value) or np.ptp(record.value) == 0.0:
+        raise InputError(f"the record {shown(record.name)} is constant; nothing touched the plate")

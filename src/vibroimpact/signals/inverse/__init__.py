@@ -1,0 +1,1 @@
+"""Inverse problems: from records to the force, its place and the parameters behind it; pure mathematics, without bodies or cases."""

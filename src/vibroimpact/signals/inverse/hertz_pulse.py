@@ -1,0 +1,81 @@
+r"""The force of an elastic Hertzian impact, and the sphere behind its impulse and duration.
+
+A sphere of mass m that hits at the speed v and leaves with the restitution e gives the impulse :math:`J = m v (1 + e)` in the time
+(Johnson, Contact Mechanics, 1985, eq. 11.24)
+
+.. math:: T = 2.87\left(\frac{m^2}{E^{*2} R\,v}\right)^{1/5}
+
+With the density and the modulus known, the two give R and v.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+
+_NODES = 48
+_TIME = 2.868
+"""Duration over (m^2 / (E*^2 R v))^(1/5)."""
+
+
+def hertz_impulses(duration: float) -> tuple[Floats, Floats]:
+    r"""Return times since first touch [s] and impulses, of sum one, that stand for a Hertzian pulse.
+
+    With :math:`x = (\delta/\delta_{max})^{5/2}` the time up to the deepest point is :math:`t/T = \frac12 I_x(2/5, 1/2)` (Johnson, eq.
+    11.23), and the force is proportional to :math:`x^{3/5}`.
+
+    Parameters
+    ----------
+    duration : float
+        Duration of the contact [s].
+
+    Examples
+    --------
+    >>> times, impulses = hertz_impulses(200e-6)
+    >>> round(float(impulses.sum()), 12), round(1e6 * float(impulses @ times), 3)
+    (1.0, 100.0)
+    """
+    times, impulses = _unit_impulses()
+    return duration * times, impulses
+
+
+@cache
+def _unit_impulses() -> tuple[Floats, Floats]:
+    """Return times and impulses of a pulse of unit duration."""
+    from scipy.special import betaincinv
+
+    nodes, weights = np.polynomial.legendre.leggauss(_NODES)
+    impulses = weights * betaincinv(0.4, 0.5, 1.0 - np.abs(nodes)) ** 0.6
+    return 0.5 * (1.0 + nodes), impulses / impulses.sum()
+
+
+def sphere_of_pulse(impulse: float, duration: float, density: float, modulus: float, restitution: float) -> tuple[float, float]:
+    """Return the radius [m] and the speed [m/s] of the sphere behind a Hertzian pulse.
+
+    Parameters
+    ----------
+    impulse : float
+        Impulse of the force [N s].
+    duration : float
+        Duration of the contact [s].
+    density : float
+        Density of the sphere [kg/m^3].
+    modulus : float
+        Effective modulus E* of the contact [Pa].
+    restitution : float
+        Separation speed over approach speed [-].
+
+    Examples
+    --------
+    >>> mass = 4.0 / 3.0 * np.pi * 0.02**3 * 2600.0
+    >>> duration = 2.868 * (mass**2 / (20e9**2 * 0.02 * 3.0)) ** 0.2
+    >>> [round(float(value), 6) for value in sphere_of_pulse(mass * 3.0 * 1.6, duration, 2600.0, 20e9, 0.6)]
+    [0.02, 3.0]
+    """
+    weight = 4.0 / 3.0 * math.pi * density
+    radius = ((duration / _TIME) ** 5 * modulus**2 * impulse / ((1.0 + restitution) * weight**3)) ** 0.125
+    return radius, impulse / ((1.0 + restitution) * weight * radius**3)

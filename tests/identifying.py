@@ -1,0 +1,95 @@
+"""Impacts on an elastic plate whose records are identified: simulated with more modes than the model that identifies them has."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+import vibroimpact as vi
+from vibroimpact.cases.rigid import rigid_problem
+from vibroimpact.dynamics.response import Response
+from vibroimpact.identification.plate import Plate, plate_of
+from vibroimpact.signals.record import Record
+
+RATE, WINDOW, DELAY = 25600.0, 5e-3, 4e-3
+"""Samples per second [Hz]; time that is used, and time from the start to first touch [s]."""
+SENSORS = {"a": (0.17, 0.05), "b": (-0.13, 0.11), "c": (-0.03, -0.14)}
+THICKNESS = 0.010
+
+
+def a_case(modes: int = 140, **changed: Any) -> vi.Case:
+    """A sphere of coal on a plate with three accelerometers; the modes reach beyond what they hear."""
+    table: dict[str, Any] = {
+        "name": "coal on a plate",
+        "sphere": {"radius": 0.02, "material": {"density": 1380.0, "youngs_modulus": 2.26e9, "poissons_ratio": 0.28}},
+        "plate": {
+            "size": [0.5, 0.4, THICKNESS],
+            "material": {"density": 7850.0, "youngs_modulus": 210e9, "poissons_ratio": 0.3},
+            "model": "elastic",
+            "modes": modes,
+            "damping": 0.01,
+            "supports": "simply-supported",
+        },
+        "drop": {"speed": 3.0},
+        "contact": {"law": "tsuji", "restitution": 0.6},
+        "sensors": [{"name": name, "position": list(place), "rate": RATE} for name, place in SENSORS.items()],
+    }
+    return vi.read_case({**table, **changed})
+
+
+@cache
+def plate(modes: int = 140) -> Plate:
+    """The plate of the case, with its modes."""
+    return plate_of(a_case(modes), WINDOW)
+
+
+@dataclass(frozen=True)
+class Impact:
+    """What happened: radius [m], speed [m/s], place [m], first touch [s]; and the run."""
+
+    radius: float
+    speed: float
+    place: tuple[float, float]
+    response: Response
+
+    @property
+    def peak(self) -> float:
+        return float(self.response.impacts["max_force_N"][0])
+
+    @property
+    def impulse(self) -> float:
+        nodes, weights = np.polynomial.legendre.leggauss(200)
+        duration = float(self.response.impacts["duration_s"][0])
+        force = self.response.at(DELAY + 0.5 * duration * (1.0 + nodes), ["force_N"])["force_N"]
+        return float(0.5 * duration * weights @ force)
+
+
+def an_impact(radius: float, speed: float, place: tuple[float, float], modes: int = 280) -> Impact:
+    """A sphere that touches the plate first at `DELAY`."""
+    case, there = plate(modes).case, plate(modes).at(place)
+    rigid = rigid_problem(case.model_copy(update={"sphere": case.sphere.model_copy(update={"radius": radius})}))
+    gravity = float(there.gravity)
+    height = radius + speed * DELAY - 0.5 * gravity * DELAY**2
+    falling = {"speed": None, "height": height, "velocity": gravity * DELAY - speed, "impacts": None, "duration": DELAY + 2.0 * WINDOW}
+    return Impact(radius, speed, place, vi.simulate(replace(there, sphere=rigid.sphere, laws=rigid.laws, **falling)))
+
+
+def records_of(impact: Impact, decibels: float, seed: int) -> list[Record]:
+    """What the sensors record, with white noise so many decibels below the rms value after first touch."""
+    random, found = np.random.default_rng(seed), []
+    for name, signal in impact.response.signals().items():
+        from_touch = signal.value[round(DELAY * RATE) : round((DELAY + WINDOW) * RATE)]
+        noise = 10.0 ** (-decibels / 20.0) * np.sqrt(np.mean(from_touch**2))
+        found.append(Record(name, signal.value + noise * random.standard_normal(len(signal.value)), RATE, "m/s2"))
+    return found
+
+
+def drawn(number: int, seed: int) -> list[tuple[float, float, tuple[float, float]]]:
+    """Radii, speeds and places in the middle of the plate."""
+    random = np.random.default_rng(seed)
+    radii, speeds = random.uniform(0.012, 0.03, number), random.uniform(1.0, 6.0, number)
+    places = random.uniform(-1.0, 1.0, (number, 2)) * [0.12, 0.1]
+    return [(float(r), float(v), (float(x), float(y))) for r, v, (x, y) in zip(radii, speeds, places, strict=True)]

@@ -1,0 +1,280 @@
+"""What hit a plate, from its records: responses, pulses, fits, the command, and what is refused."""
+
+from __future__ import annotations
+
+import csv
+import json
+import re
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import tomli_w
+from scipy.integrate import solve_ivp
+
+import vibroimpact as vi
+from identifying import DELAY, RATE, SENSORS, THICKNESS, WINDOW, a_case, an_impact, drawn, plate, records_of
+from vibroimpact.cli import main
+from vibroimpact.dynamics.sensors.place_responses import sampled_responses
+from vibroimpact.identification.contact import contact_forces
+from vibroimpact.identification.identify import identify_on
+from vibroimpact.identification.plate import compliances_of, plate_of, shapes_of
+from vibroimpact.signals.inverse.deconvolve import deconvolve
+from vibroimpact.signals.inverse.hertz_pulse import hertz_impulses, sphere_of_pulse
+
+SMALL: dict[str, Any] = {
+    "name": "a small plate",
+    "sphere": {"radius": 0.02, "material": "rock-paper"},
+    "plate": {"size": [0.3, 0.3, 0.02], "material": "steel", "model": "elastic", "modes": 20, "supports": "clamped", "damping": 0.01},
+    "drop": {"speed": 2.0, "position": [0.02, 0.01]},
+    "contact": {"law": "hertz"},
+    "run": {"impacts": 1, "duration": 0.01},
+    "sensors": [{"name": "a", "position": [0.1, 0.03], "rate": 20e3}, {"name": "b", "position": [-0.05, 0.08], "rate": 20e3}],
+}
+
+
+def small(**changed: Any) -> vi.Case:
+    return vi.read_case({**SMALL, **changed})
+
+
+def its_records(case: vi.Case) -> list[vi.Record]:
+    return [vi.Record(name, one.value, one.sensor.rate, one.sensor.unit) for name, one in vi.simulate(case).signals().items()]
+
+
+@pytest.mark.parametrize(
+    "sensor",
+    [
+        {},
+        {"quantity": "velocity"},
+        {"accelerometer": {"resonance": 12e3}},
+        {"filter": "butterworth"},
+        {"filter": "butterworth", "accelerometer": {"resonance": 12e3}},
+        {"geophone": {"natural_frequency": 10.0, "sensitivity": 27.6}},
+    ],
+    ids=["converter", "velocity", "resonance", "butterworth", "both", "geophone"],
+)
+def test_responses_at_a_place_are_those_of_the_simulation(sensor: dict[str, Any]) -> None:
+    case = small(sensors=[{**one, **sensor} for one in SMALL["sensors"]])
+    signals = [one.value for one in vi.simulate(case).signals().values()]
+    found = plate_of(case, WINDOW)
+    there = found.at((0.02, 0.01))
+    (force,) = contact_forces(case, there, np.array([0.02]), np.array([2.0]))
+    names = ["a", "b"]
+    answers = found.heard(names).at(shapes_of(there), compliances_of(there, names))
+    samples = round(WINDOW * 20e3)
+    values = sampled_responses(answers, 20e3, force.time, force.impulse, samples)
+    for value, signal in zip(values, signals, strict=True):
+        assert np.abs(value - signal[:samples]).max() < 1e-4 * np.abs(signal).max()
+
+
+def test_a_hertzian_pulse_is_that_of_the_equation_of_motion() -> None:
+    radius, speed, density, modulus = 0.02, 3.0, 2600.0, 20e9
+    mass, stiffness = 4.0 / 3.0 * np.pi * radius**3 * density, 4.0 / 3.0 * modulus * np.sqrt(radius)
+
+    def release(_: float, state: np.ndarray) -> float:
+        return state[0] if state[1] < 0.0 else 1.0
+
+    release.terminal = True  # type: ignore[attr-defined]
+    run = solve_ivp(
+        lambda _, state: [state[1], -stiffness * max(state[0], 0.0) ** 1.5 / mass, stiffness * max(state[0], 0.0) ** 1.5],
+        (0.0, 1e-2),
+        [0.0, speed, 0.0],
+        events=release,
+        rtol=1e-10,
+        atol=1e-14,
+        dense_output=True,
+    )
+    duration = run.t[-1]
+    times, impulses = hertz_impulses(duration)
+    for frequency in (0.0, 1e3, 5e3):  # the pulse as a linear system sees it
+        nodes, weights = np.polynomial.legendre.leggauss(200)
+        at = 0.5 * duration * (1.0 + nodes)
+        force = 0.5 * duration * weights * stiffness * np.maximum(run.sol(at)[0], 0.0) ** 1.5
+        exact = force @ np.exp(-2j * np.pi * frequency * at)
+        assert abs(force.sum() * impulses @ np.exp(-2j * np.pi * frequency * times) - exact) < 1e-5 * force.sum()
+    found = sphere_of_pulse(run.y[2, -1], duration, density, modulus, 1.0)
+    assert found == pytest.approx((radius, speed), rel=2e-3)
+
+
+def test_a_deconvolved_force_is_the_least_squares_solution_with_its_prior() -> None:
+    random = np.random.default_rng(3)
+    matrix, record = random.standard_normal((60, 12)), random.standard_normal(60)
+    found = deconvolve(matrix, record)
+    bend = np.zeros((14, 12))
+    for node in range(12):
+        bend[node : node + 3, node] = 1.0, -2.0, 1.0
+    # the strength that was found, from the covariance
+    precision = np.linalg.inv(found.covariance) - matrix.T @ matrix
+    strength = np.trace(precision) / np.trace(bend.T @ bend)
+    assert precision == pytest.approx(strength * bend.T @ bend, abs=1e-6 * strength)
+    stacked = np.concatenate([matrix, np.sqrt(strength) * bend])
+    assert found.force == pytest.approx(np.linalg.lstsq(stacked, np.append(record, np.zeros(14)), rcond=None)[0])
+
+
+def test_the_marginal_likelihood_is_that_of_the_records() -> None:
+    random = np.random.default_rng(4)
+    matrix, record = random.standard_normal((30, 6)), 3.0 * random.standard_normal(30)
+    bend = np.diff(np.eye(10), 2, axis=0)[:, 2:-2]
+    chosen = deconvolve(matrix, record)
+    precision = np.linalg.inv(chosen.covariance) - matrix.T @ matrix
+    strength = np.trace(precision) / np.trace(bend.T @ bend)
+
+    def evidence(at: float) -> float:
+        covariance = np.eye(30) + matrix @ np.linalg.inv(at * bend.T @ bend) @ matrix.T
+        return float(-0.5 * (record @ np.linalg.solve(covariance, record) + np.linalg.slogdet(covariance)[1]))
+
+    assert evidence(strength) >= max(evidence(1.5 * strength), evidence(strength / 1.5))
+
+
+def test_force_place_size_and_speed_at_40_decibels() -> None:
+    """Simulated with twice the modes of the model: largest force 5 %, impulse 2 %, place half a thickness."""
+    within = []
+    for number, (radius, speed, place) in enumerate(drawn(10, seed=11)):
+        impact = an_impact(radius, speed, place)
+        found = identify_on(plate(), records_of(impact, 40.0, seed=number))
+        told = found.estimates
+        assert told["recovered_max_force_N"].value == pytest.approx(impact.peak, rel=0.05)
+        assert told["recovered_impulse_N_s"].value == pytest.approx(impact.impulse, rel=0.02)
+        assert np.hypot(told["place_x_m"].value - place[0], told["place_y_m"].value - place[1]) < 0.5 * THICKNESS
+        assert told["first_touch_s"].value == pytest.approx(DELAY, abs=0.01 / RATE)
+        truth = {"place_x_m": place[0], "place_y_m": place[1], "radius_m": radius, "speed_m_s": speed, "impulse_N_s": impact.impulse}
+        within += [told[name].interval[0] <= value <= told[name].interval[1] for name, value in truth.items()]
+        assert not found.doubts
+    assert np.mean(within) > 0.8
+
+
+def test_a_force_of_no_contact_law_is_found_from_one_sensor_at_a_known_place() -> None:
+    """Two taps that overlap, as no sphere makes them."""
+    model, place, touch = plate(280), (0.05, 0.03), 2e-3
+    time = np.linspace(0.0, 400e-6, 801)
+    taps = ((900.0, 0.0), (600.0, 150e-6))
+    force = np.sum([peak * np.sin(np.pi * np.clip((time - begin) / 250e-6, 0.0, 1.0)) ** 2 for peak, begin in taps], axis=0)
+    there = model.at(place)
+    answers = model.heard(["b"]).at(shapes_of(there), compliances_of(there, ["b"]))
+    (value,) = sampled_responses(answers, RATE, touch + time, force * (time[1] - time[0]), 300)
+    noise = 0.01 * value[52:].std() * np.random.default_rng(5).standard_normal(300)
+    found = vi.identify_force(a_case(), [vi.Record("b", value + noise, RATE, "m/s2")], place)
+    assert found.peak[0] == pytest.approx(force.max(), rel=0.05)
+    assert found.impulse[0] == pytest.approx(np.trapezoid(force, time), rel=0.02)
+
+
+def test_too_few_modes_are_told() -> None:
+    radius, speed, place = 0.02, 3.0, (0.06, 0.04)
+    found = vi.identify(a_case(60), records_of(an_impact(radius, speed, place), 40.0, seed=1))
+    assert any("the modes of the plate end at" in doubt for doubt in found.doubts)
+    assert any("times the noise before first touch" in doubt for doubt in found.doubts)
+    told = found.estimates
+    assert np.hypot(told["place_x_m"].value - place[0], told["place_y_m"].value - place[1]) < 0.5 * THICKNESS
+
+
+def test_places_that_sensors_do_not_tell_apart_are_named() -> None:
+    case = small(sensors=[{"name": "a", "position": [0.1, 0.0], "rate": 20e3}, {"name": "b", "position": [-0.06, 0.0], "rate": 20e3}])
+    found = vi.identify(case, its_records(case))
+    (doubt,) = (one for one in found.doubts if "explains the records as well" in one)
+    x, y = map(float, re.findall(r"-?\d+\.\d", doubt))
+    assert (x, abs(y)) == pytest.approx((20.0, 10.0), abs=1.0)  # of a pulse, before the contact is fitted
+    assert y * found.estimates["place_y_m"].value < 0.0
+
+
+def test_a_place_that_is_known_is_kept() -> None:
+    case = small()
+    found = vi.identify(case, its_records(case), place=(0.02, 0.01))
+    assert found.estimates["place_x_m"].value == 0.02
+    assert found.estimates["place_x_m"].deviation == 0.0
+    assert found.estimates["radius_m"].value == pytest.approx(0.02, rel=1e-3)
+    assert found.search.misfit.size == 1
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda one: replace(one, name="aa"), 'has no sensor "aa"; it has "a", "b". Did you mean "a"'),
+        (lambda one: replace(one, unit="V"), "is in V, and the sensor of that name reads m/s2"),
+        (lambda one: replace(one, rate=10e3), "write rate = 10000 in the case"),
+        (lambda one: replace(one, value=one.value[:40]), "64 are needed"),
+        (lambda one: replace(one, value=0.0 * one.value), "is constant"),
+        (lambda one: replace(one, value=np.where(np.arange(len(one.value)) == 9, np.nan, one.value)), "not finite"),
+        (lambda one: replace(one, start=1.3 / 20e3), "not sampled at the same instants"),
+        (lambda one: replace(one, name="b"), "there are two records"),
+    ],
+)
+def test_records_that_are_refused(change: Any, words: str) -> None:
+    first, *others = its_records(small())
+    with pytest.raises(vi.InputError, match=words.replace(".", r"\.")):
+        vi.identify(small(), [change(first), *others])
+
+
+@pytest.mark.parametrize(
+    ("changed", "words"),
+    [
+        ({"plate": {"material": "steel", "size": [0.3, 0.3, 0.02]}}, "rigid"),
+        ({"sensors": []}, "no sensors"),
+        ({"sphere": {"radius": 0.02, "material": "rock-paper", "model": "elastic", "modes": 3}}, "change with its size"),
+        ({"drop": {"speed": 2.0, "angle": 0.2}}, "along the normal alone|is identified"),
+        ({"sensors": [{**SMALL["sensors"][0], "filter": "none"}, SMALL["sensors"][1]]}, "anti-alias"),
+        ({"contact": {"law": "hertz", "finite_sphere": True}}, "size of the sphere"),
+        ({"sensors": [{**SMALL["sensors"][0], "microphone": {"distance": 0.2}}, SMALL["sensors"][1]]}, "hears the whole plate|is in m/s2"),
+    ],
+)
+def test_cases_that_are_refused(changed: dict[str, Any], words: str) -> None:
+    with pytest.raises(vi.InputError, match=words):
+        vi.identify(small(**changed), its_records(small()))
+
+
+def test_sampling_that_is_too_slow_is_told_with_the_number() -> None:
+    sensors = [{"name": name, "position": list(place), "rate": 2000.0} for name, place in list(SENSORS.items())[:2]]
+    drop = {"speed": 3.0, "position": [0.06, 0.04]}
+    case = a_case(20, sensors=sensors, run={"impacts": 1, "duration": 0.06}, drop=drop)
+    with pytest.raises(vi.InputError, match="hear up to 900 Hz, which tells contacts of 556 us or longer; sample faster than at 2000 Hz"):
+        vi.identify(case, its_records(case), window=0.05)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"place": (0.5, 0.0)}, "is not on the plate"),
+        ({"window": 0.0}, "window of 0 s"),
+        ({"frequency_error": 1.0}, "0.01 is 1 %"),
+    ],
+)
+def test_options_that_are_refused(options: dict[str, Any], words: str) -> None:
+    with pytest.raises(vi.InputError, match=words):
+        vi.identify(small(), its_records(small()), **options)
+
+
+def test_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.chdir(tmp_path)
+
+    def call(*words: str) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", ["vibroimpact", *words])
+        with pytest.raises(SystemExit) as left:
+            main()
+        return int(left.value.code or 0), *capsys.readouterr()
+
+    Path("case.toml").write_text(tomli_w.dumps(SMALL))
+    assert call("run", "case.toml", "-o", "run")[0] == 0
+    code, out, _ = call("identify", "case.toml", "run", "-o", "found")
+    assert code == 0
+    assert "radius" in out
+    assert "95 % from" in out
+    assert {one.name for one in Path("found").iterdir()} == {"case.toml", "force.csv", "report.html", "summary.json"}
+    rows = list(csv.DictReader(Path("found/force.csv").read_text().splitlines()))
+    force = np.array([[float(row[name]) for name in ("force_low_N", "force_N", "force_high_N")] for row in rows])
+    assert (np.diff(force, axis=1) >= 0.0).all()
+    code, out, _ = call("identify", "case.toml", "run", "-o", "known", "--place", "20 mm, 10 mm", "--json")
+    assert code == 0
+    told = json.loads(out)
+    assert told["estimates"]["radius_m"]["value"] == pytest.approx(0.02, rel=1e-3)
+    assert {key: value for key, value in told.items() if key != "folder"} == json.loads(Path("known/summary.json").read_text())
+    for words, message in (
+        (("run", "-o", "found"), "there already"),
+        (("run", "-o", "new", "--place", "20 mm"), "give x and y"),
+        (("nowhere", "-o", "new"), "nowhere"),
+    ):
+        code, _, err = call("identify", "case.toml", *words)
+        assert code == 2
+        assert message in err
+    assert not Path("new").exists()
