@@ -15,7 +15,8 @@ from scipy.stats import norm
 import vibroimpact as vi
 from vibroimpact.bounds.bayes_error import bayes_error
 from vibroimpact.bounds.falls import falls_of_sweep
-from vibroimpact.bounds.pulse_information import hertz_pulse, pulse_uncertainty
+from vibroimpact.bounds.pulse_information import pulse_uncertainty
+from vibroimpact.signals.inverse.hertz_pulse import hertz_pulse
 
 
 def test_the_pulse_is_that_of_a_simulated_impact() -> None:

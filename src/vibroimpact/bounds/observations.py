@@ -9,7 +9,8 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.bounds.falls import Falls
-from vibroimpact.bounds.pulse_information import hertz_pulse, pulse_uncertainty
+from vibroimpact.bounds.pulse_information import pulse_uncertainty
+from vibroimpact.signals.inverse.hertz_pulse import hertz_pulse
 
 _REFERENCE_BAND = 10e3
 """Band in which the noise is counted [Hz], whatever is heard."""

@@ -16,32 +16,9 @@ from functools import cache
 import numpy as np
 
 from vibroimpact.arrays import Floats
+from vibroimpact.signals.inverse.hertz_pulse import hertz_pulse
 
 _TIMES, _STEP, _LAST = 2001, 0.005, 40.0  # nodes over the pulse; step and end of u = f T
-
-
-def hertz_pulse(time: Floats) -> Floats:
-    r"""Return the force of an elastic Hertzian impact of unit impulse and unit duration.
-
-    With :math:`x = (\delta/\delta_{max})^{5/2}` the time since first touch is :math:`t/T = \frac12 I_x(2/5, 1/2)` up to the deepest point
-    (Johnson, Contact Mechanics, 1985, eq. 11.23), and the force is proportional to :math:`x^{3/5}`.
-
-    Parameters
-    ----------
-    time : array
-        Time since first touch over the duration [-].
-
-    Examples
-    --------
-    >>> t = np.linspace(0.0, 1.0, 2001)
-    >>> round(float(np.trapezoid(hertz_pulse(t), t)), 6), round(float(hertz_pulse(np.array([0.5]))[0]), 4)
-    (1.0, 1.8395)
-    """
-    from scipy.special import beta, betaincinv
-
-    inside = (time > 0.0) & (time < 1.0)
-    depth = betaincinv(0.4, 0.5, np.where(inside, 1.0 - np.abs(2.0 * time - 1.0), 0.0))
-    return np.asarray(np.where(inside, 0.5 * beta(0.4, 0.5) * depth**0.6, 0.0))
 
 
 @cache

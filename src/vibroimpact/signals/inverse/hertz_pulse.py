@@ -22,11 +22,32 @@ _TIME = 2.868
 """Duration over (m^2 / (E*^2 R v))^(1/5)."""
 
 
+def hertz_pulse(time: Floats) -> Floats:
+    r"""Return the force of an elastic Hertzian impact of unit impulse and unit duration.
+
+    With :math:`x = (\delta/\delta_{max})^{5/2}` the time since first touch is :math:`t/T = \frac12 I_x(2/5, 1/2)` up to the deepest point
+    (Johnson, Contact Mechanics, 1985, eq. 11.23), and the force is proportional to :math:`x^{3/5}`.
+
+    Parameters
+    ----------
+    time : array
+        Time since first touch over the duration [-].
+
+    Examples
+    --------
+    >>> t = np.linspace(0.0, 1.0, 2001)
+    >>> round(float(np.trapezoid(hertz_pulse(t), t)), 6), round(float(hertz_pulse(np.array([0.5]))[0]), 4)
+    (1.0, 1.8395)
+    """
+    from scipy.special import beta, betaincinv
+
+    inside = (time > 0.0) & (time < 1.0)
+    depth = betaincinv(0.4, 0.5, np.where(inside, 1.0 - np.abs(2.0 * time - 1.0), 0.0))
+    return np.asarray(np.where(inside, 0.5 * beta(0.4, 0.5) * depth**0.6, 0.0))
+
+
 def hertz_impulses(duration: float) -> tuple[Floats, Floats]:
     r"""Return times since first touch [s] and impulses, of sum one, that stand for a Hertzian pulse.
-
-    With :math:`x = (\delta/\delta_{max})^{5/2}` the time up to the deepest point is :math:`t/T = \frac12 I_x(2/5, 1/2)` (Johnson, eq.
-    11.23), and the force is proportional to :math:`x^{3/5}`.
 
     Parameters
     ----------
@@ -46,11 +67,10 @@ def hertz_impulses(duration: float) -> tuple[Floats, Floats]:
 @cache
 def _unit_impulses() -> tuple[Floats, Floats]:
     """Return times and impulses of a pulse of unit duration."""
-    from scipy.special import betaincinv
-
     nodes, weights = np.polynomial.legendre.leggauss(_NODES)
-    impulses = weights * betaincinv(0.4, 0.5, 1.0 - np.abs(nodes)) ** 0.6
-    return 0.5 * (1.0 + nodes), impulses / impulses.sum()
+    times = 0.5 * (1.0 + nodes)
+    impulses = weights * hertz_pulse(times)
+    return times, impulses / impulses.sum()
 
 
 def sphere_of_pulse(impulse: float, duration: float, density: float, modulus: float, restitution: float) -> tuple[float, float]:
