@@ -21,15 +21,20 @@ FLOORS = {  # top to bottom: what a floor is, its colour, its rooms and what the
         {
             "runs": "one case: folder,\nreport, animation",
             "comparison": "one case under\nseveral laws",
-            "identification": "force, place, size\nand speed from records",
             "calibration": "parameters from\nmeasurements",
             "studies": "many drops,\ndataset, report",
-            "bounds": "what no classifier\ncan tell",
-            "recognition": "classifiers that can't\nfool themselves",
             "modes": "frequencies,\nshapes",
             "laws": "sheets, curves,\npages",
             "exporting": "files for other\nprograms",
             "paper": "the paper,\nreproduced",
+        },
+    ),
+    "what signals tell": (
+        "#c3b9dd",
+        {
+            "identification": "force, place, size\nand speed from records",
+            "bounds": "what no classifier\ncan tell",
+            "recognition": "classifiers that can't\nfool themselves",
         },
     ),
     "in, out, and shown": (

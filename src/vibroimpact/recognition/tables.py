@@ -16,6 +16,8 @@ Row = dict[str, Any]
 GROUPED, RANDOM = "grouped", "random"
 """The two splits, as they are named in files."""
 
+_LEAST_SHOWN = 5e-4  # Bayes error below which a tenth of a per cent is not reached
+
 
 def score_rows(found: Recognition) -> list[Row]:
     """Return a row for each classifier and split, as `scores.csv` has them."""
@@ -205,8 +207,9 @@ def sentences(found: Recognition) -> Iterator[str]:
         f"{_percent(found.random[found.best].balanced_accuracy.value)} %."
     )
     if found.bayes_error is not None:
+        least = f"{_percent(found.bayes_error)} %" if found.bayes_error >= _LEAST_SHOWN else "some hundredths of a per cent"
         yield (
-            f"No classifier can err less than {_percent(found.bayes_error)} % on this population (its Bayes error); the best errs in "
+            f"No classifier can err less than {least} on this population (its Bayes error); the best errs in "
             f"{_percent(best.error.value)} % ({_percents(best.error)} %)."
         )
     hardest = [one for one in found.streams if one.impacts == max(row.impacts for row in found.streams)]
