@@ -3,8 +3,9 @@ r"""Size, speed and place of a sphere from records: the contact of the case is c
 The modes that the case keeps end somewhere, and their frequencies have errors. These are unknowns of the fit with a prior of zero mean,
 so that the intervals contain them:
 
-* the contact force is :math:`F + c\,\Delta F`, with the change :math:`\Delta F` from half of the modes to all, and c of deviation 1/2;
-* the static response of the modes left out to each sensor is multiplied by :math:`1 + d_s`, of deviation 1/2, as it grows towards their
+* the contact force is :math:`F + c\,\Delta F`, with the change :math:`\Delta F` from half of the modes to all, and c of deviation one: if
+  each doubling changes half of what the last one did, all further ones together change as much as the last;
+* the static response of the modes left out to each sensor is multiplied by :math:`1 + d_s`, of deviation one, as it grows towards their
   frequencies;
 * each frequency is multiplied by :math:`1 + \epsilon_i`, of its own estimated error.
 """
@@ -31,8 +32,6 @@ _NUDGE, _LEAP, _RATIO = 1e-4, 0.02, 2e-3
 """Steps of derivatives: along the plate [m], in time [samples], in radius and speed [-]."""
 _RESTITUTION = 0.6
 """Restitution that the start is made with."""
-_HALVING = 0.5
-"""Deviation of c and of the d: twice the modes change about half of what the last doubling did."""
 _FITTED = 5
 """Number of parameters that are asked for; unknowns with a prior follow them."""
 
@@ -101,7 +100,7 @@ def fit_sphere(plate: Plate, measured: Measured, start: Candidate, place: Place 
     pulse = (start.impulse, start.duration, case.sphere.material.density, contact_pair(case).effective_modulus)
     radius, speed = sphere_of_pulse(*pulse, _RESTITUTION)
     parameters = np.array([*(start.place if place is None else place), np.log(radius), np.log(speed), start.touch])
-    prior = np.concatenate([np.full(1 + len(measured.sensors), _HALVING), plate.frequency_errors])
+    prior = np.concatenate([np.ones(1 + len(measured.sensors)), plate.frequency_errors])
     most = np.array([*(0.06 * np.array(plate.half)), 0.3, 0.3, 1.0 / measured.rate, *np.full(len(prior), np.inf)])
     by_prior = np.concatenate([np.zeros((len(prior), _FITTED)), np.eye(len(prior))], axis=1)
     free = np.concatenate([np.full(2, place is None), np.ones(3), prior])  # unknowns are in their deviations
@@ -114,20 +113,19 @@ def fit_sphere(plate: Plate, measured: Measured, start: Candidate, place: Place 
 
     noise = measured.noise
     fit = gauss_newton(lambda given: weighted(given, noise), np.append(parameters, np.zeros(len(prior))), most)
-    if not measured.quiet:  # what the first fit leaves tells how the records are to be weighed
-        left = fit.residual[: measured.value.size].reshape(measured.value.shape)
-        noise = noise * np.sqrt(np.mean(left**2, axis=1))
-        fit = gauss_newton(lambda given: weighted(given, noise), fit.parameters, most)
+    # what the first fit leaves tells better than a short quiet part how the records are to be weighed
+    left = fit.residual[: measured.value.size].reshape(measured.value.shape)
+    noise = noise * np.sqrt(np.mean(left**2, axis=1))
+    fit = gauss_newton(lambda given: weighted(given, noise), fit.parameters, most)
     found = _explained(plate, measured, fit.parameters * np.append(np.ones(_FITTED), prior))
     scale = float(fit.residual @ fit.residual) / (measured.value.size - _FITTED)  # what the prior adds counts as data
     covariance, half = scale * fit.covariance, np.array(plate.half)
     told = np.ix_([2, 3, _FITTED], [2, 3, _FITTED])  # radius, speed and c
-    of_force = found.force_slopes * [1.0, 1.0, prior[0]]
     return SphereFit(
         np.append(np.clip(fit.parameters[:2], -half, half), fit.parameters[2:_FITTED]),
         covariance[:_FITTED, :_FITTED],
         found.force,
-        of_force @ covariance[told] @ of_force.T,
+        found.force_slopes @ covariance[told] @ found.force_slopes.T,
         -found.left,
         found.problem,
         fit.converged,
