@@ -57,7 +57,7 @@ _STUDIES: tuple[Any, ...] = (
 @cache
 def seeds() -> tuple[Table, ...]:
     """Return the cases that the program ships and its documents show, and one of vibrating bodies."""
-    shipped = [file.read_text() for file in files("vibroimpact").joinpath("cases/library").iterdir() if file.name.endswith(".toml")]
+    shipped = [file.read_text() for file in files("vibroimpact").joinpath("cases/library/paper").iterdir() if file.name.endswith(".toml")]
     pages = [page.read_text(encoding="utf-8") for page in sorted([_ROOT / "README.md", *(_ROOT / "docs").glob("*.md")])]
     shown = [block for page in pages for block in re.findall(r"```toml\n(.*?)```", page, flags=re.S)]
     return (*(tomllib.loads(text) for text in (*sorted(shipped), *shown)), plain_case(**_ELASTIC))

@@ -45,7 +45,7 @@ IDENTIFIED = {
 
 def shipped(name: str, **plate: Any) -> vi.Problem:
     """A shipped case with one impact and no sensors; `plate` changes keys of its plate."""
-    case = tomllib.loads((files("vibroimpact") / "cases" / "library" / f"{name}.toml").read_text())
+    case = tomllib.loads((files("vibroimpact") / "cases" / "library" / "paper" / f"{name}.toml").read_text())
     case.pop("sensors", None)
     case["plate"].update(plate)
     return vi.read_case({**case, "run": {"impacts": 1}}).to_problem()
@@ -94,7 +94,7 @@ def test_the_radius_of_the_patches_matters_little() -> None:
 
 def test_superposed_is_what_a_multibody_program_gives() -> None:
     """Far from what the paper prints for Type 2, as it is far from finite elements; and only as damped as its default damping makes it."""
-    case = tomllib.loads((files("vibroimpact") / "cases" / "library" / "type2-superposed.toml").read_text())
+    case = tomllib.loads((files("vibroimpact") / "cases" / "library" / "paper" / "type2-superposed.toml").read_text())
     case["sphere"]["modes"] = 20
     response = vi.simulate(vi.read_case({**case, "run": {"impacts": 1}}))
     assert response.energy["sphere_damping_J"] > 0.01 * response.energy["input_J"]  # critical

@@ -102,7 +102,7 @@ def test_a_study_over_the_angle_draws_what_the_plate_leaves_of_the_motion_along_
             contact = {**CASE["contact"], "friction": {"law": law, "coefficient": 0.2}}
             drops = ({"speed": 2.0, "angle": float(np.radians(angle)), "gravity": 0.0} for angle in ANGLES)
             alone = [result(drop=drop, contact=contact, run={"impacts": 1}).impacts[column][0] for drop in drops]
-            np.testing.assert_allclose(line.y, alone, rtol=1e-6)
+            np.testing.assert_allclose(line.y, alone, rtol=1e-5)  # the steps of both are within 1e-4
 
 
 def test_a_study_of_vertical_drops_has_no_such_results(tmp_path: Path) -> None:

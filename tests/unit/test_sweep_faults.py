@@ -181,8 +181,8 @@ def test_a_chunk_of_which_nothing_came_has_its_place_in_the_results(tmp_path: Pa
     sweep = vi.read_sweep(study_table({**RANDOM, "samples": 500}))
     whole = vi.read_study(compute_study(sweep, tmp_path / "whole", memory=SMALL))
 
-    def compute(table: Any, keep: Any, first: int, points: Any) -> ChunkResult:
-        return compute_points(table, keep, first, points) if first != 200 else ChunkResult({}, dict.fromkeys(range(200), "it died"))
+    def compute(table: Any, keep: Any, first: int, points: Any, window: Any) -> ChunkResult:
+        return compute_points(table, keep, first, points, window) if first != 200 else ChunkResult({}, dict.fromkeys(range(200), "it died"))
 
     monkeypatch.setattr(computing, "compute_points", compute)
     study = vi.read_study(compute_study(sweep, tmp_path / "out", memory=SMALL))

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from vibroimpact.studies.axes import Spaced
+from vibroimpact.studies.design import Asked
 from vibroimpact.studies.designs.saltelli import plan
 from vibroimpact.studies.sensitivity import sobol_indices
 
@@ -13,7 +14,7 @@ POINTS = 8192
 
 
 def drawn(axes: int, low: float, high: float) -> np.ndarray:
-    columns = plan({str(place): Spaced(low, high, 2) for place in range(axes)}, POINTS, 7).columns
+    columns = plan(Asked({str(place): Spaced(low, high, 2) for place in range(axes)}, POINTS, 7)).columns
     return np.array([np.asarray(values, dtype=float) for values in columns.values()])
 
 

@@ -64,9 +64,9 @@ class Population:
         >>> own = {"light": {"sphere.radius": Listed((1.0,))}, "heavy": {"sphere.radius": Listed((2.0,))}}
         >>> columns, labels = Population({"light": 1.0, "heavy": 1.0}, own, falls_per_rock=2).draw({}, 8, 0)
         >>> labels["class"].tolist()[::2]
-        ['heavy', 'light', 'light', 'light']
+        ['heavy', 'heavy', 'heavy', 'light']
         >>> columns["sphere.radius"].tolist()[::2]
-        [2.0, 1.0, 1.0, 1.0]
+        [2.0, 2.0, 2.0, 1.0]
         """
         rock = np.arange(falls) // self.falls_per_rock
         plate = rock // self.rocks_per_plate

@@ -75,8 +75,9 @@ def sobol_indices(values: Floats, axes: int, seed: int = 0) -> SobolIndices | No
     Examples
     --------
     >>> from vibroimpact.studies.axes import Spaced
+    >>> from vibroimpact.studies.design import Asked
     >>> from vibroimpact.studies.designs.saltelli import plan
-    >>> points = plan({"a": Spaced(0.0, 1.0, 2), "b": Spaced(0.0, 1.0, 2)}, 1024, 0).columns
+    >>> points = plan(Asked({"a": Spaced(0.0, 1.0, 2), "b": Spaced(0.0, 1.0, 2)}, 1024, 0)).columns
     >>> found = sobol_indices(points["a"] + 2.0 * points["b"], 2)  # variances 1/12 and 4/12
     >>> found.first.round(2).tolist(), found.total.round(2).tolist()
     ([0.2, 0.8], [0.2, 0.8])
