@@ -37,6 +37,7 @@ def place_of(found: vi.Bounces, touches: np.ndarray) -> int:
     return first
 
 
+@pytest.mark.slow
 def test_intervals_hold_the_truth() -> None:
     """Of 100 records at five levels of noise and five restitutions."""
     off, wide = [], []

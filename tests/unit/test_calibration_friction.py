@@ -122,6 +122,7 @@ def test_what_was_simulated_is_found_again(law: str, column: str, tmp_path: Path
     assert found.given == pytest.approx([0.3])
 
 
+@pytest.mark.slow
 def test_shear_modulus_and_coefficient_together(tmp_path: Path) -> None:
     contact = {"law": "hunt-crossley", "restitution": 0.7}
     friction = {"law": "mdr", "coefficient": 0.15, "effective_shear_modulus": "30 GPa"}
@@ -171,6 +172,7 @@ def check_coverage(found: np.ndarray, confidence: float = 0.95, level: float = 1
     assert (found.sum(axis=0) <= high).all() or high == len(found)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("known", [True, False])
 def test_intervals_hold_the_truth_as_often_as_is_stated(known: bool, tmp_path: Path) -> None:
     check_coverage(inside("rigid", ALL, {"coefficient": 0.15, "slip_restitution": 0.2}, 60, tmp_path, known=known))

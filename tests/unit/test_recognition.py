@@ -408,6 +408,7 @@ def test_plates_that_were_never_trained_on(folder: Path) -> None:
 # leaks
 
 
+@pytest.mark.slow
 def test_a_label_in_the_last_sample_is_found(tmp_path: Path) -> None:
     def leak(data: dict[str, Any]) -> None:
         data["signal_a1"][:, -1] = np.where(data["class"] == 1, 5e-3, -5e-3)

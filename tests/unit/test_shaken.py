@@ -653,6 +653,7 @@ def test_an_amplitude_of_zero_leaves_an_oblique_drop_on_an_elastic_plate_as_it_i
         assert np.array_equal(values, one.history()[name], equal_nan=True), name
 
 
+@pytest.mark.slow
 def test_the_ledger_of_oblique_impacts_on_an_elastic_screen_closes() -> None:
     screen = {"plate.motion.direction": [3, 0, 4], "plate.inclination": "5 deg", "plate.element": "solid", "run.impacts": 8}
     response = vi.simulate(case(**OBLIQUE, **screen))

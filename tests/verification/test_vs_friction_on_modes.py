@@ -279,6 +279,7 @@ def test_a_plate_that_hardly_moves_is_a_rigid_one(name: str, slip: float) -> Non
         assert found[key][0] == pytest.approx(rigid[key][0], abs=scale)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rolling", [0.0, 0.1])
 def test_random_drops_close_their_ledger_and_gain_nothing(rolling: float) -> None:
     random = np.random.default_rng(0)
