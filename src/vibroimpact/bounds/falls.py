@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from vibroimpact.arrays import Floats
 from vibroimpact.cases.case import Case
+from vibroimpact.dynamics.problem import STANDARD_GRAVITY
 from vibroimpact.errors import InputError
 from vibroimpact.studies.axes import Values
 from vibroimpact.studies.compute_points import compute_points
@@ -57,7 +58,7 @@ class Falls:
     @property
     def interval(self) -> Floats:
         """Time from the first touch to the next, under standard gravity [s]."""
-        return self.duration + 2.0 * self.restitution * self.speed / 9.80665
+        return self.duration + 2.0 * self.restitution * self.speed / STANDARD_GRAVITY
 
     def __len__(self) -> int:
         return len(self.classes)
