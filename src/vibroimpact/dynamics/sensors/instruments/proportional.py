@@ -1,0 +1,34 @@
+"""An instrument whose output follows what it sees in proportion, at all frequencies."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from vibroimpact.dynamics.sensors.pole_pairs import Section
+
+
+@dataclass(frozen=True)
+class Proportional:
+    """Instrument without poles, of what grows with the curvature of the plate; it puts out voltage if it has a sensitivity."""
+
+    sensitivity: float | None = None
+
+    @property
+    def order(self) -> int:
+        """Order of the derivative that it takes."""
+        return 0
+
+    @property
+    def gain(self) -> float:
+        """Output over what it sees: the sensitivity, or 1."""
+        return 1.0 if self.sensitivity is None else self.sensitivity
+
+    @property
+    def sections(self) -> tuple[Section, ...]:
+        """No poles."""
+        return ()
+
+    @property
+    def steepness(self) -> float:
+        """Growth of what it sees in a mode of given deflection with its frequency: that of a curvature."""
+        return 1.0
