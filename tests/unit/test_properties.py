@@ -28,9 +28,10 @@ materials = st.fixed_dictionaries(
         "poissons_ratio": ratio(-0.9, 0.499),
     }
 )
+restitutions = ratio(0.0, 1.0) | st.sampled_from([1e-50, 1e-20])
 contacts = st.one_of(
     st.fixed_dictionaries({"law": st.just("hertz"), "exponent": st.floats(1.0, 3.0)}),
-    st.fixed_dictionaries({"law": st.just("lankarani-nikravesh"), "restitution": st.floats(0.0, 1.0)}),
+    st.fixed_dictionaries({"law": st.just("lankarani-nikravesh"), "restitution": restitutions}),
     st.fixed_dictionaries(
         {
             "law": st.just("adams-impact"),
@@ -40,7 +41,7 @@ contacts = st.one_of(
     ),
     st.fixed_dictionaries({"law": st.just("linear-spring-dashpot"), "stiffness": log(10, 1e9), "restitution": log(1e-4, 1.0)}),
     st.fixed_dictionaries({"law": st.just("linear-spring-dashpot"), "stiffness": log(10, 1e9), "damping": log(1e-6, 1e6)}),
-    st.fixed_dictionaries({"law": st.just("newton"), "restitution": st.floats(0.0, 1.0)}),
+    st.fixed_dictionaries({"law": st.just("newton"), "restitution": restitutions}),
 )
 asked = {"restitution": st.floats(0.02, 1.0)}
 others = {
