@@ -6,6 +6,7 @@
 # make check     lint, formatting and types, as CI does
 # make bench     the benchmarks
 # make docs      write the pages of the contact laws, the table of features, and what a shell completes, again
+# make validation compare with all others but the peers, and write the page of the documentation that tells it
 # make reproduce reproduce the paper, and write the page of the documentation that shows it
 # make help      this list
 
@@ -16,7 +17,7 @@ OUTPUT := vibroimpact-demo
 VIBROIMPACT_CHROMIUM ?= /usr/bin/chromium
 CHROMIUM := $(VIBROIMPACT_CHROMIUM)
 
-.PHONY: help demo test test-slow test-page chromium test-peers check bench docs reproduce clean
+.PHONY: help demo test test-slow test-page chromium test-peers check bench docs validation reproduce clean
 
 demo: $(VENV)/installed
 	$(BIN)/vibroimpact demo --output $(OUTPUT) --force
@@ -53,6 +54,10 @@ docs: $(VENV)/installed
 	$(BIN)/python -m vibroimpact.laws.pages docs
 	$(BIN)/python -m vibroimpact.cli.completion_words
 	$(BIN)/python -m vibroimpact.cli.feature_page docs
+
+validation: $(VENV)/installed-test
+	OPENBLAS_NUM_THREADS=1 $(BIN)/pytest -m "not peers" tests/verification tests/published -n auto --dist worksteal --validation tests/validation.jsonl
+	$(BIN)/python tests/validation_page.py
 
 reproduce: $(VENV)/installed
 	$(BIN)/vibroimpact reproduce -o vibroimpact-paper --force
