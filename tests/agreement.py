@@ -2,7 +2,7 @@
 
 Tests take the fixture `agrees`; a module says whom it compares with in its constant `AGAINST`. `pytest --validation FILE` writes the
 comparisons of the tests that passed into a file of JSON lines, in place of what it had of these tests; `validation_page.py` makes
-docs/validation.md of it. Other runs hold each comparison against what is told in `TOLD`.
+docs/validation.md of it. Other runs hold each comparison, but those with other programs, against what is told in `TOLD`.
 """
 
 from __future__ import annotations
@@ -92,14 +92,14 @@ def agrees(request: pytest.FixtureRequest) -> Agrees:
             "quantity": quantity,
             "unit": unit,
             "measure": measure,
-            "tolerance": tolerance,
+            "tolerance": float(f"{tolerance:.1e}"),
             "deviation": min(_upper(deviation, measure, tolerance, theirs), tolerance),
             "points": ours.size,
             "theirs": _ends(theirs, theirs, measure, tolerance),
             "ours": _ends(ours, theirs, measure, tolerance),
         }
         request.node.user_properties.append(("agreement", row))
-        if request.config.getoption("--validation") is None:
+        if request.config.getoption("--validation") is None and request.node.get_closest_marker("peers") is None:
             _check_told(row)
 
     return agrees
@@ -117,18 +117,18 @@ def _upper(deviation: float, measure: str, tolerance: float, theirs: np.ndarray)
     deviation = max(deviation, ROUNDING * scale)
     power = math.floor(math.log10(deviation))
     digit = math.ceil(deviation / 10.0**power - 1e-9)
-    return float(f"{digit if deviation > 1e-6 * scale else min(digit - 1, 1) * 9 + 1}e{power}")
+    if deviation < 1e-6 * scale and digit > 1:
+        digit = 10
+    return float(f"{digit}e{power}")
 
 
 def _ends(values: np.ndarray, theirs: np.ndarray, measure: str, tolerance: float) -> list[float]:
-    """The least and the largest value, to the digits that the tolerance asks for, three to six: of each, or of the largest of theirs."""
-    largest = float(np.abs(theirs).max()) or tolerance
-    part = tolerance / (largest if measure in ("absolute", "mean") else 1.0)
-    digits = min(max(3, 1 - math.floor(math.log10(part))), 6)
+    """The least and the largest value, to six digits of each, or of the largest of theirs."""
     ends = float(values.min()), float(values.max())
     if measure == "relative":
-        return [float(f"{end:.{digits - 1}e}") for end in ends]
-    return [round(end, digits - 1 - math.floor(math.log10(largest))) + 0.0 for end in ends]
+        return [float(f"{end:.5e}") for end in ends]
+    decimals = 5 - math.floor(math.log10(float(np.abs(theirs).max()) or tolerance))
+    return [round(end, decimals) + 0.0 for end in ends]
 
 
 def key(row: dict[str, Any]) -> tuple[Any, ...]:

@@ -83,6 +83,13 @@ def summary(rows: list[dict[str, Any]]) -> list[str]:
     return [*table, ""]
 
 
+def missing(rows: list[dict[str, Any]]) -> list[str]:
+    """Files of comparisons that were not run."""
+    found = {path.relative_to(ROOT).as_posix() for path in (ROOT / "tests" / "verification").glob("test_*.py")}
+    left = sorted(found - {row["file"] for row in rows})
+    return [f"* Not run when this page was made: {', '.join(f'`{file}`' for file in left)}.", ""] if left else []
+
+
 def page(rows: list[dict[str, Any]]) -> str:
     """The whole page, of rows as `agreement.read` has them."""
     measured, computed = ([row for row in rows if (row["kind"] == "experiment") == which] for which in (True, False))
@@ -90,7 +97,7 @@ def page(rows: list[dict[str, Any]]) -> str:
     for subject in get_args(Subject):
         tables += blocks([row for row in computed if row["subject"] == subject], subject[0].upper() + subject[1:])
     tables += blocks(measured, "Experiments")
-    made = {"summary": summary(rows), "comparisons": tables}
+    made = {"summary": summary(rows), "comparisons": tables, "missing": missing(rows)}
     return re.sub(r"<!-- (\w+) -->\n", lambda place: "\n".join(made[place[1]]), PROSE.read_text(encoding="utf-8"))
 
 
