@@ -47,12 +47,16 @@ def line(row: dict[str, Any]) -> str:
     return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
 
 
+def _capital(text: str) -> str:
+    return text[0].upper() + text[1:]
+
+
 def block(rows: list[dict[str, Any]]) -> list[str]:
     """One opponent of one file of tests."""
     first = rows[0]
     table = ["| case | quantity | theirs | ours | deviation | tolerance |", "|---|---|---|---|---|---|", *map(line, rows)]
-    about = f"{first['kind'].capitalize()}. {first['source'].rstrip('.')}. `{first['file']}`"
-    return [f"### {first['opponent']}", "", about, "", *table, ""]
+    about = f"{_capital(first['kind'])}. {first['source'].rstrip('.')}. `{first['file']}`"
+    return [f"### {_capital(first['opponent'])}", "", about, "", *table, ""]
 
 
 def blocks(rows: list[dict[str, Any]], title: str) -> list[str]:
@@ -95,7 +99,7 @@ def page(rows: list[dict[str, Any]]) -> str:
     measured, computed = ([row for row in rows if (row["kind"] == "experiment") == which] for which in (True, False))
     tables = []
     for subject in get_args(Subject):
-        tables += blocks([row for row in computed if row["subject"] == subject], subject[0].upper() + subject[1:])
+        tables += blocks([row for row in computed if row["subject"] == subject], _capital(subject))
     tables += blocks(measured, "Experiments")
     made = {"summary": summary(rows), "comparisons": tables, "missing": missing(rows)}
     return re.sub(r"<!-- (\w+) -->\n", lambda place: "\n".join(made[place[1]]), PROSE.read_text(encoding="utf-8"))
