@@ -70,7 +70,7 @@ def test_a_tone(agrees: Agrees) -> None:
             agrees("a tone", name.replace("_", " "), found[name], value, unit="1/s", absolute=1.01 * rate / samples)
             continue
         close = 1e-3 if name in ("peak", "peak_to_peak", "clearance_factor", "crest_factor", "impulse_factor") else 2e-4
-        within = max(close * abs(value), 1e-5 * max(1.0, frequency))
+        within = max(close * abs(value), 1e-5)
         agrees("a tone", name.replace("_", " "), found[name], value, absolute=within)
     assert found["spectral_flatness"] < 1e-20
 
