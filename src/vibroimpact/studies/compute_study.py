@@ -37,7 +37,7 @@ LEAST_MEMORY = 1e6
 """Minimum memory for the drops of a chunk [bytes]."""
 
 _CHUNK = 8000  # drops with rigid bodies per chunk: a tenth of a second
-_ELASTIC_CHUNK = 8  # drops with elastic bodies per chunk: half a second
+_ELASTIC_CHUNK = 32  # drops with elastic bodies per chunk: a second
 _PER_DROP, _COPIES = 4000.0, 4.0  # memory of a drop during computation [bytes], and copies of its results until they are written
 
 _FEW_CHUNKS = 40  # the overhead of so many chunks is two seconds, whatever their size
