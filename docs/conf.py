@@ -24,10 +24,12 @@ extensions = [
     "sphinx_copybutton",
     "sphinx_gallery.gen_gallery",
     "offline_math",
+    "check_pages",
 ]
 templates_path = ["_templates"]
 exclude_patterns = ["_*", "gallery/**/*.ipynb", "gallery/**/*.py", "gallery/**/*.zip"]
 nitpicky = True
+default_role = "code"
 
 # pages
 myst_enable_extensions = ["dollarmath"]
@@ -50,6 +52,9 @@ sphinx_gallery_conf = {
     "image_scrapers": ("matplotlib", "plotly_gallery.scrape"),
     "capture_repr": ("_repr_html_", "__repr__"),
     "ignore_repr_types": "NoneType|matplotlib",
+    "write_computation_times": False,
+    "backreferences_dir": "gallery/used",
+    "doc_module": ("vibroimpact",),
     "remove_config_comments": True,
     "show_memory": False,
     "show_signature": False,
@@ -64,9 +69,10 @@ html_theme = "pydata_sphinx_theme"
 html_title = f"vibroimpact {version}"
 html_static_path = ["_static"]
 html_css_files = ["site.css"]
-html_js_files = ["versions.js"]
+html_context = {"default_mode": "auto"}
 html_copy_source = html_show_sourcelink = False
 html_theme_options = {
+    "navbar_end": ["versions", "theme-switcher"],
     "navbar_align": "left",
     "show_toc_level": 2,
     "navigation_with_keys": False,

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from functools import wraps
-from html import escape
+from html import escape, unescape
 from pathlib import Path
 from shutil import copyfile
 from textwrap import indent
@@ -54,6 +55,16 @@ def _remembering(plotly_figure: Any) -> Any:
     return figure_of
 
 
+def describe_thumbnails(app: Sphinx, tree: nodes.document) -> None:
+    """Give the thumbnails of the gallery, which have none, the words that the pointer shows."""
+    words = ""
+    for node in tree.findall(lambda node: isinstance(node, nodes.raw | nodes.image)):
+        if shown := re.search(r'tooltip="([^"]*)"', node.astext()):
+            words = unescape(shown[1])
+        elif isinstance(node, nodes.image) and node["uri"].endswith("_thumb.png"):
+            node["alt"] = words
+
+
 def add_script(app: Sphinx, page: str, template: str, context: dict[str, Any], tree: nodes.document | None) -> None:
     """Load plotly's script into pages that have a chart of it, and into no other."""
     if tree is not None and any(CLASS in raw.astext() for raw in tree.findall(nodes.raw)):
@@ -67,6 +78,7 @@ def copy_script(app: Sphinx, fault: Exception | None) -> None:
 
 def setup(app: Sphinx) -> dict[str, bool]:
     notebook.plotly_figure = _remembering(notebook.plotly_figure)  # before what draws with it is imported
+    app.connect("doctree-read", describe_thumbnails)
     app.connect("html-page-context", add_script)
     app.connect("build-finished", copy_script)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
