@@ -36,11 +36,12 @@ def export_summary(drop: Drop, format: ExportFormat, files: Sequence[Path]) -> R
     shown = files if len(files) <= _MOST else files[: _MOST - 1]
     dialog, speeds = format.dialog(drop), drop.impacts["approach_speed_m_s"].tolist()
     names = [f"impact {number} at {digits(speed)} m/s" for number, speed in enumerate(speeds, 1)]
+    typed: list[RenderableType] = [Text(DIALOG_TITLE), cells_table(dialog_cells(dialog, names))] if dialog else []
     more = f"and {len(files) - len(shown)} more files in {commonpath(files)}"
     return Group(
         *(Text(f"wrote {file}") for file in shown),
         *([Text(more)] if len(shown) < len(files) else []),
-        *([Text(DIALOG_TITLE), cells_table(dialog_cells(dialog, names))] if dialog else []),
+        *typed,
         *(Text(f"Note: {note}", style="yellow") for note in format.notes(drop)),
         Text(f"Tested: {format.tested}.", style="dim"),
     )
