@@ -138,10 +138,13 @@ def test_readme_shows_what_the_demo_prints(variable: vi.Response) -> None:
         assert line in printed or " closure " in line  # which is rounding, and not the same everywhere
 
 
+# of the pages on elastic bodies the other one computes modes too, and fewer
+LONG_PAGES = {"coal-from-rock.md", "elastic-drops.md", "measured-and-computed.md", "river-geophone.md"}
+
+
 @pytest.mark.parametrize(
     "page",
-    # of the pages on elastic bodies the other one computes modes too, and fewer
-    [pytest.param(page, id=name_of(page), marks=pytest.mark.slow if page.name == "elastic-drops.md" else ()) for page in PAGES],
+    [pytest.param(page, id=name_of(page), marks=pytest.mark.slow if page.name in LONG_PAGES else ()) for page in PAGES],
 )
 def test_documented_python_runs(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
