@@ -190,6 +190,7 @@ _HOME = {
     "FeatureTable": "signals.feature_table",
     "ForceSensor": "dynamics.sensors.instruments.force_sensor",
     "FrictionCalibration": "calibration.friction.calibrate",
+    "FrictionLaw": "contact.friction.law",
     "Geophone": "dynamics.sensors.instruments.geophone",
     "Identification": "identification.identify",
     "InputError": "errors",
