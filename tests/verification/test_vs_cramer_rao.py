@@ -56,7 +56,7 @@ def test_the_spectrum_falls_where_it_is_known_to(agrees: Agrees) -> None:
     agrees("spectrum of the pulse", "frequency of -3 dB, -10 dB and nothing, over 1/T", found, [0.67, 1.16, 1.80], absolute=0.005)
 
 
-@pytest.mark.parametrize(("rate", "duration"), [(200e3, 300e-6), (20e3, 300e-6), (40e3, 1e-3)])
+@pytest.mark.parametrize(("rate", "duration"), [pytest.param(200e3, 300e-6, marks=pytest.mark.slow), (20e3, 300e-6), (40e3, 1e-3)])
 def test_maximum_likelihood_reaches_the_uncertainty(agrees: Agrees, rate: float, duration: float) -> None:
     """White noise sampled at twice the band, and the pulse limited to the band by its own Fourier series."""
     over, number, rng = 16, 128, np.random.default_rng(1)

@@ -24,6 +24,7 @@ AGAINST = Against(
     "tests/oracles/measuring_chain.py: Kirchhoff's modes in closed form, SciPy's filters",
 )
 
+pytestmark = pytest.mark.slow
 
 SIZE, DENSITY, MODULUS, POISSON, RATIO = (0.18, 0.15, 0.006), 7850.0, 210e9, 0.3, 0.05
 SPOT, PLACE, DURATION, SAMPLES = (-0.011, -0.0147), (0.023, 0.0301), 3e-3, 20e3
