@@ -16,7 +16,7 @@ from vibroimpact.cases.doubts import doubts
 from vibroimpact.cases.expected import expected_of, expected_restitution
 from vibroimpact.cases.fields.air import air_words
 from vibroimpact.cases.fields.instruments import INSTRUMENTS, AccelerometerTable
-from vibroimpact.cases.keys import quantity_of
+from vibroimpact.cases.fields.quantities import quantity_of
 from vibroimpact.cases.motion import motion_length
 from vibroimpact.cases.oblique import friction_law_of, is_oblique
 from vibroimpact.cases.pair import contact_pair, is_free_sphere

@@ -23,7 +23,7 @@ LABELS = {CLASS: ("1", "class of the rock"), ROCK: ("1", "number of the rock, fr
 class Population:
     """Rocks of several classes that fall on plates.
 
-    Keys of [plate] are drawn once for each plate, those of [drop] for each fall, and all others for each rock.
+    Keys of [plate] and of sensors are drawn once for each plate, those of [drop] for each fall, and all others for each rock.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ class Population:
         if none:
             words = f'"{none[0]}" gets none of the {rock[-1] + 1} rocks; ask for more samples, fewer falls per rock, or a larger share'
             raise InputError(words, "samples")
-        numbers = {"plate": plate, "drop": np.arange(falls)}
+        numbers = {"plate": plate, "sensors": plate, "drop": np.arange(falls)}
         columns = {key: _drawn(axis, key, numbers.get(key.partition(".")[0], rock), seed) for key, axis in common.items()}
         for key in next(iter(self.own.values())):
             each = [_drawn(self.own[name][key], key, numbers.get(key.partition(".")[0], rock), seed) for name in names]

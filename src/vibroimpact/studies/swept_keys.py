@@ -17,7 +17,7 @@ from vibroimpact.cases.reader import read_case
 from vibroimpact.studies.axes import Values
 
 _OF_THE_RUN = ("run.duration", "run.tolerance")  # the same for all drops of a batch
-_WITHOUT_EFFECT = "plate.size."  # on rigid bodies, unless the sphere may fall off the edge
+_WITHOUT_EFFECT = ("plate.size.", "sensors.")  # on rigid bodies, unless the sphere may fall off the edge
 
 
 def case_at(table: Mapping[str, Any], values: Mapping[str, Any]) -> Case:

@@ -43,7 +43,7 @@ def data_card(study: Study) -> str:
         "## Classes",
         _table(["class", "falls", "rocks", "share of the rocks"], _classes(study)),
         "## What was drawn",
-        "Keys of `plate` are drawn once a plate, those of `drop` once a fall, all others once a rock, independently of each other.",
+        "Keys of `plate` and `sensors` are drawn once a plate, those of `drop` once a fall, all others once a rock, each independently.",
         _table(["key", "what it is", *_names(study)], _drawn(study)),
         "## Signals",
         _table(["variable", "quantity", "unit", "samples", "rate [Hz]"], _signals(study)),
