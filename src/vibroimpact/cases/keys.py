@@ -8,6 +8,7 @@ from dataclasses import fields
 from typing import Any, get_args, get_origin
 
 from vibroimpact.cases.fields.air import AirTable
+from vibroimpact.cases.fields.liquid import LiquidTable
 from vibroimpact.cases.fields.local import LocalSection
 from vibroimpact.cases.fields.material import InlineMaterial, material_table
 from vibroimpact.cases.fields.motion import MotionTable
@@ -91,7 +92,7 @@ def holds_keys(key: str) -> bool:
     (True, False)
     """
     section, _, field = key.partition(".")
-    return holds_sensor_keys(key) or (section in (*SECTIONS, "contact") and field in ("", "material", "motion", "air", *_PLACES))
+    return holds_sensor_keys(key) or (section in (*SECTIONS, "contact") and field in ("", "material", "motion", "air", "liquid", *_PLACES))
 
 
 def with_values(table: Mapping[str, Any], values: Mapping[str, Any], done: str = "swept") -> dict[str, Any]:
@@ -127,7 +128,7 @@ def with_values(table: Mapping[str, Any], values: Mapping[str, Any], done: str =
                 raise InputError(f"{shown(inside)} is not a table, so that it has no {part}", ".".join(way[:number]))
             missing: Any = [0.0] * _AT_REST[part] if part in _AT_REST and way[number:] == [part] else {}
             inside = inside.setdefault(part, missing)
-            if part == "air" and isinstance(inside, bool):
+            if part in ("air", "liquid") and isinstance(inside, bool):
                 inside = holder[part] = {}
             if isinstance(inside, str) and part == "material":
                 written = material_table(find_material(inside))
@@ -186,6 +187,7 @@ def _keys(table: Mapping[str, Any]) -> Iterator[tuple[str, Quantity | None]]:
                 yield f"contact.friction.{item.name}", Quantity(metadata["unit"], metadata["meaning"], metadata["range"])
     for field, info in LocalSection.model_fields.items():
         yield f"contact.{field}", quantity_of(info)
+    yield from ((f"contact.liquid.{part}", quantity_of(inner)) for part, inner in LiquidTable.model_fields.items())
 
 
 def _parts(annotation: Any) -> tuple[Any, ...]:
