@@ -47,6 +47,14 @@ def test_a_check_tells_what_is_left_and_a_run_achieves_it() -> None:
     assert 0.2 < told["restitution_asked"] < 0.7
 
 
+def test_a_check_tells_what_to_ask_in_air() -> None:
+    contact = {"law": "hunt-crossley", "restitution": 0.8, "liquid": {"viscosity": "0.1 Pa s"}}
+    told = case_document(vi.read_case(wet(contact=contact)))["first_impact"]
+    again = case_document(vi.read_case(wet(contact={**contact, "restitution": told["restitution_to_ask"]})))["first_impact"]
+    assert told["restitution_achieved"] > told["restitution_asked"] + 0.02
+    assert again["restitution_achieved"] == pytest.approx(told["restitution_asked"], rel=1e-6)
+
+
 def test_the_ledger_and_the_history_know_of_it() -> None:
     response = vi.simulate(vi.read_case(wet({"viscosity": "0.3 Pa s"}, run={"impacts": 3})))
     assert response.energy["closure_relative"] < 1e-9
