@@ -34,7 +34,8 @@ from vibroimpact.studies.kept_signals import check_need_of_signals, check_signal
 from vibroimpact.studies.limit_columns import limit_meanings
 from vibroimpact.studies.plan import Plan
 from vibroimpact.studies.population import LABELS, Population
-from vibroimpact.studies.section import MOST_DROPS, SweepSection, read_axis
+from vibroimpact.studies.scaled import check_scaled
+from vibroimpact.studies.section import MOST_DROPS, SweepSection, read_axis, read_scaled
 from vibroimpact.studies.swept_keys import case_at
 from vibroimpact.studies.window import Window
 
@@ -268,6 +269,8 @@ def read_sweep(table: Mapping[str, Any]) -> Sweep:
         elif not over:
             raise InputError("it is empty; it takes dotted keys of the case", "over")
         check_count(len(quantities), MOST_KEYS, "swept keys")
+        own = {} if population is None else {f'classes."{name}".over': of_class for name, of_class in population.own.items()}
+        check_scaled(section.design, {"over": axes, **own}, quantities)
         check_need_of_signals(section, quantities)
         sweep = Sweep(base, section, axes, quantities, population)
         if sweep.size > MOST_DROPS:
@@ -295,11 +298,15 @@ def _read_over(base: Mapping[str, Any], table: Mapping[str, Any]) -> tuple[dict[
     twice = next((key for number, (key, _) in enumerate(keys) if key in dict(keys[:number])), None)
     if twice is not None:
         raise InputError("this key stands there twice, in quotes and in a table", f'over."{twice}"')
-    quantities, axes = {}, {}
+    quantities: dict[str, Quantity | None] = {}
+    axes: dict[str, Axis] = {}
     for key, value in over.items():
         try:
             quantities[key] = find_quantity(base, key)
-            axes[key] = read_axis(value, quantities[key])
+            if isinstance(value, Mapping) and "of" in value:
+                axes[key] = read_scaled(value, quantities[key], find_quantity(base, str(value["of"])))
+            else:
+                axes[key] = read_axis(value, quantities[key])
             _check_names(axes[key])
         except InputError as error:
             raise InputError(error.message, f'over."{key}".{error.key}'.rstrip(".")) from None
