@@ -66,8 +66,7 @@ def find_quantity(table: Mapping[str, Any], key: str) -> Quantity | None:
         If there is no such key, or it can't be swept.
     """
     if key.startswith("sensors."):
-        named_sensor(table.get("sensors"), split_key(table, key)[1])
-        known = dict(sensor_keys(table))
+        known = dict(sensor_keys({"sensors": [named_sensor(table.get("sensors"), split_key(table, key)[1])]}))
     else:
         known = quantity_keys(table)
     if key in known:
