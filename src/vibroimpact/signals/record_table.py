@@ -38,6 +38,14 @@ class RecordTable:
         The values, in the units `features()[name].unit_for(record.unit)`; NaN where there is none.
     reasons : array of int, shape (records, features)
         Why there is none, as members of `Reason`; 0 where there is one.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import vibroimpact as vi
+    >>> table = vi.record_table([vi.Record("a", np.sin(np.arange(100)), 1e3, "V")], ["rms", "peak"])
+    >>> table.names, table.values.round(2).tolist()
+    (('rms', 'peak'), [[0.71, 1.0]])
     """
 
     records: list[Record]

@@ -68,6 +68,13 @@ class Sweep:
         Quantity of each swept key; None if it is not a quantity.
     population : Population, optional
         Classes of rocks, with the axes of their keys.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> sweep = vi.load_sweep("signals:coal-gangue", samples=10)
+    >>> sweep.name, sweep.size, sweep.case_of(3).contact.law
+    ('coal and gangue on a tail-beam plate', 10, 'tsuji')
     """
 
     table: dict[str, Any]
@@ -196,35 +203,15 @@ def load_sweep(source: str | PathLike[str], samples: int | None = None) -> Sweep
     ------
     InputError
         If it can't be read or is not a valid study; the message names the key, the value and what is allowed.
-    """
-    changes = {} if samples is None else {"sweep.samples": samples}
-    return prefix_errors(source, lambda: read_sweep(with_values(load_table(source), changes)))
-
-
-def load_drop(source: str | PathLike[str], drop: int, changes: Mapping[str, Any] | None = None) -> Case:
-    """Return the case of one drop of a study.
-
-    Parameters
-    ----------
-    source : path or str
-        A TOML file with a [sweep] section, or a shipped study such as "paper:sweep".
-    drop : int
-        Number of the drop, from 0.
-    changes : mapping, optional
-        Other values by dotted key, swept or not.
-
-    Raises
-    ------
-    InputError
-        If it is not a valid study, or has no such drop.
 
     Examples
     --------
-    >>> case = load_drop("paper:sweep", 13)
-    >>> case.sphere.radius, case.contact.parameters["restitution"]
-    (0.005, 0.95)
+    >>> import vibroimpact as vi
+    >>> vi.load_sweep("paper:sweep").size, vi.load_sweep("signals:coal-gangue", samples=10).size
+    (140, 10)
     """
-    return prefix_errors(source, lambda: read_sweep(load_table(source)).case_of(drop, changes))
+    changes = {} if samples is None else {"sweep.samples": samples}
+    return prefix_errors(source, lambda: read_sweep(with_values(load_table(source), changes)))
 
 
 def read_sweep(table: Mapping[str, Any]) -> Sweep:
