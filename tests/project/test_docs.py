@@ -41,6 +41,7 @@ NOT_RUN = {
     "vibroimpact recognise falls -o new-plates --group plate": "tests/unit/test_recognition.py runs it",
     "vibroimpact recognise today --model recognised -o counted": "tests/unit/test_recognition.py runs it",
     "vibroimpact identify coal.toml records.csv -o found": "tests/unit/test_identification.py runs it",
+    "vibroimpact correlate plate.toml taps.csv --hammer force -o compared": "tests/unit/test_correlation.py runs it",
     'pip install "vibroimpact[app]"': "installs",
     "vibroimpact serve": "runs until it is ended; tests/page tries it",
 }
