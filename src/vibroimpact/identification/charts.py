@@ -15,7 +15,18 @@ _HEIGHT = 3.2
 
 
 def identification_charts(found: Identification) -> list[Chart]:
-    """Return the charts `records`, `force` and, if the place was sought, `place`."""
+    """Return the charts of an identification.
+
+    Parameters
+    ----------
+    found : Identification
+        What was identified.
+
+    Returns
+    -------
+    list of Chart
+        `records` with their fit, `force` with its band and, if the place was sought, `place`.
+    """
     return [_records_chart(found), _force_chart(found), *([_place_chart(found)] if found.search.misfit.size > 1 else [])]
 
 
