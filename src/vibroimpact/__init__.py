@@ -124,6 +124,7 @@ if TYPE_CHECKING:
     from vibroimpact.recognition.charts import recognition_charts as recognition_charts
     from vibroimpact.recognition.folder import save_recognition as save_recognition
     from vibroimpact.recognition.labelled_signals import LabelledSignals as LabelledSignals
+    from vibroimpact.recognition.labelled_signals import SensorSignals as SensorSignals
     from vibroimpact.recognition.read_dataset import read_labelled_signals as read_labelled_signals
     from vibroimpact.recognition.recognise import Recognition as Recognition
     from vibroimpact.recognition.recognise import recognise as recognise
@@ -213,6 +214,7 @@ _HOME = {
     "Response": "dynamics.response",
     "Result": "results.result",
     "Sensor": "dynamics.sensors.sensor",
+    "SensorSignals": "recognition.labelled_signals",
     "Signal": "dynamics.sensors.recording",
     "SpeedFunction": "calibration.speed_function",
     "StrainGauge": "dynamics.sensors.instruments.strain_gauge",
