@@ -11,8 +11,11 @@ import pytest
 
 FILES = sorted((Path(__file__).parents[2] / "examples" / "gallery").glob("*.py"))
 
-# modes of elastic bodies, and thousands of bounces: more than 3 s of processor time
-LONG = {"plot_elastic_bodies", "plot_plate_modes", "plot_plate_thickness", "plot_shaken_table"}
+# modes of elastic bodies, thousands of bounces, classifiers: more than 2 s of processor time
+LONG = {
+    f"plot_{name}" for name in ("accelerometer", "elastic_bodies", "features", "identify", "instruments", "plate_modes", "plate_thickness")
+}
+LONG |= {"plot_recognition", "plot_shaken_table"}
 
 
 @pytest.mark.parametrize("file", [pytest.param(file, id=file.stem, marks=pytest.mark.slow if file.stem in LONG else ()) for file in FILES])
