@@ -82,13 +82,23 @@ html_theme_options = {
 
 
 PAGES_OF_FILES = {"README.md#use": "use.md", "CHANGELOG.md": "changelog.md"}
+LAWS = """
+```{toctree}
+:hidden:
+:glob:
+
+laws/*
+```
+"""
 
 
-def lead_to_pages(app: Sphinx, page: str, source: list[str]) -> None:
-    """Lead what links to a file beside this folder, such as ../CHANGELOG.md, to the page that includes it."""
+def complete(app: Sphinx, page: str, source: list[str]) -> None:
+    """Lead links to files beside this folder to the pages that include them, and put the pages of the laws below their table."""
     for file, own in PAGES_OF_FILES.items():
         source[0] = re.sub(rf"\]\(((?:\.\./)*)\.\./{re.escape(file)}\)", rf"](\1{own})", source[0])
+    if page == "laws":
+        source[0] += LAWS
 
 
 def setup(app: Sphinx) -> None:
-    app.connect("source-read", lead_to_pages)
+    app.connect("source-read", complete)

@@ -1,4 +1,4 @@
-"""What is wrong with built pages: dead links, pictures without words, what comes from a network, pages that are heavy or lead no further."""
+"""What is wrong with built pages: dead links, pictures without words, what comes from a network, pages that are heavy or lead nowhere."""
 
 from __future__ import annotations
 

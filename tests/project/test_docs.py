@@ -23,7 +23,32 @@ from vibroimpact.cli import main
 from vibroimpact.dynamics.columns import IMPACT_COLUMNS
 
 ROOT = Path(__file__).parents[2]
-PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").glob("*.md")])
+DOCS = ROOT / "docs"
+PAGES = [ROOT / "README.md", *sorted([*DOCS.glob("*.md"), *DOCS.glob("guides/*.md")])]
+LAW_PAGES = sorted(DOCS.glob("laws/*.md"))
+
+# what blocks of the pages are: these are run or read by the tests below, a text is what is printed, and "sh" has its own list
+LANGUAGES = {"console", "python", "toml", "text", "sh", "math"}
+DIRECTIVES = {"{toctree}", "{eval-rst}", "{include}"}
+NOT_RUN = {
+    "make demo": "installs, and CI runs each part",
+    "make test": "CI runs it",
+    "vibroimpact run paper:type1-theory -o theory --json | jq '.impacts[0].max_force_N'": "tests/contract/test_json.py reads it",
+    "vibroimpact --install-completion": "changes the settings of a shell; tests/unit/test_completion.py tries it",
+    "vibroimpact --show-completion": "tests/unit/test_completion.py tries it",
+    "vibroimpact dataset signals:coal-gangue -o falls": "minutes; tests/unit/test_populations.py runs smaller ones",
+    "vibroimpact recognise falls -o recognised": "tests/unit/test_recognition.py runs it",
+    "vibroimpact recognise falls -o new-plates --group plate": "tests/unit/test_recognition.py runs it",
+    "vibroimpact recognise today --model recognised -o counted": "tests/unit/test_recognition.py runs it",
+    "vibroimpact identify coal.toml records.csv -o found": "tests/unit/test_identification.py runs it",
+    'pip install "vibroimpact[app]"': "installs",
+    "vibroimpact serve": "runs until it is ended; tests/page tries it",
+}
+"""Commands of the pages that no test here runs, and why."""
+
+
+def name_of(page: Path) -> str:
+    return page.relative_to(ROOT).as_posix()
 
 
 def blocks(page: Path, language: str) -> list[str]:
@@ -60,7 +85,7 @@ def write_records(folder: Path) -> None:
     [
         pytest.param(PAGES[:1], is_quick, id="README, quick"),
         pytest.param(PAGES[:1], lambda _: True, id="README", marks=pytest.mark.slow),
-        pytest.param(PAGES[1:], lambda _: True, id="docs", marks=pytest.mark.slow),
+        pytest.param([*PAGES[1:], *LAW_PAGES], lambda _: True, id="docs", marks=pytest.mark.slow),
     ],
 )
 def test_documented_commands_run(
@@ -104,7 +129,7 @@ def test_readme_shows_what_the_demo_prints(variable: vi.Response) -> None:
 @pytest.mark.parametrize(
     "page",
     # of the pages on elastic bodies the other one computes modes too, and fewer
-    [pytest.param(page, id=page.name, marks=pytest.mark.slow if page.name == "elastic-drops.md" else ()) for page in PAGES],
+    [pytest.param(page, id=name_of(page), marks=pytest.mark.slow if page.name == "elastic-drops.md" else ()) for page in PAGES],
 )
 def test_documented_python_runs(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
@@ -115,7 +140,7 @@ def test_documented_python_runs(page: Path, tmp_path: Path, monkeypatch: pytest.
     assert "__builtins__" in names or not blocks(page, "python")
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+@pytest.mark.parametrize("page", PAGES, ids=name_of)
 def test_documented_cases_are_valid(page: Path) -> None:
     import tomllib
 
@@ -123,7 +148,23 @@ def test_documented_cases_are_valid(page: Path) -> None:
         assert vi.read_case(tomllib.loads(block)).sphere.radius > 0
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+@pytest.mark.parametrize("page", [*PAGES, *LAW_PAGES], ids=name_of)
+def test_every_block_is_run_or_has_a_reason(page: Path) -> None:
+    text = page.read_text(encoding="utf-8")
+    fences = re.findall(r"^\s*(?:```|~~~)[ \t]*([^\s`]*)", text, flags=re.M)
+    opened = [fence for fence in fences if fence]
+    assert len(fences) == 2 * len(opened), "a block without a language, or one that is not closed"
+    assert set(opened) <= LANGUAGES | DIRECTIVES
+    for language in ("console", "python", "toml"):  # what the tests find is all there is
+        assert opened.count(language) == len(blocks(page, language))
+    asked = [line.removeprefix("$ ") for block in blocks(page, "console") for line in block.splitlines() if line.startswith("$ ")]
+    run = {command.split("  #")[0].strip() for command in asked} - set(NOT_RUN)
+    assert run - {command for command in run if command.startswith("vibroimpact serve")} == set(commands([page]))
+    typed = {line.split("  #")[0].strip() for block in blocks(page, "sh") for line in block.splitlines() if line.strip()}
+    assert typed <= set(NOT_RUN)
+
+
+@pytest.mark.parametrize("page", [*PAGES, *LAW_PAGES], ids=name_of)
 def test_links_lead_somewhere(page: Path) -> None:
     for target in re.findall(r"\]\(([^)#]+)[^)]*\)", page.read_text(encoding="utf-8")):
         assert target.startswith("https://") or (page.parent / target).exists(), target

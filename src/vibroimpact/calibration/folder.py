@@ -58,6 +58,16 @@ def save_calibration(
     ------
     InputError
         If the folder exists already, or can't be written.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> import vibroimpact as vi
+    >>> what = vi.load_calibration("paper:type1-theory")
+    >>> with TemporaryDirectory() as folder:
+    ...     place = vi.save_calibration(what.case, vi.calibrate_case(what), f"{folder}/calibrated")
+    ...     vi.load_case(place / "case.toml").contact.law
+    'adams-impact'
     """
     told = report_of(case, found)
     with new_folder(directory, force=force) as folder:

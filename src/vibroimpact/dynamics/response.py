@@ -73,6 +73,15 @@ class Response:
     --------
     simulate : makes one.
     tabulate : makes one without histories.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> response = vi.simulate(vi.load_case("paper:type1-theory"))
+    >>> response.impacts["restitution_achieved"].round(4).tolist()
+    [0.7748, 0.7748, 0.7747, 0.7747, 0.7746]
+    >>> bool(response.energy["closure_relative"] < 1e-9)
+    True
     """
 
     problem: Problem

@@ -44,6 +44,14 @@ class MovingBody:
         Of the centre [m/s], and about it [rad/s], at the start.
     modes : ModalBasis, optional
         Vibration modes. Its `points` give the mode shapes at each contact, by the name of the contact.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> beam = vi.MovingBody(mass=0.942, inertia=(2e-4, 7.07e-3, 7.26e-3))
+    >>> wall = vi.MovingBody(mass=float("inf"))
+    >>> beam.mass, wall.mass
+    (0.942, inf)
     """
 
     mass: float
@@ -104,6 +112,14 @@ class PointContact:
         Quasi-static compliance in series with the law.
     same_spot : bool, default True
         Whether each impact of this contact falls where the last one did; otherwise it meets undeformed surfaces.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> law = vi.find_contact_law("hertz")(stiffness=1e9)
+    >>> contact = vi.PointContact(above="ball", below="beam", law=law, point=(0.12, 0, 0), gap=1e-3)
+    >>> contact.normal, contact.gap
+    (array([0., 0., 1.]), 0.001)
     """
 
     above: str

@@ -42,9 +42,13 @@ class RecordTable:
 
     Examples
     --------
-    >>> table = record_table([Record("geophone", [0.0, 2.0, -3.0, 1.0], 10e3, "V")])
-    >>> table["peak"].tolist()
-    [3.0]
+    >>> import numpy as np
+    >>> import vibroimpact as vi
+    >>> table = vi.record_table([vi.Record("a", np.sin(np.arange(100)), 1e3, "V")], ["rms", "peak"])
+    >>> table.names, table.values.round(2).tolist()
+    (('rms', 'peak'), [[0.71, 1.0]])
+    >>> table["peak"].round(2).tolist()
+    [1.0]
     """
 
     records: list[Record]

@@ -63,6 +63,13 @@ class Sweep:
         Quantity of each swept key; None if it is not a quantity.
     population : Population, optional
         Classes of rocks, with the axes of their keys.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> sweep = vi.load_sweep("signals:coal-gangue", samples=10)
+    >>> sweep.name, sweep.size, sweep.case_of(3).contact.law
+    ('coal and gangue on a tail-beam plate', 10, 'tsuji')
     """
 
     table: dict[str, Any]
@@ -191,6 +198,12 @@ def load_sweep(source: str | PathLike[str], samples: int | None = None) -> Sweep
     ------
     InputError
         If it can't be read or is not a valid study; the message names the key, the value and what is allowed.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> vi.load_sweep("paper:sweep").size, vi.load_sweep("signals:coal-gangue", samples=10).size
+    (140, 10)
     """
     changes = {} if samples is None else {"sweep.samples": samples}
     return prefix_errors(source, lambda: read_sweep(with_values(load_table(source), changes)))
