@@ -72,6 +72,7 @@ dropped(speed, 1e-4).plot("force_indentation")
 # %%
 # Three speeds
 # ------------
+# sphinx_gallery_thumbnail_number = -1
 plt.style.use("vibroimpact.charts.print")
 figure, axes = plt.subplots(figsize=(6.4, 4.2), layout="constrained")
 for one, colour in zip((1.0, 2.0, 3.0), ("#56a8d8", "#0072b2", "#00204d"), strict=True):
