@@ -54,7 +54,6 @@ vi.plotly_figure(restitution_chart)
 # What was heard
 # --------------
 plt.style.use("vibroimpact.charts.print")
-# sphinx_gallery_thumbnail_number = -1
 figure, (above, below) = plt.subplots(2, figsize=(6.6, 4.6), height_ratios=(3, 2), sharex=True, layout="constrained")
 above.plot(time, sound, color="#0072b2", linewidth=0.4)
 above.plot(bounces.time, np.abs(bounces.peak), "v", color="#b3400e", markersize=7, label="bounces that are found")
@@ -66,4 +65,5 @@ below.errorbar(bounces.time[known], rebounds.restitution[known], 1.96 * rebounds
 below.text(bounces.time[-1], restitution, "true", color="#b3400e", va="bottom", ha="right", fontsize=8)
 below.set(xlabel="Time [s]", ylabel="Restitution [-]")
 below.yaxis.set_major_formatter("{x:.5f}")
+# sphinx_gallery_thumbnail_number = -1
 plt.show()

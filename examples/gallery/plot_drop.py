@@ -40,7 +40,6 @@ assert abs(response.energy["closure_relative"]) < 1e-9
 # -------------
 # The history can be asked at any time, however short the contacts are: above the path, below the force of each bounce from its first touch
 # on.
-# sphinx_gallery_thumbnail_number = -1
 plt.style.use("vibroimpact.charts.print")
 figure, (above, below) = plt.subplots(2, figsize=(6.4, 5.0), height_ratios=(2, 3), layout="constrained")
 time = np.linspace(0.0, response.end_time[0], 2000)
@@ -60,4 +59,5 @@ below.axhline(9.583984, color="#b3400e", linestyle="--", linewidth=0.9)
 below.text(350, 9.65, "largest force that the paper prints", color="#b3400e", ha="right", va="bottom", fontsize=8)
 below.set(xlabel="Time since first touch [µs]", ylabel="Contact force [kN]", xlim=(0, 350), ylim=(0, 11))
 below.legend(loc="upper right", bbox_to_anchor=(1.0, 0.88))
+# sphinx_gallery_thumbnail_number = -1
 plt.show()

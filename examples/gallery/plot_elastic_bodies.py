@@ -50,7 +50,6 @@ response.plot("energy")
 # Deflections on a grid at 61 times come with the result. The plate stands still at first but for the place of the contact; the waves reach
 # the edges when the rock has just left, 0.26 ms after it came.
 deflection = vi.result_of(response).deflection
-# sphinx_gallery_thumbnail_number = -1
 plt.style.use("vibroimpact.charts.print")
 figure, panels = plt.subplots(2, 3, figsize=(7.0, 4.2), layout="constrained")
 for axes, moment in zip(panels.flat, (0.06e-3, 0.13e-3, 0.26e-3, 0.5e-3, 1.1e-3, 3.0e-3), strict=True):
@@ -66,4 +65,5 @@ for axes, moment in zip(panels.flat, (0.06e-3, 0.13e-3, 0.26e-3, 0.5e-3, 1.1e-3,
     for spine in axes.spines.values():
         spine.set_visible(True)
 figure.suptitle("The plate bends: blue down, red up, on four patches", x=0.02, ha="left", fontweight="bold")
+# sphinx_gallery_thumbnail_number = -1
 plt.show()

@@ -53,7 +53,6 @@ response.plot("energy")
 words = ("ball moves", "ball is high", "contact is compressed", "plate moves", "plate is bent", "lost in the contact", "lost in the plate")
 colours = ("#4a8cc7", "#d6e6f4", "#f7cd6b", "#9fce7f", "#d9edc9", "#404040", "#a3a3a3")
 plt.style.use("vibroimpact.charts.print")
-# sphinx_gallery_thumbnail_number = -1
 figure, panels = plt.subplots(1, 2, figsize=(7.2, 4.0), sharey=True, width_ratios=(3, 2), layout="constrained")
 touch = response.impacts["time_s"][0]
 for axes, time, unit in zip(
@@ -67,4 +66,5 @@ for axes, time, unit in zip(
 panels[0].set(xlabel="Time since first touch [ms]", ylabel="Part of the energy put in [-]", title="A steel ball on 10 mm of acrylic glass")
 panels[1].set(xlabel="Time [s]", title="All six impacts")
 figure.legend(*(reversed(one) for one in panels[0].get_legend_handles_labels()), loc="outside lower center", ncols=4)
+# sphinx_gallery_thumbnail_number = -1
 plt.show()

@@ -67,7 +67,6 @@ vi.plotly_figure(charts["records"])
 # ---------------
 # What the best pulse at each place explains of the records; and the force, which needs no contact law.
 plt.style.use("vibroimpact.charts.print")
-# sphinx_gallery_thumbnail_number = -1
 figure, (left, right) = plt.subplots(1, 2, figsize=(7.4, 3.6), width_ratios=(5, 4), layout="constrained")
 explained = 1.0 - found.search.misfit
 picture = left.pcolormesh(
@@ -97,4 +96,5 @@ real = np.linspace(0.0, response.impacts["duration_s"][0], 300)
 right.plot(1e6 * real, 1e-3 * response.at(response.impacts["time_s"][0] + real)["force_N"], "--", color="#b3400e", label="true")
 right.set(xlabel="Time since first touch [µs]", ylabel="Contact force [kN]", title="With what force?", xlim=(-200, 700), ylim=(-0.3, 2.2))
 right.legend(loc="upper right")
+# sphinx_gallery_thumbnail_number = -1
 plt.show()

@@ -72,7 +72,6 @@ dropped(speed, 1e-4).plot("force_indentation")
 # %%
 # Three speeds
 # ------------
-# sphinx_gallery_thumbnail_number = -1
 plt.style.use("vibroimpact.charts.print")
 figure, axes = plt.subplots(figsize=(6.4, 4.2), layout="constrained")
 for one, colour in zip((1.0, 2.0, 3.0), ("#56a8d8", "#0072b2", "#00204d"), strict=True):
@@ -86,4 +85,5 @@ depth = np.linspace(0.0, 1.05 * deepest, 200)
 axes.plot(1e3 * depth, 1e-3 * (k * depth + q * depth**3), "--", color="#6b6b6b", linewidth=0.9, label="$k \\delta + q \\delta^3$")
 axes.set(xlabel="Indentation [mm]", ylabel="Force [kN]", title="A rock on a rubber lining: a law of one's own")
 axes.legend(loc="upper left")
+# sphinx_gallery_thumbnail_number = -1
 plt.show()

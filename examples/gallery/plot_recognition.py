@@ -69,7 +69,6 @@ vi.plotly_figure(charts["scores"])
 # The optimism of a split at random
 # ---------------------------------
 plt.style.use("vibroimpact.charts.print")
-# sphinx_gallery_thumbnail_number = -1
 figure, axes = plt.subplots(figsize=(6.6, 3.8), layout="constrained")
 places = np.arange(len(classifiers))[::-1]
 for scores, side, colour, words in (
@@ -87,4 +86,5 @@ axes.set(xlabel="Balanced accuracy [%]", xlim=(50.0, 100.0), ylim=(-1.2, 3.8), t
 axes.set_yticks(places, classifiers)
 axes.legend(loc="lower left")
 axes.grid(visible=False, axis="y")
+# sphinx_gallery_thumbnail_number = -1
 plt.show()

@@ -36,11 +36,6 @@ with TemporaryDirectory() as folder:
     radius, height = study.coordinates["sphere.radius"], study.coordinates["drop.height"]
     force, indentation = study.values("largest_force_N"), study.values("largest_indentation_m")
     overload = study.values("limit_plate_strength")
-    charts = vi.study_charts(study)
-
-# %%
-# The charts of its report come as figures, too.
-vi.plotly_figure(charts[0])
 
 # %%
 # Size does not matter
@@ -60,7 +55,6 @@ assert np.allclose(overload, reference * dropped**0.2, rtol=5e-3)
 # Colours are the largest force; dashed is how many times the pressure exceeds what mild steel bears: granite dents it from every height
 # here.
 plt.style.use("vibroimpact.charts.print")
-# sphinx_gallery_thumbnail_number = -1
 figure, axes = plt.subplots(figsize=(6.4, 4.4), layout="constrained")
 map_of_force = axes.pcolormesh(1e3 * radius, height, force.T, norm="log", cmap="cividis", shading="gouraud", rasterized=True)
 lines = axes.contour(1e3 * radius, height, force.T, 10.0 ** np.arange(1.0, 6.0), colors="white", linewidths=0.9)
