@@ -171,7 +171,7 @@ def test_links_lead_somewhere(page: Path) -> None:
 
 
 # modes of a plate, studies, many pictures, pages in a browser
-LONG_EXAMPLES = {"a_nanometre", "charts_of_studies", "how_it_works", "pictures_of_pages", "tolerances"}
+LONG_EXAMPLES = {"a_nanometre", "ball_on_table", "charts_of_studies", "how_it_works", "pictures_of_pages", "tolerances"}
 
 
 @pytest.mark.parametrize(

@@ -16,6 +16,7 @@ from vibroimpact.dynamics.columns import LEDGER, OBLIQUE_LEDGER, VIBRATION_LEDGE
 from vibroimpact.dynamics.flight import Flight
 from vibroimpact.structures.modal_model import ModalBasis
 
+SKEW = vi.Oblique(velocity=(0.4, -0.2), gravity=(0.3, 0.0))
 RUBBER = {"density": 1100.0, "youngs_modulus": 5e6, "poissons_ratio": 0.48}
 
 
@@ -159,26 +160,25 @@ def test_data_is_exported_with_air_and_programs_get_none(tmp_path: Path) -> None
         vi.export_result(tmp_path / "found", "lammps", tmp_path / "out")
 
 
-def test_bodies_that_vibrate_in_air() -> None:
+@pytest.mark.parametrize("size", [1e-9, 0.4])
+@pytest.mark.parametrize("more", [pytest.param({}, marks=pytest.mark.slow), {"oblique": SKEW}], ids=["vertical", "oblique"])
+def test_bodies_that_vibrate_in_air(size: float, more: dict[str, Any]) -> None:
     """Modes that hardly move leave the numbers of rigid bodies; others the balance of energy, with what air takes."""
     law = vi.find_contact_law("hunt-crossley")(stiffness=5e8, restitution=0.7)
     ball, drop = vi.Body(mass=0.02, contact_offset=0.02), {"height": 2.0, "impacts": 3, "air": vi.Air()}
-    oblique = vi.Oblique(velocity=(0.4, -0.2), gravity=(0.3, 0.0))
     random = np.random.default_rng(5)
-    for size, more in ((1e-9, {}), (1e-9, {"oblique": oblique}), (0.4, {}), (0.4, {"oblique": oblique})):
-        contact, along = size * random.normal(size=8), size * random.normal(size=(8, 2))
-        modes = ModalBasis(np.geomspace(150.0, 9e3, 8), np.full(8, 0.001), contact, np.zeros((8, 3)), mass=3.0, along=along)
-        found = vi.simulate(
-            vi.Problem(sphere=ball, plate=vi.Body(mass=np.inf, contact_offset=0.0, modes=modes), laws=(law,), **drop, **more)
-        )
-        if size < 1e-3:
-            rigid = vi.simulate(vi.Problem(sphere=ball, plate=vi.rigid_plate(), laws=(law,), **drop, **more))
-            for name in ("time_s", "approach_speed_m_s", "rebound_height_m", "air_lost_J"):
-                np.testing.assert_allclose(found.impacts[name], rigid.impacts[name], rtol=1e-9)
-        assert found.energy["closure_relative"] < 1e-9
-        history = found.history()
-        entries = [name for name in history if name in (*LEDGER, *VIBRATION_LEDGER, *OBLIQUE_LEDGER, "air_J")]
-        np.testing.assert_allclose(sum(history[name] for name in entries), found.energy["input_J"], rtol=1e-7)
+    contact, along = size * random.normal(size=8), size * random.normal(size=(8, 2))
+    modes = ModalBasis(np.geomspace(150.0, 9e3, 8), np.full(8, 0.001), contact, np.zeros((8, 3)), mass=3.0, along=along)
+    plate = vi.Body(mass=np.inf, contact_offset=0.0, modes=modes)
+    found = vi.simulate(vi.Problem(sphere=ball, plate=plate, laws=(law,), **drop, **more))
+    if size < 1e-3:
+        rigid = vi.simulate(vi.Problem(sphere=ball, plate=vi.rigid_plate(), laws=(law,), **drop, **more))
+        for name in ("time_s", "approach_speed_m_s", "rebound_height_m", "air_lost_J"):
+            np.testing.assert_allclose(found.impacts[name], rigid.impacts[name], rtol=1e-9)
+    assert found.energy["closure_relative"] < 1e-9
+    history = found.history()
+    entries = [name for name in history if name in (*LEDGER, *VIBRATION_LEDGER, *OBLIQUE_LEDGER, "air_J")]
+    np.testing.assert_allclose(sum(history[name] for name in entries), found.energy["input_J"], rtol=1e-7)
 
 
 def test_falls_through_air_onto_a_plate_that_rings() -> None:

@@ -47,7 +47,7 @@ def test_the_spectrum_falls_where_it_is_known_to() -> None:
     assert brentq(spectrum, 1.5, 2.0) == pytest.approx(1.80, abs=0.005)
 
 
-@pytest.mark.parametrize(("rate", "duration"), [(200e3, 300e-6), (20e3, 300e-6), (40e3, 1e-3)])
+@pytest.mark.parametrize(("rate", "duration"), [pytest.param(200e3, 300e-6, marks=pytest.mark.slow), (20e3, 300e-6), (40e3, 1e-3)])
 def test_maximum_likelihood_reaches_the_uncertainty(rate: float, duration: float) -> None:
     """White noise sampled at twice the band, and the pulse limited to the band by its own Fourier series."""
     over, number, rng = 16, 128, np.random.default_rng(1)

@@ -44,7 +44,7 @@ def matching(plate: SimplySupported, omega: Floats, spot: Floats, exact: Floats)
     return bends[mine], near[theirs]
 
 
-@pytest.mark.parametrize("side", ["upper", "lower"])
+@pytest.mark.parametrize("side", [pytest.param("upper", marks=pytest.mark.slow), "lower"])
 def test_modes(side: Any) -> None:
     recipe = Recipe(PlateOfPlates(SIZE, 0.01, theory="thin"), DENSITY, MODULUS, POISSON, EDGES_HELD, Reduction(modes=20))
     plate = SimplySupported(SIZE, DENSITY, MODULUS, POISSON, 60e3)
@@ -123,6 +123,7 @@ def test_a_drop(response: vi.Response, strains: dict[str, Floats], name: str, ki
     assert found.uncertainty < 0.01
 
 
+@pytest.mark.slow
 def test_what_fewer_modes_change_is_told(strains: dict[str, Floats]) -> None:
     """Curvature converges more slowly than deflection: with few modes the error is large, and told within a factor of four."""
     for frequency in (8e3, 16e3):

@@ -71,8 +71,8 @@ SOLID = {"modes": 6, "element": "solid", "mesh": {"element_size": 0.015, "layers
     [
         (on_points(type="point"), THREE, None),
         (PADS, FOUR, None),
-        (PATCHES, FOUR, None),
-        (BARS, FOUR, None),
+        pytest.param(PATCHES, FOUR, None, marks=pytest.mark.slow),
+        pytest.param(BARS, FOUR, None, marks=pytest.mark.slow),
         ("clamped", EDGES, None),
         pytest.param(PATCHES, FOUR, SOLID, marks=pytest.mark.slow),
         pytest.param("clamped", EDGES, SOLID, marks=pytest.mark.slow),
@@ -129,7 +129,7 @@ def test_balance_of_momentum(response: vi.Response, forces: Floats) -> None:
     assert off(sum(signal.value for signal in response.signals().values()), forces.sum(axis=0)) < 0.01
 
 
-@pytest.mark.parametrize("frequency", [16e3, 30e3])
+@pytest.mark.parametrize("frequency", [16e3, pytest.param(30e3, marks=pytest.mark.slow)])
 def test_what_fewer_modes_change_is_told(forces: Floats, frequency: float) -> None:
     for name, signal in on_edges(frequency).signals().items():
         assert 0.25 < signal.uncertainty / off(signal.value, forces[int(name)]) < 4.0

@@ -16,6 +16,7 @@ import vibroimpact as vi
 from oracles.measuring_chain import RATE, Floats, SimplySupported, driven, rms, sampled, seismic
 from vibroimpact.dynamics.sensors.sensor import Accelerometer, Sensor
 
+pytestmark = pytest.mark.slow
 SIZE, DENSITY, MODULUS, POISSON, RATIO = (0.18, 0.15, 0.006), 7850.0, 210e9, 0.3, 0.05
 SPOT, PLACE, DURATION, SAMPLES = (-0.011, -0.0147), (0.023, 0.0301), 3e-3, 20e3
 BEFORE, AFTER = 0.04, 3e-3

@@ -93,7 +93,7 @@ def bound_of(
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> bound = bound_of(vi.load_sweep("signals:coal-gangue"))
+    >>> bound = bound_of(vi.load_sweep("signals:coal-gangue", 1000))
     >>> bound.errors["contact time"].upper > 5 * bound.errors["one impact"].upper
     True
     """

@@ -91,23 +91,45 @@ def cross_validate(
     return found
 
 
-def refit(
-    classifier: Classifier, values: Floats, classes: Indices, groups: Indices, train: Indices, seed: int, parameters: Parameters
-) -> Any:
-    """Return a classifier fitted to a training part with given parameters.
+@dataclass(frozen=True, eq=False)
+class Chosen:
+    """A classifier with its cross-validation, to be tried on what it was not trained on.
 
     Parameters
     ----------
     classifier : Classifier
-        What is fitted.
-    values, classes, groups : array
-        Of all signals.
-    train : array of int
-        Indices of the training part.
+        What was chosen.
+    classes, groups : array of int
+        Class and group of each signal.
+    validated : Validated
+        Its cross-validation, of which the first seed is used.
     seed : int
-        Seed of the classifier.
-    parameters : mapping
-        Its parameters.
+        That seed.
     """
-    splits = inner_splits(classes[train], groups[train], seed)
-    return classifier.make(parameters, seed, splits).fit(values[train], classes[train])
+
+    classifier: Classifier
+    classes: Indices
+    groups: Indices
+    validated: Validated
+    seed: int
+
+    @property
+    def parts(self) -> list[tuple[Split, Parameters]]:
+        """The parts of the cross-validation, with the parameters chosen in each."""
+        return list(zip(self.validated.splits[0], self.validated.parameters[0], strict=True))
+
+    @property
+    def guessed(self) -> Indices:
+        """The class that each signal was taken for by the model that did not see it."""
+        found: Indices = self.validated.held_out[0].argmax(axis=1)
+        return found
+
+    def refit(self, values: Floats, train: Indices, parameters: Parameters) -> Any:
+        """Return the classifier fitted to some of the signals, with given parameters."""
+        splits = inner_splits(self.classes[train], self.groups[train], self.seed)
+        return self.classifier.make(parameters, self.seed, splits).fit(values[train], self.classes[train])
+
+    def guess(self, fitted: Any, values: Floats) -> Indices:
+        """Return the class that a fitted classifier takes each row of a table for."""
+        found: Indices = probabilities(fitted, values, self.validated.held_out.shape[2]).argmax(axis=1)
+        return found

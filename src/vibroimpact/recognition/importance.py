@@ -7,9 +7,9 @@ from functools import partial
 
 import numpy as np
 
-from vibroimpact.arrays import Floats, Indices
-from vibroimpact.recognition.classifiers import Classifier, Parameters
-from vibroimpact.recognition.cross_validation import Validated, refit
+from vibroimpact.arrays import Floats
+from vibroimpact.recognition.classifiers import Parameters
+from vibroimpact.recognition.cross_validation import Chosen
 from vibroimpact.recognition.folds import Split
 from vibroimpact.recognition.jobs import Progress, run_jobs
 from vibroimpact.recognition.scores import balanced_accuracy
@@ -26,26 +26,16 @@ class Importance:
     spread: float
 
 
-def permutation_importance(
-    classifier: Classifier,
-    values: Floats,
-    names: tuple[str, ...],
-    classes: Indices,
-    groups: Indices,
-    validated: Validated,
-    seed: int,
-    workers: int,
-    progress: Progress,
-) -> list[Importance]:
+def permutation_importance(chosen: Chosen, values: Floats, names: tuple[str, ...], workers: int, progress: Progress) -> list[Importance]:
     """Return the importance of each feature on signals that were not trained on, the largest first.
 
     Features that say the same share their importance: each may seem to matter little while the other is there.
     """
 
-    def one(split: Split, chosen: Parameters) -> Floats:
-        fitted = refit(classifier, values, classes, groups, split.train, seed, chosen)
-        generator = np.random.default_rng(seed)
-        tested, truth = values[split.test], classes[split.test]
+    def one(split: Split, parameters: Parameters) -> Floats:
+        fitted = chosen.refit(values, split.train, parameters)
+        generator = np.random.default_rng(chosen.seed)
+        tested, truth = values[split.test], chosen.classes[split.test]
         whole = balanced_accuracy(fitted.predict(tested), truth)
         losses = np.zeros(len(names))
         for place in range(len(names)):
@@ -55,7 +45,7 @@ def permutation_importance(
                 losses[place] += (whole - balanced_accuracy(fitted.predict(exchanged), truth)) / _REPEATS
         return losses
 
-    jobs = [partial(one, *both) for both in zip(validated.splits[0], validated.parameters[0], strict=True)]
+    jobs = [partial(one, *part) for part in chosen.parts]
     losses = np.array(run_jobs("importance of features", jobs, workers, progress))
     found = [Importance(name, float(part.mean()), float(part.std(ddof=1))) for name, part in zip(names, losses.T, strict=True)]
     return sorted(found, key=lambda row: -row.loss)

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from functools import partial
 from importlib.metadata import version
 from os import PathLike
-from typing import Any
 
 import numpy as np
 
@@ -16,7 +15,7 @@ from vibroimpact.arrays import Floats, Indices
 from vibroimpact.errors import InputError
 from vibroimpact.recognition.bound import bound_doubts
 from vibroimpact.recognition.classifiers import CLASSIFIER, PROBE, Classifier, all_classifiers, fit_tuned
-from vibroimpact.recognition.cross_validation import Validated, cross_validate
+from vibroimpact.recognition.cross_validation import Chosen, Validated, cross_validate
 from vibroimpact.recognition.extra import needs_extra
 from vibroimpact.recognition.fraction import Streams, draw_rates, try_streams
 from vibroimpact.recognition.importance import Importance, permutation_importance
@@ -192,11 +191,10 @@ def recognise(
     optimism = {name: _difference(random[name].balanced_accuracy, scores[name].balanced_accuracy) for name in scores}
     best = max((one for one in compared if one.kind == CLASSIFIER), key=lambda one: scores[one.name].balanced_accuracy.value)
     (probe,) = (one.name for one in compared if one.kind == PROBE)
-    count, chosen = len(np.unique(groups)), apart[best.name]
+    count, chosen = len(np.unique(groups)), Chosen(best, classes, groups, apart[best.name], seed)
     doubts += bound_doubts(scores, signals.bayes_error, count, probe, best.name)
-    held_out = chosen.held_out.mean(axis=0)
+    held_out = chosen.validated.held_out.mean(axis=0)
     curve = reliability(held_out, classes, signals.class_names, bootstrap)
-    common: Any = (seed, bootstrap, workers, progress)
     return Recognition(
         signals.name,
         group,
@@ -212,14 +210,14 @@ def recognise(
         best.name,
         {name: _confusion(one, classes, len(signals.class_names)) for name, one in apart.items()},
         curve,
-        score_unseen(best, features.values, signals, classes, groups, chosen, *common),
-        score_in_noise(best, features.values, signals, classes, groups, chosen, *common),
-        permutation_importance(best, features.values, features.names, classes, groups, chosen, seed, workers, progress),
-        try_streams(chosen.held_out[0].argmax(axis=1), classes, signals.class_names, groups, seed),
+        score_unseen(chosen, features.values, signals, bootstrap, workers, progress),
+        score_in_noise(chosen, features.values, signals, bootstrap, workers, progress),
+        permutation_importance(chosen, features.values, features.names, workers, progress),
+        try_streams(chosen.guessed, classes, signals.class_names, groups, seed),
         float(np.average([abs(one.probability - one.part) for one in curve], weights=[one.signals for one in curve])),
         signals.bayes_error,
         tuple(doubts),
-        _trained(best, signals, features.names, features.units, tables[FEATURES], group, chosen, seed),
+        _trained(chosen, signals, features.names, features.units, tables[FEATURES], group),
     )
 
 
@@ -242,29 +240,20 @@ def _confusion(validated: Validated, classes: Indices, count: int) -> Floats:
 
 
 def _trained(
-    best: Classifier,
-    signals: LabelledSignals,
-    names: tuple[str, ...],
-    units: tuple[str, ...],
-    values: Floats,
-    group: str,
-    validated: Validated,
-    seed: int,
+    chosen: Chosen, signals: LabelledSignals, names: tuple[str, ...], units: tuple[str, ...], values: Floats, group: str
 ) -> Recogniser:
-    """Return the best classifier trained on all signals, with its card."""
-    assert signals.classes is not None
-    classes, groups = signals.classes, signals.groups[group]
-    fitted, parameters = fit_tuned(best, values, classes, groups, seed)
-    guessed = validated.held_out[0].argmax(axis=1)
+    """Return the chosen classifier trained on all signals, with its card."""
+    classes, groups, seed = chosen.classes, chosen.groups, chosen.seed
+    fitted, parameters = fit_tuned(chosen.classifier, values, classes, groups, seed)
     confusion = {}
     for number, name in enumerate(signals.class_names):
-        rates = draw_rates(guessed == number, classes == number, groups, np.random.default_rng(seed))  # the same draws for all
+        rates = draw_rates(chosen.guessed == number, classes == number, groups, np.random.default_rng(seed))  # the same draws for all
         confusion[name] = {"true_rate": rates.true.round(6).tolist(), "false_rate": rates.false.round(6).tolist()}
     card = {
         "format": FORMAT,
         "version": __version__,
         "packages": {name: version(name) for name in ("scikit-learn", "skl2onnx", "onnxruntime")},
-        "classifier": best.name,
+        "classifier": chosen.classifier.name,
         "parameters": dict(parameters),
         "classes": list(signals.class_names),
         "features": list(names),

@@ -8,8 +8,8 @@ from functools import partial
 import numpy as np
 
 from vibroimpact.arrays import Floats, Indices
-from vibroimpact.recognition.classifiers import Classifier, Parameters, probabilities
-from vibroimpact.recognition.cross_validation import Validated, refit
+from vibroimpact.recognition.classifiers import Parameters
+from vibroimpact.recognition.cross_validation import Chosen
 from vibroimpact.recognition.folds import Split
 from vibroimpact.recognition.jobs import Progress, run_jobs
 from vibroimpact.recognition.labelled_signals import LabelledSignals
@@ -38,38 +38,27 @@ class Noisy:
 
 
 def score_in_noise(
-    classifier: Classifier,
-    values: Floats,
-    signals: LabelledSignals,
-    classes: Indices,
-    groups: Indices,
-    validated: Validated,
-    seed: int,
-    bootstrap: Bootstrap,
-    workers: int,
-    progress: Progress,
+    chosen: Chosen, values: Floats, signals: LabelledSignals, bootstrap: Bootstrap, workers: int, progress: Progress
 ) -> list[Noisy]:
     """Return the scores of a classifier in noise, which is added to the signals before their features are taken."""
-    splits, parameters = validated.splits[0], validated.parameters[0]
-    count = validated.held_out.shape[2]
 
     def features_in(level: float) -> Floats:
-        noisy = with_noise(signals, level, seed)
-        return tables_of(noisy, features_of(noisy))[classifier.table]
+        noisy = with_noise(signals, level, chosen.seed)
+        return tables_of(noisy, features_of(noisy))[chosen.classifier.table]
 
-    def one(train: Floats, tests: tuple[Floats, ...], split: Split, chosen: Parameters) -> list[Indices]:
-        fitted = refit(classifier, train, classes, groups, split.train, seed, chosen)
-        return [probabilities(fitted, test[split.test], count).argmax(axis=1) for test in tests]
+    def one(train: Floats, tests: tuple[Floats, ...], split: Split, parameters: Parameters) -> list[Indices]:
+        fitted = chosen.refit(train, split.train, parameters)
+        return [chosen.guess(fitted, test[split.test]) for test in tests]
 
     tables = run_jobs("features in noise", [partial(features_in, level) for level in LEVELS], 1, progress)
     trained_on = [(values, tuple(tables)), *((table, (table,)) for table in tables)]
-    jobs = [partial(one, *both, split, chosen) for both in trained_on for split, chosen in zip(splits, parameters, strict=True)]
+    jobs = [partial(one, *both, *part) for both in trained_on for part in chosen.parts]
     done = iter(run_jobs("recognition in noise", jobs, workers, progress))
-    right = np.zeros((2, len(LEVELS), len(classes)))
+    right = np.zeros((2, len(LEVELS), len(chosen.classes)))
     for number in range(len(trained_on)):
-        for split in splits:
+        for split, _ in chosen.parts:
             for place, guessed in enumerate(next(done)):
                 where = (0, place) if number == 0 else (1, number - 1)
-                right[(*where, split.test)] = guessed == classes[split.test]
+                right[(*where, split.test)] = guessed == chosen.classes[split.test]
     without, trained = ([bootstrap.balanced(row[np.newaxis]) for row in rows] for rows in right)
     return [Noisy(*row) for row in zip(LEVELS, without, trained, strict=True)]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -11,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.arrays import Bools, Floats, Indices
-from vibroimpact.recognition.classifiers import Classifier, Parameters, probabilities
-from vibroimpact.recognition.cross_validation import Validated, refit
+from vibroimpact.recognition.classifiers import Parameters
+from vibroimpact.recognition.cross_validation import Chosen
 from vibroimpact.recognition.folds import Split
 from vibroimpact.recognition.jobs import Progress, run_jobs
 from vibroimpact.recognition.labelled_signals import LabelledSignals
@@ -73,50 +72,38 @@ def _names(part: NDArray[Any]) -> str:
 
 
 def score_unseen(
-    classifier: Classifier,
-    values: Floats,
-    signals: LabelledSignals,
-    classes: Indices,
-    groups: Indices,
-    validated: Validated,
-    seed: int,
-    bootstrap: Bootstrap,
-    workers: int,
-    progress: Progress,
+    chosen: Chosen, values: Floats, signals: LabelledSignals, bootstrap: Bootstrap, workers: int, progress: Progress
 ) -> list[Unseen]:
     """Leave out each range of each drawn key in training, and test on it; groups stay apart.
 
     A range without signals of every class is left out, as is one without which a class could not be trained.
     """
-    splits, parameters = validated.splits[0], validated.parameters[0]
-    count = validated.held_out.shape[2]
-    right = (validated.held_out[:1].argmax(axis=2) == classes).astype(float)
-    bins = [one for one in bins_of(signals) if _usable(one[2], classes, groups, splits)]
+    right = (chosen.guessed == chosen.classes).astype(float)[np.newaxis]
+    bins = [one for one in bins_of(signals) if _usable(one[2], chosen)]
 
-    def one(inside: Bools, split: Split, chosen: Parameters) -> Floats:
+    def one(inside: Bools, split: Split, parameters: Parameters) -> Indices:
         test = split.test[inside[split.test]]
         if not len(test):
-            return np.empty((0, count))
-        fitted = refit(classifier, values, classes, groups, split.train[~inside[split.train]], seed, chosen)
-        return probabilities(fitted, values[test], count)
+            return test
+        return chosen.guess(chosen.refit(values, split.train[~inside[split.train]], parameters), values[test])
 
-    jobs = [partial(one, inside, split, chosen) for _, _, inside in bins for split, chosen in zip(splits, parameters, strict=True)]
+    jobs = [partial(one, inside, *part) for _, _, inside in bins for part in chosen.parts]
     done = iter(run_jobs("ranges left out in training", jobs, workers, progress))
     found = []
     for key, words, inside in bins:
-        guessed = np.full(len(classes), -1)
-        for split in splits:
-            guessed[split.test[inside[split.test]]] = next(done).argmax(axis=1)
+        guessed = np.full(len(chosen.classes), -1)
+        for split, _ in chosen.parts:
+            guessed[split.test[inside[split.test]]] = next(done)
         within = bootstrap.within(inside)
-        unseen = (guessed == classes).astype(float)[np.newaxis]
+        unseen = (guessed == chosen.classes).astype(float)[np.newaxis]
         found.append(Unseen(key, words, int(inside.sum()), within.balanced(right[:, inside]), within.balanced(unseen[:, inside])))
     return found
 
 
-def _usable(inside: Bools, classes: Indices, groups: Indices, splits: Sequence[Split]) -> bool:
+def _usable(inside: Bools, chosen: Chosen) -> bool:
     """Return whether a range has all classes, and each training part without it has several groups of every class."""
-    names = np.unique(classes)
+    classes, names = chosen.classes, np.unique(chosen.classes)
     if len(np.unique(classes[inside])) < len(names):
         return False
-    outside = [split.train[~inside[split.train]] for split in splits]
-    return all(len(np.unique(groups[part][classes[part] == one])) >= 2 for part in outside for one in names)
+    outside = [split.train[~inside[split.train]] for split, _ in chosen.parts]
+    return all(len(np.unique(chosen.groups[part][classes[part] == one])) >= 2 for part in outside for one in names)

@@ -40,6 +40,11 @@ class Population:
     falls_per_rock: int = 1
     rocks_per_plate: int = 1
 
+    @property
+    def falls_per_plate(self) -> int:
+        """How many falls share a plate."""
+        return self.falls_per_rock * self.rocks_per_plate
+
     def draw(self, common: Mapping[str, Axis], falls: int, seed: int) -> tuple[dict[str, Values], dict[str, Values]]:
         """Return the values of each fall by key, and its labels.
 
