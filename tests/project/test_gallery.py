@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 import runpy
 from pathlib import Path
 
@@ -47,3 +48,6 @@ def test_example_is_of_the_gallery(file: Path) -> None:
     assert text.count("\n# %%\n") >= 3
     assert any(isinstance(node, ast.Assert) for node in ast.walk(tree))
     assert ast.unparse(tree.body[-1]) == "plt.show()"
+    assert "\n# sphinx_gallery_" not in re.sub(r"\n[^#\n][^\n]*\n# sphinx_gallery_", "", text), (
+        "settings after a line of prose are read as prose"
+    )
