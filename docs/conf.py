@@ -44,6 +44,8 @@ copybutton_prompt_is_regexp = True
 autodoc_typehints = "none"  # the docstrings have the types, with units and shapes
 autosummary_generate = ["reference.md"]
 numpydoc_show_class_members = False
+# sections that are known and in order, a summary that ends in a full stop, and parameters that exist, in their order, with words
+numpydoc_validation_checks = {"GL06", "GL07", "SS01", "SS03", "SS05", "PR02", "PR03", "PR07", "PR09", "RT03", "RT05"}
 
 # gallery
 sphinx_gallery_conf = {
@@ -73,6 +75,7 @@ html_context = {"default_mode": "auto"}
 html_copy_source = html_show_sourcelink = False
 html_theme_options = {
     "navbar_end": ["versions", "theme-switcher"],
+    "header_links_before_dropdown": 6,
     "navbar_align": "left",
     "show_toc_level": 2,
     "navigation_with_keys": False,
@@ -100,5 +103,11 @@ def complete(app: Sphinx, page: str, source: list[str]) -> None:
         source[0] += LAWS
 
 
+def skip_fields_of_tuples(app: Sphinx, what: str, name: str, member: object, skip: bool, options: object) -> bool | None:
+    """Leave out what Python says of the fields of named tuples, "Alias for field number 0": their docstrings have them as parameters."""
+    return True if type(member).__name__ == "_tuplegetter" else None
+
+
 def setup(app: Sphinx) -> None:
+    app.connect("autodoc-skip-member", skip_fields_of_tuples)
     app.connect("source-read", complete)

@@ -28,6 +28,8 @@ def mathml(latex: str, display: bool = False) -> str:
     """Return a formula as an element `math`, its source as the text that is read aloud where MathML is not."""
     formula = latex.strip().strip("`")  # $`x`$ is how GitHub writes $x$ where Markdown would read the formula
     tree = ElementTree.fromstring(latex2mathml.converter.convert(formula, display="block" if display else "inline"))
+    if "\\" in "".join(tree.itertext()):
+        raise ValueError(f"a formula has a command that latex2mathml does not know: {formula}")
     for element in tree.iter():
         match element.tag.removeprefix(f"{{{SPACE}}}"):
             case "mover":

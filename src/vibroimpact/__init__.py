@@ -68,6 +68,11 @@ if TYPE_CHECKING:
     from vibroimpact.contact.registry import find_contact_law as find_contact_law
     from vibroimpact.contact.registry import find_friction_law as find_friction_law
     from vibroimpact.contact.registry import friction_laws as friction_laws
+    from vibroimpact.correlation.charts import correlation_charts as correlation_charts
+    from vibroimpact.correlation.correlate import Correlation as Correlation
+    from vibroimpact.correlation.correlate import correlate as correlate
+    from vibroimpact.correlation.folder import save_correlation as save_correlation
+    from vibroimpact.correlation.mode_pairs import ModePair as ModePair
     from vibroimpact.dynamics.air import Air as Air
     from vibroimpact.dynamics.local_element import identify_local_element as identify_local_element
     from vibroimpact.dynamics.local_element import local_element_deviations as local_element_deviations
@@ -140,8 +145,11 @@ if TYPE_CHECKING:
     from vibroimpact.runs.save import save_result as save_result
     from vibroimpact.signals.bounces.find import Bounces as Bounces
     from vibroimpact.signals.bounces.find import find_bounces as find_bounces
+    from vibroimpact.signals.decay.find import DecayMode as DecayMode
+    from vibroimpact.signals.decay.find import modes_in_decay as modes_in_decay
     from vibroimpact.signals.feature_table import FeatureTable as FeatureTable
     from vibroimpact.signals.feature_table import feature_table as feature_table
+    from vibroimpact.signals.frac import frac as frac
     from vibroimpact.signals.one_record import one_record as one_record
     from vibroimpact.signals.onset import from_onset as from_onset
     from vibroimpact.signals.onset import onset_time as onset_time
@@ -184,9 +192,12 @@ _HOME = {
     "ComputationError": "errors",
     "ContactLaw": "contact.law",
     "Converter": "dynamics.sensors.electronics",
+    "Correlation": "correlation.correlate",
+    "DecayMode": "signals.decay.find",
     "FeatureTable": "signals.feature_table",
     "ForceSensor": "dynamics.sensors.instruments.force_sensor",
     "FrictionCalibration": "calibration.friction.calibrate",
+    "FrictionLaw": "contact.friction.law",
     "Geophone": "dynamics.sensors.instruments.geophone",
     "Identification": "identification.identify",
     "InputError": "errors",
@@ -195,6 +206,7 @@ _HOME = {
     "Mesh": "structures.mesh",
     "Microphone": "dynamics.sensors.instruments.microphone",
     "ModalBasis": "structures.modal_model",
+    "ModePair": "correlation.mode_pairs",
     "MovingBody": "dynamics.system",
     "Oblique": "dynamics.oblique.statement",
     "ObliqueImpacts": "calibration.friction.measured",
@@ -240,6 +252,8 @@ _HOME = {
     "compute_modes": "cases.elastic.modes",
     "contact_laws": "contact.registry",
     "convert_units": "units.reading",
+    "correlate": "correlation.correlate",
+    "correlation_charts": "correlation.charts",
     "export_formats": "exporting.export_format",
     "export_result": "exporting.export_result",
     "feature_table": "signals.feature_table",
@@ -250,6 +264,7 @@ _HOME = {
     "find_friction_law": "contact.registry",
     "find_material": "materials",
     "find_packets": "signals.packets",
+    "frac": "signals.frac",
     "friction_laws": "contact.registry",
     "from_onset": "signals.onset",
     "identification_charts": "identification.charts",
@@ -272,6 +287,7 @@ _HOME = {
     "matplotlib_figure": "charts.matplotlib",
     "modal_damping": "calibration.tunables",
     "mode_charts": "modes.charts",
+    "modes_in_decay": "signals.decay.find",
     "one_record": "signals.one_record",
     "onset_time": "signals.onset",
     "packet_records": "signals.packets",
@@ -302,6 +318,7 @@ _HOME = {
     "save_calibration": "calibration.folder",
     "save_charts": "charts.files",
     "save_comparison": "comparison.folder",
+    "save_correlation": "correlation.folder",
     "save_figures": "figures",
     "save_identification": "identification.folder",
     "save_modes": "modes.folder",

@@ -25,6 +25,7 @@ from vibroimpact.dynamics.columns import IMPACT_COLUMNS
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
 PAGES = [ROOT / "README.md", *sorted([*DOCS.glob("*.md"), *DOCS.glob("guides/*.md")])]
+GUIDES = [DOCS / "first-steps.md", *sorted(DOCS.glob("guides/*.md"))]
 LAW_PAGES = sorted(DOCS.glob("laws/*.md"))
 
 # what blocks of the pages are: these are run or read by the tests below, a text is what is printed, and "sh" has its own list
@@ -41,6 +42,17 @@ NOT_RUN = {
     "vibroimpact recognise falls -o new-plates --group plate": "tests/unit/test_recognition.py runs it",
     "vibroimpact recognise today --model recognised -o counted": "tests/unit/test_recognition.py runs it",
     "vibroimpact identify coal.toml records.csv -o found": "tests/unit/test_identification.py runs it",
+    "python3 -m venv .venv": "installs",
+    "source .venv/bin/activate": "changes the shell",
+    "python -m pip install .": "installs",
+    "vibroimpact serve mine.toml": "runs until it is ended; tests/page tries it",
+    "vibroimpact dataset signals:coal-gangue -o all-falls": "minutes",
+    "vibroimpact recognise all-falls -o recognised": "of what the last one makes",
+    "vibroimpact recognise all-falls -o new-plates --group plate": "of the same",
+    "vibroimpact dataset signals:river-plate -o grains": "minutes",
+    "vibroimpact bound grains -o told": "of what the last one makes",
+    "vibroimpact recognise grains -o recognised --group rock": "of the same",
+    "vibroimpact reproduce -o paper-whole": "minutes; tests/published has the page",
     'pip install "vibroimpact[app]"': "installs",
     "vibroimpact serve": "runs until it is ended; tests/page tries it",
 }
@@ -95,7 +107,7 @@ def test_documented_commands_run(
     assert len(commands(pages)) >= 8
     asked = [command for command in commands(pages) if chosen(command)]
     assert asked
-    for block in blocks(ROOT / "docs" / "case-file.md", "toml"):
+    for block in [*blocks(DOCS / "case-file.md", "toml"), *(block for guide in GUIDES for block in blocks(guide, "toml"))]:
         name = re.match(r"# (\S+\.toml)\n", block)  # a block may say what its file is called
         (tmp_path / (name[1] if name else "case.toml")).write_text(block)
     write_records(tmp_path)
@@ -126,10 +138,13 @@ def test_readme_shows_what_the_demo_prints(variable: vi.Response) -> None:
         assert line in printed or " closure " in line  # which is rounding, and not the same everywhere
 
 
+# of the pages on elastic bodies the other one computes modes too, and fewer
+LONG_PAGES = {"coal-from-rock.md", "elastic-drops.md", "measured-and-computed.md", "river-geophone.md"}
+
+
 @pytest.mark.parametrize(
     "page",
-    # of the pages on elastic bodies the other one computes modes too, and fewer
-    [pytest.param(page, id=name_of(page), marks=pytest.mark.slow if page.name == "elastic-drops.md" else ()) for page in PAGES],
+    [pytest.param(page, id=name_of(page), marks=pytest.mark.slow if page.name in LONG_PAGES else ()) for page in PAGES],
 )
 def test_documented_python_runs(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
@@ -171,7 +186,16 @@ def test_links_lead_somewhere(page: Path) -> None:
 
 
 # modes of a plate, studies, many pictures, pages in a browser
-LONG_EXAMPLES = {"a_nanometre", "ball_on_table", "charts_of_studies", "how_it_works", "pictures_of_pages", "tolerances"}
+LONG_EXAMPLES = {
+    "a_nanometre",
+    "ball_on_table",
+    "charts_of_studies",
+    "how_it_works",
+    "pictures_of_guides",
+    "pictures_of_pages",
+    "ringing_plate",
+    "tolerances",
+}
 
 
 @pytest.mark.parametrize(

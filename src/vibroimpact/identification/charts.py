@@ -7,9 +7,9 @@ import numpy as np
 from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.marks import Band, Line, Map, Points
-from vibroimpact.identification.estimate import Estimate
 from vibroimpact.identification.identify import Identification
 from vibroimpact.shown import shortened, visible
+from vibroimpact.signals.estimate import Estimate
 
 _HEIGHT = 3.2
 

@@ -15,11 +15,11 @@ from vibroimpact.cases.build import resolved_case
 from vibroimpact.charts.figures_folder import write_figures
 from vibroimpact.identification.charts import identification_charts
 from vibroimpact.identification.document import HEADERS, identification_rows, summary_of_identification
-from vibroimpact.identification.estimate import Estimate
 from vibroimpact.identification.identify import Identification
 from vibroimpact.report.page import render_page
 from vibroimpact.results.csv_files import write_csv
 from vibroimpact.results.folder import SUMMARY, new_folder
+from vibroimpact.signals.estimate import Estimate
 
 _COLUMNS = ["time_s", "force_N", "force_low_N", "force_high_N"]
 

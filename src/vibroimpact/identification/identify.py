@@ -12,12 +12,12 @@ from vibroimpact.bodies.rigid import rigid_sphere
 from vibroimpact.cases.schema import CaseTable
 from vibroimpact.errors import InputError
 from vibroimpact.identification.doubts import doubts_about
-from vibroimpact.identification.estimate import Estimate
 from vibroimpact.identification.force import Force, force_behind
 from vibroimpact.identification.measured import Measured, measured_of
 from vibroimpact.identification.plate import Place, Plate, plate_of
 from vibroimpact.identification.pulses import Search, search_place
 from vibroimpact.identification.sphere import SphereFit, fit_sphere
+from vibroimpact.signals.estimate import Estimate
 from vibroimpact.signals.record import Record
 
 WINDOW = 5e-3

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Result:
-    """Result of one drop.
+    """Result of one drop; its last five fields are empty where nothing but the contact deforms.
 
     Parameters
     ----------
@@ -58,8 +58,6 @@ class Result:
         Sensor signals, by sensor name.
     deflection : Deflection, optional
         Deflection of the plate's upper side at selected times.
-
-    The last five are empty where nothing but the contact deforms.
 
     Examples
     --------

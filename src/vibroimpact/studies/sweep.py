@@ -209,32 +209,6 @@ def load_sweep(source: str | PathLike[str], samples: int | None = None) -> Sweep
     return prefix_errors(source, lambda: read_sweep(with_values(load_table(source), changes)))
 
 
-def load_drop(source: str | PathLike[str], drop: int, changes: Mapping[str, Any] | None = None) -> Case:
-    """Return the case of one drop of a study.
-
-    Parameters
-    ----------
-    source : path or str
-        A TOML file with a [sweep] section, or a shipped study such as "paper:sweep".
-    drop : int
-        Number of the drop, from 0.
-    changes : mapping, optional
-        Other values by dotted key, swept or not.
-
-    Raises
-    ------
-    InputError
-        If it is not a valid study, or has no such drop.
-
-    Examples
-    --------
-    >>> case = load_drop("paper:sweep", 13)
-    >>> case.sphere.radius, case.contact.parameters["restitution"]
-    (0.005, 0.95)
-    """
-    return prefix_errors(source, lambda: read_sweep(load_table(source)).case_of(drop, changes))
-
-
 def read_sweep(table: Mapping[str, Any]) -> Sweep:
     """Return a study, read from a mapping with the structure of a TOML case file.
 
