@@ -74,6 +74,7 @@ if TYPE_CHECKING:
     from vibroimpact.correlation.folder import save_correlation as save_correlation
     from vibroimpact.correlation.mode_pairs import ModePair as ModePair
     from vibroimpact.dynamics.air import Air as Air
+    from vibroimpact.dynamics.liquid import Liquid as Liquid
     from vibroimpact.dynamics.local_element import identify_local_element as identify_local_element
     from vibroimpact.dynamics.local_element import local_element_deviations as local_element_deviations
     from vibroimpact.dynamics.oblique.statement import Oblique as Oblique
@@ -201,6 +202,7 @@ _HOME = {
     "Geophone": "dynamics.sensors.instruments.geophone",
     "Identification": "identification.identify",
     "InputError": "errors",
+    "Liquid": "dynamics.liquid",
     "Material": "materials",
     "LabelledSignals": "recognition.labelled_signals",
     "Mesh": "structures.mesh",

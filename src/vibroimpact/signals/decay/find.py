@@ -45,6 +45,16 @@ class DecayMode:
         Its amplitude in each record at the first sample, in the unit of the record.
     doubt : str
         Why its damping is not told; empty if it is.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import vibroimpact as vi
+    >>> time = np.arange(8192) / 25.6e3
+    >>> tone = np.exp(-20.0 * time) * np.sin(2500.0 * time)
+    >>> (mode,) = vi.modes_in_decay([vi.Record("a1", tone, 25.6e3, "m/s2")], (200.0, 800.0))
+    >>> round(mode.frequency.value, 2), round(mode.damping_ratio.value, 5), mode.doubt
+    (397.9, 0.008, '')
     """
 
     frequency: Estimate
