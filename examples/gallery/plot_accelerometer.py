@@ -55,18 +55,29 @@ clipped = heard(resonance=30e3, range=1500.0)
 # Without a filter the samples at 50 kHz are values of the fast signal: what lies above 25 kHz folds down into the band. The resonance
 # multiplies the peak, and the range cuts that off, which the signal says. The filter of a delta-sigma converter keeps what is below 22.5
 # kHz alone.
-assert np.allclose(aliased.value, ideal.value[::8][: len(aliased.value)], atol=1e-6 * np.abs(ideal.value).max())
+assert np.allclose(
+    aliased.value, ideal.value[::8][: len(aliased.value)], atol=1e-6 * np.abs(ideal.value).max()
+)
 assert np.abs(resonant.value).max() > 1.2 * np.abs(ideal.value).max()
 assert clipped.overload_time > 0.0
-print(f"{clipped.peak:.0f} m/s² reached a range of 1500 m/s², which was exceeded for {1e6 * clipped.overload_time:.0f} µs in all")
+print(
+    f"{clipped.peak:.0f} m/s² reached a range of 1500 m/s², which was exceeded for {1e6 * clipped.overload_time:.0f} µs in all"
+)
 
 spectrum = {
-    name: np.abs(np.fft.rfft(one.value)) / one.sensor.rate for name, one in (("ideal", ideal), ("filtered", filtered), ("aliased", aliased))
+    name: np.abs(np.fft.rfft(one.value)) / one.sensor.rate
+    for name, one in (("ideal", ideal), ("filtered", filtered), ("aliased", aliased))
 }
-frequency = {name: np.fft.rfftfreq(len(one.value), 1.0 / one.sensor.rate) for name, one in (("ideal", ideal), ("filtered", filtered))}
+frequency = {
+    name: np.fft.rfftfreq(len(one.value), 1.0 / one.sensor.rate)
+    for name, one in (("ideal", ideal), ("filtered", filtered))
+}
 band = frequency["filtered"] < 20e3
 truth = np.interp(frequency["filtered"][band], frequency["ideal"], spectrum["ideal"])
-assert np.abs(spectrum["filtered"][band] - truth).mean() < 0.2 * np.abs(spectrum["aliased"][band] - truth).mean()
+assert (
+    np.abs(spectrum["filtered"][band] - truth).mean()
+    < 0.2 * np.abs(spectrum["aliased"][band] - truth).mean()
+)
 
 # %%
 # In time and in frequency
@@ -96,9 +107,17 @@ for name, colour, words in (
     ("aliased", "#c79000", "50 kHz without a filter"),
     ("filtered", "#b3400e", "50 kHz with it"),
 ):
-    below.semilogy(1e-3 * frequency.get(name, frequency["filtered"]), spectrum[name], color=colour, linewidth=1.1, label=words)
+    below.semilogy(
+        1e-3 * frequency.get(name, frequency["filtered"]),
+        spectrum[name],
+        color=colour,
+        linewidth=1.1,
+        label=words,
+    )
 below.axvline(25.0, color="#6b6b6b", linestyle="--", linewidth=0.9)
-below.set(xlabel="Frequency [kHz]", ylabel="Spectrum [m/s² / Hz]", xlim=(0.0, 60.0), ylim=(1e-4, 20.0))
+below.set(
+    xlabel="Frequency [kHz]", ylabel="Spectrum [m/s² / Hz]", xlim=(0.0, 60.0), ylim=(1e-4, 20.0)
+)
 below.text(25.4, 0.7, "half the rate", color="#6b6b6b", fontsize=8)
 below.legend(loc="upper right", ncols=3)
 plt.show()

@@ -17,7 +17,11 @@ from scipy.integrate import solve_ivp
 import vibroimpact as vi
 
 radius = np.geomspace(20e-6, 30e-3, 60)
-quartz, height, gravity = vi.Material(density=2650.0, youngs_modulus=72e9, poissons_ratio=0.17), 2.0, 9.80665
+quartz, height, gravity = (
+    vi.Material(density=2650.0, youngs_modulus=72e9, poissons_ratio=0.17),
+    2.0,
+    9.80665,
+)
 
 
 def fallen(air):
@@ -52,7 +56,9 @@ def by_scipy(one):
         return state[0]
 
     ground.terminal = True
-    return solve_ivp(motion, (0.0, 100.0), [height, 0.0], method="LSODA", rtol=1e-9, atol=1e-12, events=ground).y[1, -1]
+    return solve_ivp(
+        motion, (0.0, 100.0), [height, 0.0], method="LSODA", rtol=1e-9, atol=1e-12, events=ground
+    ).y[1, -1]
 
 
 some = slice(None, None, 6)
@@ -70,13 +76,23 @@ axes.fill_between(diameter, in_air, vacuum, color="#b3400e", alpha=0.12, label="
 axes.loglog(diameter, vacuum, "--", color="#6b6b6b", label="in a vacuum")
 axes.loglog(diameter, in_air, color="#00204d", linewidth=2.0, label="in air")
 axes.loglog(
-    diameter[some], [by_scipy(one) for one in radius[some]], "o", color="#0072b2", markerfacecolor="none", label="integrated by SciPy"
+    diameter[some],
+    [by_scipy(one) for one in radius[some]],
+    "o",
+    color="#0072b2",
+    markerfacecolor="none",
+    label="integrated by SciPy",
 )
 for words, place in (("silt", 0.042), ("sand", 0.35), ("gravel", 8.0)):
     axes.text(place, 0.075, words, color="#5a5a5a", ha="left")
 for limit in (0.063, 2.0):
     axes.axvline(limit, color="#d9d9d9")
-axes.set(xlabel="Diameter [mm]", ylabel="Speed at first touch [m/s]", ylim=(0.06, 9.0), title="Quartz that falls 2 m")
+axes.set(
+    xlabel="Diameter [mm]",
+    ylabel="Speed at first touch [m/s]",
+    ylim=(0.06, 9.0),
+    title="Quartz that falls 2 m",
+)
 axes.xaxis.set_major_formatter("{x:g}")
 axes.yaxis.set_major_formatter("{x:g}")
 axes.legend(loc="center right")

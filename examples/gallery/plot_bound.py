@@ -33,20 +33,48 @@ assert np.all((longer > 1.0) & (longer < 1.25))
 # What an impact shows
 # --------------------
 plt.style.use("vibroimpact.charts.print")
-figure, (left, right) = plt.subplots(1, 2, figsize=(7.6, 4.0), width_ratios=(5, 4), layout="constrained")
+figure, (left, right) = plt.subplots(
+    1, 2, figsize=(7.6, 4.0), width_ratios=(5, 4), layout="constrained"
+)
 for name, colour in (("coal", "#1b1b1b"), ("gangue", "#c79000")):
     some = falls.classes == name
-    left.plot(falls.impulse[some], 1e6 * falls.duration[some], ".", color=colour, markersize=3.0, alpha=0.6, label=name)
+    left.plot(
+        falls.impulse[some],
+        1e6 * falls.duration[some],
+        ".",
+        color=colour,
+        markersize=3.0,
+        alpha=0.6,
+        label=name,
+    )
 left.set(
-    xscale="log", yscale="log", xlabel="Impulse [N s]", ylabel="Duration of the contact [µs]", title="2,048 falls, as one impact shows them"
+    xscale="log",
+    yscale="log",
+    xlabel="Impulse [N s]",
+    ylabel="Duration of the contact [µs]",
+    title="2,048 falls, as one impact shows them",
 )
 left.legend(loc="upper left", markerscale=4)
 names = ("impulse", "contact time", "one impact, place unknown", "one impact")
 upper = 100.0 * np.array([bound.errors[name].upper for name in names])
-bars = right.barh([name.replace(", ", ",\n") for name in names], upper, color=["#b9c9d8", "#b9c9d8", "#0072b2", "#00204d"])
+bars = right.barh(
+    [name.replace(", ", ",\n") for name in names],
+    upper,
+    color=["#b9c9d8", "#b9c9d8", "#0072b2", "#00204d"],
+)
 right.bar_label(bars, [f"{one:.1f} %" for one in upper], padding=3)
 right.axvline(100.0 * bound.majority, color="#b3400e", linestyle="--", linewidth=0.9)
-right.text(100.0 * bound.majority + 0.7, 3.6, "always the\nfrequent one", color="#b3400e", ha="left", va="top", fontsize=8)
-right.set(xlabel="Told wrong by the best classifier [%]", title="by what is measured", xlim=(0.0, 56.0))
+right.text(
+    100.0 * bound.majority + 0.7,
+    3.6,
+    "always the\nfrequent one",
+    color="#b3400e",
+    ha="left",
+    va="top",
+    fontsize=8,
+)
+right.set(
+    xlabel="Told wrong by the best classifier [%]", title="by what is measured", xlim=(0.0, 56.0)
+)
 right.grid(visible=False, axis="y")
 plt.show()

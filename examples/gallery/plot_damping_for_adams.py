@@ -22,7 +22,10 @@ case = {
     "drop": {"height": "4 m", "gravity": 9.8},
     "contact": {"law": "adams-impact"},
     "calibrate": {
-        "target": {"rebound_heights": ["2.411 m", "1.457 m", "885 mm", "541 mm"], "standard_deviation": "2 mm"},
+        "target": {
+            "rebound_heights": ["2.411 m", "1.457 m", "885 mm", "541 mm"],
+            "standard_deviation": "2 mm",
+        },
         "degree": 1,
     },
 }
@@ -51,14 +54,29 @@ assert np.all((found.intervals[:, 0] < printed) & (printed < found.intervals[:, 
 # ---------------
 # The calibrated case runs as any other, and rebounds as high as was measured.
 response = vi.simulate(vi.calibrated_case(question.case, found))
-assert np.allclose(response.impacts["rebound_height_m"][:4], [2.411, 1.457, 0.885, 0.541], atol=2e-3)
+assert np.allclose(
+    response.impacts["rebound_height_m"][:4], [2.411, 1.457, 0.885, 0.541], atol=2e-3
+)
 
 plt.style.use("vibroimpact.charts.print")
 figure, axes = plt.subplots(figsize=(6.4, 4.0), layout="constrained")
 speeds = np.linspace(found.observations.speeds.min(), found.observations.speeds.max(), 100)
 line, band = found.fit.function(speeds), found.fit.band(speeds, found.confidence)
-axes.fill_between(speeds, 1e-3 * (line - band), 1e-3 * (line + band), color="#0072b2", alpha=0.15, label="95 % band of the line")
-axes.plot(speeds, 1e-3 * line, color="#0072b2", linewidth=1.8, label="line over the speed: one input for all impacts")
+axes.fill_between(
+    speeds,
+    1e-3 * (line - band),
+    1e-3 * (line + band),
+    color="#0072b2",
+    alpha=0.15,
+    label="95 % band of the line",
+)
+axes.plot(
+    speeds,
+    1e-3 * line,
+    color="#0072b2",
+    linewidth=1.8,
+    label="line over the speed: one input for all impacts",
+)
 axes.errorbar(
     found.observations.speeds,
     1e-3 * found.values,
@@ -70,8 +88,18 @@ axes.errorbar(
     label="from the measured rebounds, 95 % intervals",
 )
 axes.plot(
-    found.observations.speeds, 1e-3 * printed, "_", color="#b3400e", markersize=22, markeredgewidth=1.8, label="found by trial in the paper"
+    found.observations.speeds,
+    1e-3 * printed,
+    "_",
+    color="#b3400e",
+    markersize=22,
+    markeredgewidth=1.8,
+    label="found by trial in the paper",
 )
-axes.set(xlabel="Approach speed [m/s]", ylabel="Damping of IMPACT [N s/mm]", title="The damping to type into Adams")
+axes.set(
+    xlabel="Approach speed [m/s]",
+    ylabel="Damping of IMPACT [N s/mm]",
+    title="The damping to type into Adams",
+)
 axes.legend(loc="upper left")
 plt.show()

@@ -41,23 +41,48 @@ assert abs(response.energy["closure_relative"]) < 1e-9
 # The history can be asked at any time, however short the contacts are: above the path, below the force of each bounce from its first touch
 # on.
 plt.style.use("vibroimpact.charts.print")
-figure, (above, below) = plt.subplots(2, figsize=(6.4, 5.0), height_ratios=(2, 3), layout="constrained")
+figure, (above, below) = plt.subplots(
+    2, figsize=(6.4, 5.0), height_ratios=(2, 3), layout="constrained"
+)
 time = np.linspace(0.0, response.end_time[0], 2000)
 above.plot(time, response.at(time)["position_m"], color="#1b1b1b")
-above.set(xlabel="Time [s]", ylabel="Height [m]", ylim=(0.0, 4.2), title="A rock bounces five times on a steel plate")
+above.set(
+    xlabel="Time [s]",
+    ylabel="Height [m]",
+    ylim=(0.0, 4.2),
+    title="A rock bounces five times on a steel plate",
+)
 
 colours = plt.get_cmap("cividis")(np.linspace(0.0, 0.85, len(force)))
 for colour, touch, duration, rise in zip(
-    colours, *(response.impacts[key] for key in ("time_s", "duration_s", "rebound_height_m")), strict=True
+    colours,
+    *(response.impacts[key] for key in ("time_s", "duration_s", "rebound_height_m")),
+    strict=True,
 ):
     since = np.linspace(0.0, duration, 300)
     pulse = 1e-3 * response.at(touch + since)["force_N"]
     below.fill_between(1e6 * since, pulse, color=colour, alpha=0.15)
-    below.plot(1e6 * since, pulse, color=colour, linewidth=1.8, label=f"{pulse.max():.2f} kN, rises to {rise:.2f} m")
+    below.plot(
+        1e6 * since,
+        pulse,
+        color=colour,
+        linewidth=1.8,
+        label=f"{pulse.max():.2f} kN, rises to {rise:.2f} m",
+    )
     above.plot(touch, 0.025, "o", color=colour, markersize=7, clip_on=False)
 below.axhline(9.583984, color="#b3400e", linestyle="--", linewidth=0.9)
-below.text(350, 9.65, "largest force that the paper prints", color="#b3400e", ha="right", va="bottom", fontsize=8)
-below.set(xlabel="Time since first touch [µs]", ylabel="Contact force [kN]", xlim=(0, 350), ylim=(0, 11))
+below.text(
+    350,
+    9.65,
+    "largest force that the paper prints",
+    color="#b3400e",
+    ha="right",
+    va="bottom",
+    fontsize=8,
+)
+below.set(
+    xlabel="Time since first touch [µs]", ylabel="Contact force [kN]", xlim=(0, 350), ylim=(0, 11)
+)
 below.legend(loc="upper right", bbox_to_anchor=(1.0, 0.88))
 # sphinx_gallery_thumbnail_number = -1
 plt.show()

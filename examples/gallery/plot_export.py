@@ -58,7 +58,9 @@ def motion(_, state):
     """Return velocity and acceleration [mm/s, mm/s^2] in contact, by the file alone."""
     depth = max(radius - state[0], 0.0)
     part = min(depth / full, 1.0)
-    force = max(0.0, stiffness * depth**exponent - damping * part**2 * (3.0 - 2.0 * part) * state[1])
+    force = max(
+        0.0, stiffness * depth**exponent - damping * part**2 * (3.0 - 2.0 * part) * state[1]
+    )
     return [state[1], 1e3 * force / mass - gravity]
 
 
@@ -71,7 +73,18 @@ release.terminal, release.direction = True, 1
 height, contacts = 500.0, []
 for _ in range(4):
     speed = np.sqrt(2.0 * gravity * (height - radius))
-    contacts.append(solve_ivp(motion, (0.0, 1e-3), [radius, -speed], "DOP853", rtol=1e-10, atol=1e-10, events=release, dense_output=True))
+    contacts.append(
+        solve_ivp(
+            motion,
+            (0.0, 1e-3),
+            [radius, -speed],
+            "DOP853",
+            rtol=1e-10,
+            atol=1e-10,
+            events=release,
+            dense_output=True,
+        )
+    )
     height = radius + contacts[-1].y[1, -1] ** 2 / (2.0 * gravity)
     print(f"rises to {height:.3f} mm")
     assert abs(1e-3 * height / response.impacts["rebound_height_m"][len(contacts) - 1] - 1.0) < 1e-6
@@ -85,8 +98,22 @@ for number, (touch, contact) in enumerate(zip(response.impacts["time_s"], contac
     since = np.linspace(0.0, contact.t[-1], 200)
     labels = ("vibroimpact", "the file for Adams, integrated by SciPy") if number == 0 else ("", "")
     depth = 1e6 * response.at(touch + since)["indentation_m"]
-    axes.plot(1e6 * since, depth, color="#56a8d8", linewidth=7.0, alpha=0.5, label=labels[0], solid_capstyle="round")
-    axes.plot(1e6 * since, 1e3 * (radius - contact.sol(since)[0]), color="#b3400e", linewidth=1.3, label=labels[1])
+    axes.plot(
+        1e6 * since,
+        depth,
+        color="#56a8d8",
+        linewidth=7.0,
+        alpha=0.5,
+        label=labels[0],
+        solid_capstyle="round",
+    )
+    axes.plot(
+        1e6 * since,
+        1e3 * (radius - contact.sol(since)[0]),
+        color="#b3400e",
+        linewidth=1.3,
+        label=labels[1],
+    )
 axes.set(
     xlabel="Time since first touch [µs]",
     ylabel="Indentation [µm]",

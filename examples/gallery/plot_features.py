@@ -41,7 +41,11 @@ def struck(diameter):
                 "position": [0, 0],
                 "face": "lower",
                 "rate": rate,
-                "geophone": {"natural_frequency": "10 Hz", "sensitivity": "27.6 V s/m", "damping_ratio": 0.6},
+                "geophone": {
+                    "natural_frequency": "10 Hz",
+                    "sensitivity": "27.6 V s/m",
+                    "damping_ratio": 0.6,
+                },
             }
         ],
     }
@@ -80,16 +84,36 @@ figure, (above, below) = plt.subplots(2, figsize=(6.6, 5.0), layout="constrained
 colours = plt.get_cmap("cividis")(np.interp(diameters, (10.0, 38.0), (0.0, 0.85)))
 above.plot(record.time, record.value, color="#6b6b6b", linewidth=0.5)
 for one, (first, last, colour) in enumerate(zip(packets.first, packets.last, colours, strict=True)):
-    above.plot(record.time[first : last + 1], record.value[first : last + 1], color=colour, linewidth=0.9)
+    above.plot(
+        record.time[first : last + 1], record.value[first : last + 1], color=colour, linewidth=0.9
+    )
     above.axvspan(record.time[first], record.time[last], color=colour, alpha=0.15, linewidth=0)
     above.text(record.time[first], 1.15, f"{diameters[one]:.0f} mm", color=colour, fontsize=8)
-above.set(xlabel="Time [s]", ylabel="Geophone [V]", title="Seven grains on the plate of a river bed", ylim=(-1.2, 1.35))
+above.set(
+    xlabel="Time [s]",
+    ylabel="Geophone [V]",
+    title="Seven grains on the plate of a river bed",
+    ylim=(-1.2, 1.35),
+)
 below.loglog(diameters, peak, linestyle="none")
 below.scatter(diameters, peak, s=20.0 + 3.0 * packets.impulses**1.5, c=colours, zorder=3)
 for one, (x, y) in enumerate(zip(diameters, peak, strict=True)):
-    below.annotate(f"impulses: {packets.impulses[one]}", (x, y), (9, -8), textcoords="offset points", fontsize=8)
+    below.annotate(
+        f"impulses: {packets.impulses[one]}",
+        (x, y),
+        (9, -8),
+        textcoords="offset points",
+        fontsize=8,
+    )
 line = np.array([9.0, 42.0])
-below.loglog(line, peak[0] * (line / diameters[0]) ** 3, "--", color="#b3400e", linewidth=0.9, label="as the mass")
+below.loglog(
+    line,
+    peak[0] * (line / diameters[0]) ** 3,
+    "--",
+    color="#b3400e",
+    linewidth=0.9,
+    label="as the mass",
+)
 below.set(xlabel="Diameter of the grain [mm]", ylabel="Peak of the packet [V]", xlim=(9.0, 48.0))
 below.set_xticks([10, 15, 20, 30, 40], ["10", "15", "20", "30", "40"])
 below.minorticks_off()

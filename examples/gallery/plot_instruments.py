@@ -30,16 +30,37 @@ case = {
     "contact": {"law": "hertz"},
     "run": {"impacts": 1, "duration": "12 ms"},
     "sensors": [
-        {"name": "velocity", "position": [0, 0], "face": "lower", "rate": "100 kHz", "quantity": "velocity"},
+        {
+            "name": "velocity",
+            "position": [0, 0],
+            "face": "lower",
+            "rate": "100 kHz",
+            "quantity": "velocity",
+        },
         {
             "name": "geophone",
             "position": [0, 0],
             "face": "lower",
             "rate": "100 kHz",
-            "geophone": {"natural_frequency": "10 Hz", "sensitivity": "27.6 V s/m", "damping_ratio": 0.6},
+            "geophone": {
+                "natural_frequency": "10 Hz",
+                "sensitivity": "27.6 V s/m",
+                "damping_ratio": 0.6,
+            },
         },
-        {"name": "strain gauge", "position": [0, 0], "face": "lower", "rate": "100 kHz", "instrument": "strain-gauge"},
-        {"name": "microphone", "position": [0, 0], "rate": "100 kHz", "microphone": {"distance": distance}},
+        {
+            "name": "strain gauge",
+            "position": [0, 0],
+            "face": "lower",
+            "rate": "100 kHz",
+            "instrument": "strain-gauge",
+        },
+        {
+            "name": "microphone",
+            "position": [0, 0],
+            "rate": "100 kHz",
+            "microphone": {"distance": distance},
+        },
     ],
 }
 response = vi.simulate(vi.read_case(case))
@@ -52,9 +73,13 @@ signals = response.signals()
 # from the plate.
 velocity, volts, pressure = (signals[name] for name in ("velocity", "geophone", "microphone"))
 early = velocity.time < 2e-3
-assert np.allclose(volts.value[early], 27.6 * velocity.value[early], atol=0.1 * np.abs(volts.value[early]).max())
+assert np.allclose(
+    volts.value[early], 27.6 * velocity.value[early], atol=0.1 * np.abs(volts.value[early]).max()
+)
 way = distance / 343.2
-silent = pressure.time < way - 33 / 100e3  # but for 33 samples of the filter, which rings before as well as after
+silent = (
+    pressure.time < way - 33 / 100e3
+)  # but for 33 samples of the filter, which rings before as well as after
 assert np.abs(pressure.value[silent]).max() < 1e-3 * np.abs(pressure.value).max()
 
 # %%
@@ -86,5 +111,7 @@ panels[2].text(
     fontsize=8,
 )
 panels[2].set(xlabel="Time since first touch [ms]", xlim=(-0.2, 10.0))
-figure.suptitle("One grain on a steel plate, three instruments", x=0.02, ha="left", fontweight="bold")
+figure.suptitle(
+    "One grain on a steel plate, three instruments", x=0.02, ha="left", fontweight="bold"
+)
 plt.show()

@@ -46,7 +46,10 @@ for name in vi.contact_laws():
     bounced[name] = response.impacts["restitution_achieved"][0]
     time = np.linspace(0.0, response.impacts["duration_s"][0], 400)
     history = response.at(time)
-    paths[name] = np.array([0.0, *history["indentation_m"]]), np.array([-speed, *history["velocity_m_s"]])
+    paths[name] = (
+        np.array([0.0, *history["indentation_m"]]),
+        np.array([-speed, *history["velocity_m_s"]]),
+    )
     assert abs(response.energy["closure_relative"]) < 1e-9
 
 # %%
@@ -61,8 +64,13 @@ assert abs(bounced["tsuji"] - 0.5) < 1e-6
 # ------------
 # Velocity over indentation, each law in front of Hertz's elastic impact: inwards at the bottom, outwards at the top.
 plt.style.use("vibroimpact.charts.print")
-figure, panels = plt.subplots(5, 5, figsize=(7.0, 7.0), sharex=True, sharey=True, layout="constrained")
-kinds = {"#b3400e": ("meyer", "storakers", "thornton", "walton-braun", "jackson-green-marghitu"), "#5f8f3e": ("jkr", "krijt")}
+figure, panels = plt.subplots(
+    5, 5, figsize=(7.0, 7.0), sharex=True, sharey=True, layout="constrained"
+)
+kinds = {
+    "#b3400e": ("meyer", "storakers", "thornton", "walton-braun", "jackson-green-marghitu"),
+    "#5f8f3e": ("jkr", "krijt"),
+}
 kinds |= {"#6b6b6b": ("hertz", "newton")}
 deepest = paths["hertz"][0].max()
 for axes, (name, (indentation, velocity)) in zip(panels.flat, paths.items(), strict=True):

@@ -21,10 +21,17 @@ law = vi.find_contact_law("hertz")(stiffness=1e9)  # balls of steel, some 30 mm 
 
 def cradle(gap):
     """Return the response of five balls in a row, with gaps between them [m]; the first comes with 1 m/s."""
-    balls = {f"ball {number}": vi.MovingBody(mass=0.1, velocity=(float(number == 1), 0.0, 0.0)) for number in range(1, 6)}
+    balls = {
+        f"ball {number}": vi.MovingBody(mass=0.1, velocity=(float(number == 1), 0.0, 0.0))
+        for number in range(1, 6)
+    }
     contacts = {
         f"{number} on {number + 1}": vi.PointContact(
-            below=f"ball {number}", above=f"ball {number + 1}", law=law, gap=gap, normal=(1.0, 0.0, 0.0)
+            below=f"ball {number}",
+            above=f"ball {number + 1}",
+            law=law,
+            gap=gap,
+            normal=(1.0, 0.0, 0.0),
         )
         for number in range(1, 5)
     }
@@ -54,10 +61,14 @@ plt.style.use("vibroimpact.charts.print")
 figure, panels = plt.subplots(2, figsize=(6.4, 5.0), sharex=True, sharey=True, layout="constrained")
 time = np.linspace(0.0, 1.2e-3, 800)
 colours = plt.get_cmap("cividis")(np.linspace(0.0, 0.9, 5))
-for axes, response, words in zip(panels, (touching, apart), ("the balls touch", "gaps of 0.1 mm"), strict=True):
+for axes, response, words in zip(
+    panels, (touching, apart), ("the balls touch", "gaps of 0.1 mm"), strict=True
+):
     moving = np.array([speeds(response, one) for one in time])
     for number, colour in enumerate(colours):
-        axes.plot(1e6 * time, moving[:, number], color=colour, linewidth=1.8, label=f"ball {number + 1}")
+        axes.plot(
+            1e6 * time, moving[:, number], color=colour, linewidth=1.8, label=f"ball {number + 1}"
+        )
     axes.set(ylabel="Speed [m/s]", title=f"Newton's cradle: {words}", xlim=(0.0, 1200.0))
     for number in (0, 4):
         axes.text(

@@ -38,7 +38,10 @@ class Lining(CompliantLaw):
 
     def forces(self, delta, delta_dot, approach_speed):
         rate = self.stiffness + 3.0 * self.stiffening * delta**2
-        return self.stiffness * delta + self.stiffening * delta**3, self.relaxation * rate * delta_dot
+        return (
+            self.stiffness * delta + self.stiffening * delta** 3,
+            self.relaxation * rate * delta_dot,
+        )
 
     def elastic_energy(self, delta):
         return 0.5 * self.stiffness * delta**2 + 0.25 * self.stiffening * delta**4
@@ -54,7 +57,11 @@ rock = vi.rigid_sphere(25e-3, vi.find_material("granite"))
 def dropped(speed, relaxation):
     """Return the first impact of the rock at a speed [m/s]."""
     law = Lining(stiffness=2e5, stiffening=4e10, relaxation=relaxation)
-    return vi.simulate(vi.Problem(sphere=rock, plate=vi.rigid_plate(), laws=(law,), speed=speed, gravity=0.0, impacts=1))
+    return vi.simulate(
+        vi.Problem(
+            sphere=rock, plate=vi.rigid_plate(), laws=(law,), speed=speed, gravity=0.0, impacts=1
+        )
+    )
 
 
 # %%
@@ -80,10 +87,27 @@ for one, colour in zip((1.0, 2.0, 3.0), ("#56a8d8", "#0072b2", "#00204d"), stric
     assert abs(response.energy["closure_relative"]) < 1e-9
     words = f"{one:g} m/s, restitution {response.impacts['restitution_achieved'][0]:.2f}"
     axes.fill(1e3 * history["indentation_m"], 1e-3 * history["force_N"], color=colour, alpha=0.12)
-    axes.plot(1e3 * history["indentation_m"], 1e-3 * history["force_N"], color=colour, linewidth=2.0, label=words)
+    axes.plot(
+        1e3 * history["indentation_m"],
+        1e-3 * history["force_N"],
+        color=colour,
+        linewidth=2.0,
+        label=words,
+    )
 depth = np.linspace(0.0, 1.05 * deepest, 200)
-axes.plot(1e3 * depth, 1e-3 * (k * depth + q * depth**3), "--", color="#6b6b6b", linewidth=0.9, label="$k \\delta + q \\delta^3$")
-axes.set(xlabel="Indentation [mm]", ylabel="Force [kN]", title="A rock on a rubber lining: a law of one's own")
+axes.plot(
+    1e3 * depth,
+    1e-3 * (k * depth + q * depth**3),
+    "--",
+    color="#6b6b6b",
+    linewidth=0.9,
+    label="$k \\delta + q \\delta^3$",
+)
+axes.set(
+    xlabel="Indentation [mm]",
+    ylabel="Force [kN]",
+    title="A rock on a rubber lining: a law of one's own",
+)
 axes.legend(loc="upper left")
 # sphinx_gallery_thumbnail_number = -1
 plt.show()

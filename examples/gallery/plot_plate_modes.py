@@ -36,14 +36,19 @@ computed = vi.compute_modes(vi.read_case(case))["plate"].basis.frequencies
 rigidity = steel.youngs_modulus * thickness**3 / 12.0 / (1.0 - steel.poissons_ratio**2)
 waves = np.arange(1, 8)
 squares = (waves[:, None] / length) ** 2 + (waves / width) ** 2
-navier = np.sort((0.5 * np.pi * np.sqrt(rigidity / steel.density / thickness) * squares).ravel())[:12]
+navier = np.sort((0.5 * np.pi * np.sqrt(rigidity / steel.density / thickness) * squares).ravel())[
+    :12
+]
 assert np.abs(computed / navier - 1.0).max() < 1e-3
 
 # %%
 # On four patches
 # ---------------
 # Thick plate elements on the paper's patches of 20 mm; two independent meshes of curved tetrahedra give 171.3 and 268.8 Hz within 0.2 %.
-plate = {**case["plate"], "supports": {"type": "patches", "spacing": ["458.4 mm", "360 mm"], "radius": "20 mm"}}
+plate = {
+    **case["plate"],
+    "supports": {"type": "patches", "spacing": ["458.4 mm", "360 mm"], "radius": "20 mm"},
+}
 del plate["mesh"]
 modes = vi.compute_modes(vi.read_case({**case, "plate": plate}))
 assert np.allclose(modes["plate"].basis.frequencies[:2], [171.3, 268.8], rtol=5e-3)

@@ -22,7 +22,10 @@ radius, speed = 25e-3, 8.826664
 rock, steel = vi.find_material("rock-paper"), vi.find_material("steel-paper")
 modulus = steel.youngs_modulus / (1.0 - steel.poissons_ratio**2)
 effective = 1.0 / (1.0 / modulus + (1.0 - rock.poissons_ratio**2) / rock.youngs_modulus)
-mass, stiffness = 4.0 / 3.0 * np.pi * radius**3 * rock.density, 4.0 / 3.0 * effective * np.sqrt(radius)
+mass, stiffness = (
+    4.0 / 3.0 * np.pi * radius**3 * rock.density,
+    4.0 / 3.0 * effective * np.sqrt(radius),
+)
 contact_time = (mass / (stiffness * np.sqrt(speed))) ** 0.4
 
 
@@ -84,10 +87,18 @@ print(f"restitution of 0.99 from {1e3 * enough:.0f} mm on")
 
 plt.style.use("vibroimpact.charts.print")
 figure, axes = plt.subplots(figsize=(6.4, 4.0), layout="constrained")
-axes.fill_between(1e3 * fine, curve, 1.0, color="#b3400e", alpha=0.12, label="lost to the waves of the plate")
+axes.fill_between(
+    1e3 * fine, curve, 1.0, color="#b3400e", alpha=0.12, label="lost to the waves of the plate"
+)
 axes.plot(1e3 * fine, curve, color="#00204d", linewidth=2.0, label="infinite plate (Zener 1941)")
 axes.plot(
-    1e3 * thicknesses, computed, "o", color="#b3400e", markersize=8, markeredgecolor="white", label="plates of 520 x 420 mm, computed"
+    1e3 * thicknesses,
+    computed,
+    "o",
+    color="#b3400e",
+    markersize=8,
+    markeredgecolor="white",
+    label="plates of 520 x 420 mm, computed",
 )
 axes.annotate(
     f"0.99 from {1e3 * enough:.0f} mm on",
@@ -96,7 +107,12 @@ axes.annotate(
     ha="center",
     arrowprops={"arrowstyle": "->", "color": "#555555"},
 )
-axes.set(xlabel="Thickness of the plate [mm]", ylabel="Restitution of a lossless contact [-]", xlim=(4.0, 60.0), ylim=(0.3, 1.0))
+axes.set(
+    xlabel="Thickness of the plate [mm]",
+    ylabel="Restitution of a lossless contact [-]",
+    xlim=(4.0, 60.0),
+    ylim=(0.3, 1.0),
+)
 axes.set_title("A thin steel plate takes the bounce away")
 axes.legend(loc="lower right")
 plt.show()

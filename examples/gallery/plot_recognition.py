@@ -31,12 +31,22 @@ fine = (np.arange(8 * samples) + 0.5) / (8 * rate)
 pulse = np.where(fine < duration[:, None], np.sin(np.pi * fine / duration[:, None]), 0.0)
 signal = np.zeros((count, samples))
 for frequency, damping in ((310.0, 0.03), (840.0, 0.02), (2300.0, 0.02), (5200.0, 0.02)):
-    mode = np.exp(-damping * 2.0 * np.pi * frequency * fine) * np.sin(2.0 * np.pi * frequency * fine)
-    signal += fftconvolve(pulse, mode[None], axes=1)[:, : 8 * samples].reshape(count, samples, 8).mean(axis=2)
+    mode = np.exp(-damping * 2.0 * np.pi * frequency * fine) * np.sin(
+        2.0 * np.pi * frequency * fine
+    )
+    signal += (
+        fftconvolve(pulse, mode[None], axes=1)[:, : 8 * samples]
+        .reshape(count, samples, 8)
+        .mean(axis=2)
+    )
 signal /= np.abs(signal).max(axis=1).mean()
 tone, start = random.uniform(1e3, 8e3, rocks)[rock], random.uniform(0.0, 0.6, rocks)[rock]
 time = np.arange(samples) / rate
-signal += 0.3 * np.exp(-(((time - start[:, None] * time[-1]) / 2e-3) ** 2)) * np.sin(2.0 * np.pi * tone[:, None] * time)
+signal += (
+    0.3
+    * np.exp(-(((time - start[:, None] * time[-1]) / 2e-3) ** 2))
+    * np.sin(2.0 * np.pi * tone[:, None] * time)
+)
 signal += 1e-3 * random.standard_normal(signal.shape)
 
 knocks = vi.LabelledSignals(
@@ -53,11 +63,18 @@ knocks = vi.LabelledSignals(
 # Both ways of testing
 # --------------------
 found = vi.recognise(knocks, folds=3, seeds=1, workers=1)
-classifiers = ("logistic regression", "random forest", "gradient boosting", "support vector machine")
+classifiers = (
+    "logistic regression",
+    "random forest",
+    "gradient boosting",
+    "support vector machine",
+)
 best = 1.0 - bayes_error
 for name in classifiers:
     apart, mixed = (scores[name].balanced_accuracy for scores in (found.scores, found.random))
-    print(f"{name}: rocks apart {apart.value:.3f}, split at random {mixed.value:.3f}, possible {best:.3f}")
+    print(
+        f"{name}: rocks apart {apart.value:.3f}, split at random {mixed.value:.3f}, possible {best:.3f}"
+    )
     assert np.percentile(apart.draws, 2.5) < best < mixed.value
 
 # %%
@@ -76,13 +93,31 @@ for scores, side, colour, words in (
     (found.random, -0.14, "#c79000", "split at random"),
 ):
     value = np.array([scores[name].balanced_accuracy.value for name in classifiers])
-    interval = np.array([np.percentile(scores[name].balanced_accuracy.draws, (2.5, 97.5)) for name in classifiers]).T
+    interval = np.array(
+        [np.percentile(scores[name].balanced_accuracy.draws, (2.5, 97.5)) for name in classifiers]
+    ).T
     bars = np.abs(interval - value)
-    axes.errorbar(100.0 * value, places + side, xerr=100.0 * bars, fmt="o", color=colour, markersize=8, capsize=4, label=words)
+    axes.errorbar(
+        100.0 * value,
+        places + side,
+        xerr=100.0 * bars,
+        fmt="o",
+        color=colour,
+        markersize=8,
+        capsize=4,
+        label=words,
+    )
 axes.axvspan(100.0 * best, 100.0, color="#b3400e", alpha=0.1, linewidth=0)
 axes.axvline(100.0 * best, color="#b3400e", linewidth=1.2)
-axes.text(100.0 * best + 0.5, 3.45, "no classifier can be here", color="#b3400e", va="center", fontsize=9)
-axes.set(xlabel="Balanced accuracy [%]", xlim=(50.0, 100.0), ylim=(-1.2, 3.8), title="The same classifiers, tested in two ways")
+axes.text(
+    100.0 * best + 0.5, 3.45, "no classifier can be here", color="#b3400e", va="center", fontsize=9
+)
+axes.set(
+    xlabel="Balanced accuracy [%]",
+    xlim=(50.0, 100.0),
+    ylim=(-1.2, 3.8),
+    title="The same classifiers, tested in two ways",
+)
 axes.set_yticks(places, classifiers)
 axes.legend(loc="lower left")
 axes.grid(visible=False, axis="y")

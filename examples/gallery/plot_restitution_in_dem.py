@@ -26,7 +26,9 @@ laws = {
 }
 mass, speed, stiffness = 0.0903, 3.0, 5.115e8
 achieved = {
-    name: vi.achieved_restitution(vi.find_contact_law(name)(stiffness=stiffness, restitution=asked), mass=mass, speed=speed)
+    name: vi.achieved_restitution(
+        vi.find_contact_law(name)(stiffness=stiffness, restitution=asked), mass=mass, speed=speed
+    )
     for name in laws
 }
 
@@ -43,7 +45,12 @@ assert abs(vi.achieved_restitution(hunt, mass=1.0, speed=10.0) - 0.6629838) < 1e
 wanted = 0.7
 typed = {}
 for name in laws:
-    law = vi.law_achieving(vi.find_contact_law(name)(stiffness=stiffness, restitution=0.5), wanted, mass=mass, speed=speed)
+    law = vi.law_achieving(
+        vi.find_contact_law(name)(stiffness=stiffness, restitution=0.5),
+        wanted,
+        mass=mass,
+        speed=speed,
+    )
     assert abs(vi.integrated_restitution(law, mass, speed) - wanted) < 1e-6
     typed[name] = float(law.restitution)
 typed
@@ -56,11 +63,26 @@ plt.style.use("vibroimpact.charts.print")
 figure, axes = plt.subplots(figsize=(6.4, 4.4), layout="constrained")
 axes.plot([0, 1], [0, 1], "--", color="#9a9a9a")
 axes.axhline(wanted, color="#d9d9d9")
-for name, colour in zip(laws, ("#00204d", "#0072b2", "#56a8d8", "#b3400e", "#c79000", "#5f8f3e"), strict=True):
-    axes.plot(asked, achieved[name], color=colour, linewidth=2.0, label=laws[name].replace("\n", ", "))
-    axes.plot(typed[name], wanted, "o", color=colour, markersize=6, markeredgecolor="white", zorder=3)
-axes.annotate("asked to stop,\nkeeps two thirds", (0.06, achieved["lankarani-nikravesh"][1]), (0.02, 0.84), color="#00204d")
-axes.set(xlabel="Restitution asked [-]", ylabel="Restitution achieved [-]", title="The restitution asked is not the one that comes out")
+for name, colour in zip(
+    laws, ("#00204d", "#0072b2", "#56a8d8", "#b3400e", "#c79000", "#5f8f3e"), strict=True
+):
+    axes.plot(
+        asked, achieved[name], color=colour, linewidth=2.0, label=laws[name].replace("\n", ", ")
+    )
+    axes.plot(
+        typed[name], wanted, "o", color=colour, markersize=6, markeredgecolor="white", zorder=3
+    )
+axes.annotate(
+    "asked to stop,\nkeeps two thirds",
+    (0.06, achieved["lankarani-nikravesh"][1]),
+    (0.02, 0.84),
+    color="#00204d",
+)
+axes.set(
+    xlabel="Restitution asked [-]",
+    ylabel="Restitution achieved [-]",
+    title="The restitution asked is not the one that comes out",
+)
 axes.set(xlim=(0.0, 1.0), ylim=(0.0, 1.0), aspect="equal")
 axes.legend(loc="center left", bbox_to_anchor=(1.02, 0.5))
 plt.show()

@@ -22,7 +22,11 @@ def thrown(coefficient, spin=0.0):
         "sphere": {"radius": "10 mm", "material": "glass"},
         "plate": {"material": "steel"},
         "drop": {"velocity": [2.0, 0.0, -1.0], "spin": [0.0, spin, 0.0]},
-        "contact": {"law": "newton", "restitution": 0.6, "friction": {"law": "coulomb", "coefficient": coefficient}},
+        "contact": {
+            "law": "newton",
+            "restitution": 0.6,
+            "friction": {"law": "coulomb", "coefficient": coefficient},
+        },
         "run": {"duration": "2.5 s"},
     }
     return vi.simulate(vi.read_case(case))
@@ -50,12 +54,39 @@ assert abs(backspin.at(2.5)["velocity_x_m_s"] - (5.0 * 2.0 - 2.0 * 0.01 * 700.0)
 plt.style.use("vibroimpact.charts.print")
 figure, axes = plt.subplots(figsize=(6.4, 4.2), layout="constrained")
 time = np.linspace(0.0, 2.5, 3000)
-for (coefficient, response), colour in zip(slow.items(), ("#8fc7e8", "#56a8d8", "#0072b2", "#00204d"), strict=True):
-    axes.plot(time, response.at(time)["velocity_x_m_s"], color=colour, linewidth=1.8, label=f"friction {coefficient:g}")
-axes.plot(time, backspin.at(time)["velocity_x_m_s"], color="#b3400e", linewidth=1.8, label="friction 0.16, backspin of 700 rad/s")
+for (coefficient, response), colour in zip(
+    slow.items(), ("#8fc7e8", "#56a8d8", "#0072b2", "#00204d"), strict=True
+):
+    axes.plot(
+        time,
+        response.at(time)["velocity_x_m_s"],
+        color=colour,
+        linewidth=1.8,
+        label=f"friction {coefficient:g}",
+    )
+axes.plot(
+    time,
+    backspin.at(time)["velocity_x_m_s"],
+    color="#b3400e",
+    linewidth=1.8,
+    label="friction 0.16, backspin of 700 rad/s",
+)
 axes.axhline(10.0 / 7.0, color="#6b6b6b", linestyle="--", linewidth=0.9)
-axes.text(2.5, 10.0 / 7.0 - 0.03, "5/7 of the first velocity", ha="right", va="top", color="#6b6b6b", fontsize=8)
+axes.text(
+    2.5,
+    10.0 / 7.0 - 0.03,
+    "5/7 of the first velocity",
+    ha="right",
+    va="top",
+    color="#6b6b6b",
+    fontsize=8,
+)
 axes.axhline(0.0, color="#6b6b6b", linewidth=0.7)
-axes.set(xlabel="Time [s]", ylabel="Velocity along the plate [m/s]", title="A sphere slips until it rolls", xlim=(0.0, 2.5))
+axes.set(
+    xlabel="Time [s]",
+    ylabel="Velocity along the plate [m/s]",
+    title="A sphere slips until it rolls",
+    xlim=(0.0, 2.5),
+)
 axes.legend(loc="center right", bbox_to_anchor=(1.0, 0.52))
 plt.show()

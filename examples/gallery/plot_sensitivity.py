@@ -31,7 +31,10 @@ over = {
     "drop.height": normal("1 m", "2 cm"),
 }
 case = {
-    "sphere": {"radius": "25 mm", "material": {"density": 2650, "youngs_modulus": "50 GPa", "poissons_ratio": 0.25}},
+    "sphere": {
+        "radius": "25 mm",
+        "material": {"density": 2650, "youngs_modulus": "50 GPa", "poissons_ratio": 0.25},
+    },
     "plate": {"material": "steel"},
     "drop": {"height": "1 m"},
     "contact": {"law": "tsuji", "restitution": 0.65},
@@ -39,7 +42,12 @@ case = {
     "sweep": {"design": "saltelli", "samples": 1024, "over": over},
 }
 with TemporaryDirectory() as folder:
-    charts = {chart.name: chart for chart in vi.study_charts(vi.read_study(vi.run_sweep(vi.read_sweep(case), Path(folder, "tolerances"))))}
+    charts = {
+        chart.name: chart
+        for chart in vi.study_charts(
+            vi.read_study(vi.run_sweep(vi.read_sweep(case), Path(folder, "tolerances")))
+        )
+    }
 
 # %%
 # The share of each key
@@ -53,11 +61,24 @@ bars = next(mark for mark in panel.marks if getattr(mark, "name", "").startswith
 total = dict(zip(panel.y.names, bars.values.tolist(), strict=True))
 
 granite, steel = (1.0 - 0.25**2) / 50e9, (1.0 - 0.3**2) / 210e9
-exponents = np.array([0.6, 0.6, 0.4 * granite / (granite + steel), 2.0])  # of density, height, modulus and radius
+exponents = np.array(
+    [0.6, 0.6, 0.4 * granite / (granite + steel), 2.0]
+)  # of density, height, modulus and radius
 scatter = np.array([60.0 / 2650.0, 0.02, 8.0 / 50.0, 1.0 / 25.0])
-shares = (1.0 - total["Restitution asked"]) * (exponents * scatter) ** 2 / ((exponents * scatter) ** 2).sum()
+shares = (
+    (1.0 - total["Restitution asked"])
+    * (exponents * scatter) ** 2
+    / ((exponents * scatter) ** 2).sum()
+)
 for name, share in zip(
-    ("Density of the sphere", "Drop height", "Young's modulus of the sphere", "Radius of the sphere"), shares, strict=True
+    (
+        "Density of the sphere",
+        "Drop height",
+        "Young's modulus of the sphere",
+        "Radius of the sphere",
+    ),
+    shares,
+    strict=True,
 ):
     print(f"{name}: {total[name]:.3f}, by the exponents {share:.3f}")
     assert abs(total[name] - share) < 0.03

@@ -53,6 +53,10 @@ axes.plot(strength, flights, ".", color="#00204d", markersize=2.2)
 for threshold, words in ((exists, "one bounce a period exists"), (doubles, "it doubles")):
     axes.axvline(threshold, color="#b3400e", linestyle="--", linewidth=0.9)
     axes.text(threshold + 0.01, 1.5, words, color="#b3400e", fontsize=8)
-axes.set(xlabel="Greatest acceleration of the table [g]", ylabel="Length of the flights [periods]", ylim=(0.4, 1.7))
+axes.set(
+    xlabel="Greatest acceleration of the table [g]",
+    ylabel="Length of the flights [periods]",
+    ylim=(0.4, 1.7),
+)
 axes.set_title("A ball on a shaken table, restitution 0.5")
 plt.show()

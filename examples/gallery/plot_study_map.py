@@ -56,12 +56,32 @@ assert np.allclose(overload, reference * dropped**0.2, rtol=5e-3)
 # here.
 plt.style.use("vibroimpact.charts.print")
 figure, axes = plt.subplots(figsize=(6.4, 4.4), layout="constrained")
-map_of_force = axes.pcolormesh(1e3 * radius, height, force.T, norm="log", cmap="cividis", shading="gouraud", rasterized=True)
-lines = axes.contour(1e3 * radius, height, force.T, 10.0 ** np.arange(1.0, 6.0), colors="white", linewidths=0.9)
-axes.clabel(lines, fmt=lambda value: f"{value:g} N" if value < 1e3 else f"{1e-3 * value:g} kN", fontsize=8)
-yields = axes.contour(1e3 * radius, height, overload.T, [4.0, 5.0, 6.0, 7.0, 8.0], colors="#1b1b1b", linestyles="--", linewidths=1.2)
+map_of_force = axes.pcolormesh(
+    1e3 * radius, height, force.T, norm="log", cmap="cividis", shading="gouraud", rasterized=True
+)
+lines = axes.contour(
+    1e3 * radius, height, force.T, 10.0 ** np.arange(1.0, 6.0), colors="white", linewidths=0.9
+)
+axes.clabel(
+    lines, fmt=lambda value: f"{value:g} N" if value < 1e3 else f"{1e-3 * value:g} kN", fontsize=8
+)
+yields = axes.contour(
+    1e3 * radius,
+    height,
+    overload.T,
+    [4.0, 5.0, 6.0, 7.0, 8.0],
+    colors="#1b1b1b",
+    linestyles="--",
+    linewidths=1.2,
+)
 axes.clabel(yields, fmt="%g times yield", fontsize=8)
-axes.set(xscale="log", yscale="log", xlabel="Radius of the rock [mm]", ylabel="Drop height [m]", title="Granite on steel: 2,000 drops")
+axes.set(
+    xscale="log",
+    yscale="log",
+    xlabel="Radius of the rock [mm]",
+    ylabel="Drop height [m]",
+    title="Granite on steel: 2,000 drops",
+)
 axes.set_xticks([2, 5, 10, 20, 50], ["2", "5", "10", "20", "50"])
 axes.set_yticks([0.1, 0.2, 0.5, 1.0, 2.0, 5.0], ["0.1", "0.2", "0.5", "1", "2", "5"])
 axes.minorticks_off()

@@ -31,7 +31,9 @@ errors = {}
 for name, values in laws.items():
     law = vi.find_contact_law(name)(**values)
     exact = law.closed_form_restitution(mass, speed)
-    found = [vi.integrated_restitution(law, mass, speed, tolerance=float(one)) for one in tolerances]
+    found = [
+        vi.integrated_restitution(law, mass, speed, tolerance=float(one)) for one in tolerances
+    ]
     errors[name] = np.abs(np.array(found) / exact - 1.0).clip(1e-16)
     assert np.all(errors[name] < np.maximum(tolerances, 1e-13))
 
@@ -42,10 +44,16 @@ plt.style.use("vibroimpact.charts.print")
 figure, axes = plt.subplots(figsize=(6.4, 4.2), layout="constrained")
 axes.fill_between(tolerances, tolerances, 1.0, color="#b3400e", alpha=0.1, linewidth=0)
 axes.loglog(tolerances, tolerances, color="#b3400e", linewidth=1.2)
-axes.text(2e-8, 2e-7, "more than was asked for", color="#b3400e", ha="center", va="center", fontsize=8)
+axes.text(
+    2e-8, 2e-7, "more than was asked for", color="#b3400e", ha="center", va="center", fontsize=8
+)
 for (name, error), marker in zip(errors.items(), "osD^v", strict=True):
     axes.loglog(tolerances, error, marker=marker, markersize=5, linewidth=1.0, label=name)
-axes.set(xlabel="Tolerance that is asked for [-]", ylabel="Error of the restitution [-]", title="What the tolerance promises, it keeps")
+axes.set(
+    xlabel="Tolerance that is asked for [-]",
+    ylabel="Error of the restitution [-]",
+    title="What the tolerance promises, it keeps",
+)
 axes.set(xlim=(1e-13, 1e-6), ylim=(5e-17, 1e-5))
 axes.legend(loc="upper left")
 plt.show()
