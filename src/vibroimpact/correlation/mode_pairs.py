@@ -41,17 +41,9 @@ class ModePair:
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> plate = {"size": [0.3, 0.3, 0.02], "material": "steel", "model": "elastic", "modes": 10, "supports": "clamped", "damping": 0.01}
-    >>> case = vi.read_case({
-    ...     "sphere": {"radius": 0.02, "material": "steel"}, "plate": plate, "drop": {"speed": 1.0, "position": [0.02, 0.01]},
-    ...     "contact": {"law": "hertz"}, "run": {"duration": 0.1},
-    ...     "sensors": [{"name": "a", "position": [0.1, 0.03], "rate": 20e3}],
-    ... })
-    >>> record = vi.Record("a", vi.simulate(case).signals()["a"].value, 20e3, "m/s2")
-    >>> found = vi.correlate(case, [record], window=0.05)
-    >>> pair = max(found.modes, key=lambda pair: pair.response)
-    >>> pair.told, abs(pair.frequency_difference) < 1e-4, round(pair.measured.damping_ratio.value, 4)
-    (True, True, 0.01)
+    >>> pair = vi.ModePair(number=1, frequency=420.0, damping_ratio=0.01, response=1.0, measured=None, remark="not excited")
+    >>> pair.frequency, pair.measured
+    (420.0, None)
     """
 
     number: int | None

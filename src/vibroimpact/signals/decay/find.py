@@ -50,11 +50,11 @@ class DecayMode:
     --------
     >>> import numpy as np
     >>> import vibroimpact as vi
-    >>> time = np.arange(8192) / 25.6e3
-    >>> tone = np.exp(-20.0 * time) * np.sin(2500.0 * time)
-    >>> (mode,) = vi.modes_in_decay([vi.Record("a1", tone, 25.6e3, "m/s2")], (200.0, 800.0))
-    >>> round(mode.frequency.value, 2), round(mode.damping_ratio.value, 5), mode.doubt
-    (397.9, 0.008, '')
+    >>> time = np.arange(4000) / 10e3
+    >>> ringing = vi.Record("a", np.exp(-2.0 * np.pi * 400.0 * 0.01 * time) * np.sin(2.0 * np.pi * 400.0 * time), 10e3, "m/s2")
+    >>> (mode,) = vi.modes_in_decay([ringing], (300.0, 500.0))
+    >>> round(mode.frequency.value, 1), round(mode.damping_ratio.value, 4)
+    (400.0, 0.01)
     """
 
     frequency: Estimate
