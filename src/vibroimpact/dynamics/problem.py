@@ -22,6 +22,7 @@ from vibroimpact.dynamics.oblique.statement import Oblique
 from vibroimpact.dynamics.sensors.sensor import Sensor
 from vibroimpact.dynamics.shaken.statement import PlateMotion
 from vibroimpact.dynamics.shaken.steady import steady_phasors
+from vibroimpact.dynamics.tolerance import check_tolerance
 from vibroimpact.errors import InputError
 from vibroimpact.resolved_case import ResolvedCase
 
@@ -176,8 +177,7 @@ class Problem:
             raise InputError(f"impacts must be a whole number from 1 to {MOST_IMPACTS}")
         if self.duration is not None and not 0 < self.duration < np.inf:
             raise InputError("duration must be greater than 0 s and finite")
-        if not 1e-13 <= self.tolerance <= 1e-6:
-            raise InputError("tolerance must lie between 1e-13 and 1e-6")
+        check_tolerance(self.tolerance)
         if self.local_element is not None and not all(0.0 < value < np.inf for value in self.local_element):
             raise InputError("stiffness and damping of the local element must be greater than 0 and finite")
         if self.plate.rigid is not None and np.any(np.asarray(self.gravity) > 0):
