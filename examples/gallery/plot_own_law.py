@@ -39,7 +39,7 @@ class Lining(CompliantLaw):
     def forces(self, delta, delta_dot, approach_speed):
         rate = self.stiffness + 3.0 * self.stiffening * delta**2
         return (
-            self.stiffness * delta + self.stiffening * delta** 3,
+            self.stiffness * delta + self.stiffening * delta**3,
             self.relaxation * rate * delta_dot,
         )
 
