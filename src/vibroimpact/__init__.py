@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from vibroimpact.bodies.rigid import rigid_sphere as rigid_sphere
     from vibroimpact.bounds.bound import Bound as Bound
     from vibroimpact.bounds.bound import bound_of as bound_of
+    from vibroimpact.bounds.charts import bound_charts as bound_charts
     from vibroimpact.bounds.folder import save_bound as save_bound
     from vibroimpact.bounds.observations import Channel as Channel
     from vibroimpact.calibration.bounce_record import impacts_in_bounces as impacts_in_bounces
@@ -54,6 +55,7 @@ if TYPE_CHECKING:
     from vibroimpact.cases.reader import shipped_cases as shipped_cases
     from vibroimpact.cases.template import case_template as case_template
     from vibroimpact.charts.files import save_charts as save_charts
+    from vibroimpact.charts.matplotlib import matplotlib_figure as matplotlib_figure
     from vibroimpact.charts.notebook import plotly_figure as plotly_figure
     from vibroimpact.comparison.charts import comparison_charts as comparison_charts
     from vibroimpact.comparison.comparison import Comparison as Comparison
@@ -72,6 +74,7 @@ if TYPE_CHECKING:
     from vibroimpact.correlation.folder import save_correlation as save_correlation
     from vibroimpact.correlation.mode_pairs import ModePair as ModePair
     from vibroimpact.dynamics.air import Air as Air
+    from vibroimpact.dynamics.liquid import Liquid as Liquid
     from vibroimpact.dynamics.local_element import identify_local_element as identify_local_element
     from vibroimpact.dynamics.local_element import local_element_deviations as local_element_deviations
     from vibroimpact.dynamics.oblique.statement import Oblique as Oblique
@@ -105,6 +108,7 @@ if TYPE_CHECKING:
     from vibroimpact.exporting.export_format import export_formats as export_formats
     from vibroimpact.exporting.export_result import export_result as export_result
     from vibroimpact.figures import save_figures as save_figures
+    from vibroimpact.identification.charts import identification_charts as identification_charts
     from vibroimpact.identification.folder import save_identification as save_identification
     from vibroimpact.identification.identify import Identification as Identification
     from vibroimpact.identification.identify import identify as identify
@@ -123,8 +127,10 @@ if TYPE_CHECKING:
     from vibroimpact.recognition.apply import Recognised as Recognised
     from vibroimpact.recognition.apply import apply_recogniser as apply_recogniser
     from vibroimpact.recognition.apply import save_recognised as save_recognised
+    from vibroimpact.recognition.charts import recognition_charts as recognition_charts
     from vibroimpact.recognition.folder import save_recognition as save_recognition
     from vibroimpact.recognition.labelled_signals import LabelledSignals as LabelledSignals
+    from vibroimpact.recognition.labelled_signals import SensorSignals as SensorSignals
     from vibroimpact.recognition.read_dataset import read_labelled_signals as read_labelled_signals
     from vibroimpact.recognition.recognise import Recognition as Recognition
     from vibroimpact.recognition.recognise import recognise as recognise
@@ -134,6 +140,7 @@ if TYPE_CHECKING:
     from vibroimpact.results.folder import read_result as read_result
     from vibroimpact.results.result import Result as Result
     from vibroimpact.results.result import result_of as result_of
+    from vibroimpact.runs.charts import run_charts as run_charts
     from vibroimpact.runs.notebook import plot_result as plot_result
     from vibroimpact.runs.notebook import result_html as result_html
     from vibroimpact.runs.save import save_result as save_result
@@ -158,6 +165,7 @@ if TYPE_CHECKING:
     from vibroimpact.signals.registry import find_feature as find_feature
     from vibroimpact.structures.mesh import Mesh as Mesh
     from vibroimpact.structures.modal_model import ModalBasis as ModalBasis
+    from vibroimpact.studies.report.charts import study_charts as study_charts
     from vibroimpact.studies.report.notebook import plot_study as plot_study
     from vibroimpact.studies.report.notebook import study_html as study_html
     from vibroimpact.studies.run_sweep import run_sweep as run_sweep
@@ -194,6 +202,7 @@ _HOME = {
     "Geophone": "dynamics.sensors.instruments.geophone",
     "Identification": "identification.identify",
     "InputError": "errors",
+    "Liquid": "dynamics.liquid",
     "Material": "materials",
     "LabelledSignals": "recognition.labelled_signals",
     "Mesh": "structures.mesh",
@@ -219,6 +228,7 @@ _HOME = {
     "Response": "dynamics.response",
     "Result": "results.result",
     "Sensor": "dynamics.sensors.sensor",
+    "SensorSignals": "recognition.labelled_signals",
     "Signal": "dynamics.sensors.recording",
     "SpeedFunction": "calibration.speed_function",
     "StrainGauge": "dynamics.sensors.instruments.strain_gauge",
@@ -230,6 +240,7 @@ _HOME = {
     "achieved_restitution": "dynamics.restitution",
     "apply_recogniser": "recognition.apply",
     "bounce_charts": "calibration.bounces.charts",
+    "bound_charts": "bounds.charts",
     "bound_of": "bounds.bound",
     "calibrate": "calibration.calibrate",
     "calibrate_case": "calibration.calibrate_case",
@@ -258,6 +269,7 @@ _HOME = {
     "frac": "signals.frac",
     "friction_laws": "contact.registry",
     "from_onset": "signals.onset",
+    "identification_charts": "identification.charts",
     "identify": "identification.identify",
     "identify_force": "identification.identify",
     "identify_local_element": "dynamics.local_element",
@@ -274,6 +286,7 @@ _HOME = {
     "load_sweep": "studies.sweep",
     "local_element_deviations": "dynamics.local_element",
     "material_library": "materials",
+    "matplotlib_figure": "charts.matplotlib",
     "modal_damping": "calibration.tunables",
     "mode_charts": "modes.charts",
     "modes_in_decay": "signals.decay.find",
@@ -293,6 +306,7 @@ _HOME = {
     "read_sweep": "studies.sweep",
     "rebounds_of": "calibration.bounces.rebounds",
     "recognise": "recognition.recognise",
+    "recognition_charts": "recognition.charts",
     "record_table": "signals.record_table",
     "remake_report": "remake",
     "reproduce_paper": "paper.report.folder",
@@ -300,6 +314,7 @@ _HOME = {
     "result_of": "results.result",
     "rigid_plate": "bodies.rigid",
     "rigid_sphere": "bodies.rigid",
+    "run_charts": "runs.charts",
     "run_sweep": "studies.run_sweep",
     "save_bound": "bounds.folder",
     "save_calibration": "calibration.folder",
@@ -316,6 +331,7 @@ _HOME = {
     "shipped_cases": "cases.reader",
     "simulate": "dynamics.simulate",
     "simulate_system": "dynamics.simulate_system",
+    "study_charts": "studies.report.charts",
     "study_html": "studies.report.notebook",
     "tabulate": "dynamics.tabulate",
     "to_si": "units.reading",

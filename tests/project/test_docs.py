@@ -42,6 +42,7 @@ NOT_RUN = {
     "vibroimpact recognise falls -o new-plates --group plate": "tests/unit/test_recognition.py runs it",
     "vibroimpact recognise today --model recognised -o counted": "tests/unit/test_recognition.py runs it",
     "vibroimpact identify coal.toml records.csv -o found": "tests/unit/test_identification.py runs it",
+    "vibroimpact correlate plate.toml taps.csv --hammer force -o compared": "tests/unit/test_correlation.py runs it",
     "python3 -m venv .venv": "installs",
     "source .venv/bin/activate": "changes the shell",
     "python -m pip install .": "installs",

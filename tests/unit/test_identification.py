@@ -129,10 +129,11 @@ def test_the_marginal_likelihood_is_that_of_the_records() -> None:
     assert evidence(strength) >= max(evidence(1.5 * strength), evidence(strength / 1.5))
 
 
-def test_force_place_size_and_speed_at_40_decibels() -> None:
+@pytest.mark.parametrize("impacts", [3, pytest.param(10, marks=pytest.mark.slow)])
+def test_force_place_size_and_speed_at_40_decibels(impacts: int) -> None:
     """Simulated with twice the modes of the model: largest force 5 %, impulse 2 %, place half a thickness."""
     within = []
-    for number, (radius, speed, place) in enumerate(drawn(10, seed=11)):
+    for number, (radius, speed, place) in enumerate(drawn(impacts, seed=11)):
         impact = an_impact(radius, speed, place)
         found = identify_on(plate(), records_of(impact, 40.0, seed=number))
         told = found.estimates

@@ -23,7 +23,21 @@ _DECADES = 4.0
 
 
 def correlation_charts(found: Correlation) -> list[Chart]:
-    """Return the charts `overlay`, `responses`, `frac` and, if a damping was told, `damping`."""
+    """Return the charts `overlay`, `responses`, `frac` and, if a damping was told, `damping`.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> plate = {"size": [0.3, 0.3, 0.02], "material": "steel", "model": "elastic", "modes": 10, "supports": "clamped", "damping": 0.01}
+    >>> case = vi.read_case({
+    ...     "sphere": {"radius": 0.02, "material": "steel"}, "plate": plate, "drop": {"speed": 1.0, "position": [0.02, 0.01]},
+    ...     "contact": {"law": "hertz"}, "run": {"duration": 0.1}, "sensors": [{"name": "a", "position": [0.1, 0.03], "rate": 20e3}],
+    ... })
+    >>> record = vi.Record("a", vi.simulate(case).signals()["a"].value, 20e3, "m/s2")
+    >>> found = vi.correlate(case, [record], window=0.05)
+    >>> [chart.name for chart in vi.correlation_charts(found)]
+    ['overlay', 'responses', 'frac', 'damping']
+    """
     charts = [_overlay(found), _responses(found), _frac(found)]
     return [*charts, *([_damping(found)] if any(pair.told for pair in found.modes) else [])]
 

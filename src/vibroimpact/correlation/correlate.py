@@ -70,6 +70,19 @@ class Correlation:
         The modes of the case and of the records.
     doubts : tuple of str
         What is not sure, and why.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> plate = {"size": [0.3, 0.3, 0.02], "material": "steel", "model": "elastic", "modes": 10, "supports": "clamped", "damping": 0.01}
+    >>> case = vi.read_case({
+    ...     "sphere": {"radius": 0.02, "material": "steel"}, "plate": plate, "drop": {"speed": 1.0, "position": [0.02, 0.01]},
+    ...     "contact": {"law": "hertz"}, "run": {"duration": 0.1}, "sensors": [{"name": "a", "position": [0.1, 0.03], "rate": 20e3}],
+    ... })
+    >>> record = vi.Record("a", vi.simulate(case).signals()["a"].value, 20e3, "m/s2")
+    >>> found = vi.correlate(case, [record], window=0.05)
+    >>> found.sensors[0].name, round(float(found.frac[0]), 4)
+    ('a', 1.0)
     """
 
     case: CaseTable

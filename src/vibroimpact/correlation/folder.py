@@ -56,6 +56,21 @@ def save_correlation(found: Correlation, directory: str | PathLike[str], *, forc
     ------
     InputError
         If the folder exists and may not be replaced, or it can't be written to.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> import vibroimpact as vi
+    >>> plate = {"size": [0.3, 0.3, 0.02], "material": "steel", "model": "elastic", "modes": 10, "supports": "clamped", "damping": 0.01}
+    >>> case = vi.read_case({
+    ...     "sphere": {"radius": 0.02, "material": "steel"}, "plate": plate, "drop": {"speed": 1.0, "position": [0.02, 0.01]},
+    ...     "contact": {"law": "hertz"}, "run": {"duration": 0.1}, "sensors": [{"name": "a", "position": [0.1, 0.03], "rate": 20e3}],
+    ... })
+    >>> record = vi.Record("a", vi.simulate(case).signals()["a"].value, 20e3, "m/s2")
+    >>> found = vi.correlate(case, [record], window=0.05)
+    >>> with TemporaryDirectory() as folder:
+    ...     sorted(file.name for file in vi.save_correlation(found, f"{folder}/compared").iterdir())
+    ['case.toml', 'modes.csv', 'overlay.csv', 'report.html', 'responses.csv', 'summary.json']
     """
     with new_folder(directory, force=force) as folder:
         plain = plain_names([sensor.name for sensor in found.sensors])

@@ -37,6 +37,13 @@ class ModePair:
         The measured mode; None if none was found.
     remark : str
         Why it has no partner, or its damping is not told.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> pair = vi.ModePair(number=1, frequency=420.0, damping_ratio=0.01, response=1.0, measured=None, remark="not excited")
+    >>> pair.frequency, pair.measured
+    (420.0, None)
     """
 
     number: int | None

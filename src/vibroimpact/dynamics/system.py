@@ -17,6 +17,7 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.quasi_static import QuasiStatic
+from vibroimpact.dynamics.tolerance import check_tolerance
 from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State
 from vibroimpact.errors import InputError, did_you_mean
 
@@ -195,8 +196,7 @@ class System:
                 raise InputError(f'{name} must be a mapping of names to {kind.__name__}, as {{"name": vi.{kind.__name__}(...)}}', name)
         if not self.contacts:
             raise InputError("the system has no contact: nothing can happen between its bodies", "contacts")
-        if not 1e-13 <= _number("tolerance", self.tolerance) <= 1e-6:
-            raise InputError("tolerance must lie between 1e-13 and 1e-6")
+        check_tolerance(_number("tolerance", self.tolerance))
         for name, contact in self.contacts.items():
             key = f"contacts.{name}"
             for body in (contact.above, contact.below):

@@ -26,6 +26,11 @@ class SensorSignals:
         Sampling rate [Hz].
     unit : str
         Unit of the samples.
+
+    Examples
+    --------
+    >>> SensorSignals(np.zeros((2, 4), np.float32), 25.6e3, "m/s2").values.shape
+    (2, 4)
     """
 
     values: NDArray[np.float32]
