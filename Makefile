@@ -7,6 +7,7 @@
 # make bench     the benchmarks
 # make docs      write the pages of the contact laws, the table of features, and what a shell completes, again
 # make docs-site build the documentation site into site/, to be read without a network: open site/index.html
+# make validation compare with all others but the peers, and write the page of the documentation that tells it
 # make reproduce reproduce the paper, and write the page of the documentation that shows it
 # make help      this list
 
@@ -17,7 +18,7 @@ OUTPUT := vibroimpact-demo
 VIBROIMPACT_CHROMIUM ?= /usr/bin/chromium
 CHROMIUM := $(VIBROIMPACT_CHROMIUM)
 
-.PHONY: help demo test test-slow test-page chromium test-peers check bench docs docs-site reproduce clean
+.PHONY: help demo test test-slow test-page chromium test-peers check bench docs docs-site validation reproduce clean
 
 demo: $(VENV)/installed
 	$(BIN)/vibroimpact demo --output $(OUTPUT) --force
@@ -57,6 +58,10 @@ docs: $(VENV)/installed
 
 docs-site: $(VENV)/installed-docs
 	OPENBLAS_NUM_THREADS=1 $(BIN)/sphinx-build --fresh-env --nitpicky --fail-on-warning --keep-going -d build/doctrees docs site
+
+validation: $(VENV)/installed-test
+	OPENBLAS_NUM_THREADS=1 $(BIN)/pytest -m "not peers" tests/verification tests/published -n auto --dist worksteal --validation tests/validation.jsonl
+	$(BIN)/python tests/validation_page.py
 
 reproduce: $(VENV)/installed
 	$(BIN)/vibroimpact reproduce -o vibroimpact-paper --force

@@ -10,6 +10,8 @@ from pathlib import Path
 import pytest
 from _pytest.doctest import DoctestItem
 
+pytest_plugins = ["agreement"]
+
 
 @pytest.fixture(autouse=True, scope="session")
 def own_store(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:

@@ -11,7 +11,16 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
+from agreement import Against, Agrees
 from vibroimpact.calibration.differences import differences
+
+AGAINST = Against(
+    "the paper's damping of Adams' IMPACT",
+    "published computation",
+    "calibration, identification and studies",
+    "Study on the Vibroimpact Response of the Particle Elastic Impact on the Metal Plate, Shock and Vibration, section 3.2",
+)
+
 
 EXACT = [179.790, 172.746, 166.419, 160.869, 156.663]  # N s/m
 EXACT_FIT = [139.408, 5.86288, -0.145601]
@@ -20,19 +29,19 @@ PRINTED_FIT = [138.93525, 6.00288, -0.15582]
 SPEEDS = [8.8266641, 6.8386265, 5.2982339, 4.1046840, 3.1798731]  # m/s
 
 
-def test_dampings(damping: vi.Calibration) -> None:
+def test_dampings(agrees: Agrees, damping: vi.Calibration) -> None:
     assert damping.observations.speeds == pytest.approx(SPEEDS, rel=1e-7)
-    assert damping.values == pytest.approx(EXACT, rel=1e-5)
+    agrees("damping of each impact", "damping", damping.values, EXACT, unit="N s/m", relative=1e-5)
     assert damping.outcomes["separation_speed"] == pytest.approx(damping.observations.wanted["separation_speed"], rel=1e-10)
 
 
-def test_function_of_the_speed(damping: vi.Calibration) -> None:
-    assert damping.fit.function.coefficients == pytest.approx(EXACT_FIT, rel=1e-5)
+def test_function_of_the_speed(agrees: Agrees, damping: vi.Calibration) -> None:
+    agrees("function of the speed", "three coefficients", damping.fit.function.coefficients, EXACT_FIT, relative=1e-5)
 
 
-def test_the_printed_ones_stand_beside_it(damping: vi.Calibration) -> None:
+def test_the_printed_ones_stand_beside_it(agrees: Agrees, damping: vi.Calibration) -> None:
     assert damping.given.tolist() == PRINTED
-    assert damping.values == pytest.approx(PRINTED, rel=1.1e-3)
+    agrees("damping of each impact, as printed", "damping", damping.values, PRINTED, unit="N s/m", relative=1.1e-3)
     printed = vi.SpeedFunction(tuple(PRINTED_FIT), 3.0, 9.0)
     assert printed(damping.observations.speeds) == pytest.approx(damping.values, abs=0.22)  # N s/m, the hand's precision
 
@@ -55,17 +64,24 @@ def test_what_is_still_wrong(damping: vi.Calibration) -> None:
     assert 100.0 * off["rebound_height_m"]["constant"] == pytest.approx([0.0, -1.9, -5.5, -10.5, -16.1], abs=0.06)
 
 
-def test_printed_penetration_does_not_go_with_the_printed_rebound() -> None:
+def test_printed_penetration_does_not_go_with_the_printed_rebound(agrees: Agrees) -> None:
     """Of 1e-5 m, as printed, and 1e-4 m, Adams' default, only the latter gives 2.41132 m with the printed damping."""
     found = vi.calibrate_case(vi.load_calibration("paper:full-damping-penetration"))
     assert found.given.tolist() == [1e-5]
     height = 0.025 + found.as_given["separation_speed"][0] ** 2 / (2.0 * 9.8)
     assert height == pytest.approx(2.3613, abs=5e-5)
-    assert found.values[0] == pytest.approx(1e-4, rel=1e-4)
+    agrees(
+        "full-damping penetration, printed as 1e-5 m",
+        "penetration that has the printed rebound",
+        found.values[0],
+        1e-4,
+        unit="m",
+        relative=1e-4,
+    )
     assert found.others["damping_max"] == pytest.approx(172.22, abs=0.01)
 
 
-def test_the_two_printed_errors_of_constant_damping_tell_the_same_penetration() -> None:
+def test_the_two_printed_errors_of_constant_damping_tell_the_same_penetration(agrees: Agrees) -> None:
     """10.50 % at the fourth rebound with 179.75 N s/m throughout: another number, the same 0.1 mm."""
     fourth = 0.54089760 * (1.0 - 0.1050)
     case = {
@@ -79,5 +95,5 @@ def test_the_two_printed_errors_of_constant_damping_tell_the_same_penetration() 
     for penetration in (1e-5, 1e-4):
         case["contact"]["full_damping_penetration"] = penetration
         heights[penetration] = vi.simulate(vi.read_case(case)).impacts["rebound_height_m"][-1]
-    assert heights[1e-4] == pytest.approx(fourth, rel=1e-4)
+    agrees("constant damping", "fourth rebound, by its printed error", heights[1e-4], fourth, unit="m", relative=1e-4)
     assert heights[1e-5] < 0.9 * fourth

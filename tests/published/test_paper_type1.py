@@ -13,7 +13,16 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
+from agreement import Against, Agrees
 from vibroimpact.contact.laws.adams_impact import AdamsImpact
+
+AGAINST = Against(
+    "the paper, Type 1 with corrected equations",
+    "published computation",
+    "damping laws",
+    "Study on the Vibroimpact Response of the Particle Elastic Impact on the Metal Plate, Shock and Vibration; integrated at 1e-12",
+)
+
 
 COLUMNS = (
     "time_s",
@@ -56,10 +65,11 @@ def run(request: pytest.FixtureRequest) -> tuple[vi.Response, np.ndarray]:
 
 
 @pytest.mark.parametrize("column", COLUMNS)
-def test_every_column(run: tuple[vi.Response, np.ndarray], column: str) -> None:
+def test_every_column(agrees: Agrees, run: tuple[vi.Response, np.ndarray], column: str) -> None:
     response, table = run
     tolerance = 1e-5 if column == "max_force_N" else 2e-6
-    np.testing.assert_allclose(response.impacts[column], table[:, COLUMNS.index(column)], rtol=tolerance)
+    expected = table[:, COLUMNS.index(column)]
+    agrees("theory, constant and variable damping", column, response.impacts[column], expected, relative=tolerance)
 
 
 def test_ledger_closes(run: tuple[vi.Response, np.ndarray]) -> None:
@@ -72,9 +82,10 @@ def test_inputs_of_the_paper() -> None:
     assert problem.laws[0].stiffness == pytest.approx(5.1154524848e8, rel=1e-10)  # printed
 
 
-def test_printed_text_figures() -> None:
+def test_printed_text_figures(agrees: Agrees) -> None:
     theory, constant = (vi.simulate(vi.load_case(f"paper:type1-{name}")).impacts for name in ("theory", "constant"))
-    assert constant["rebound_height_m"][0] == pytest.approx(2.41132, abs=5e-6)  # section 5.1
+    first = constant["rebound_height_m"][0]
+    agrees("constant damping, section 5.1", "first rebound, printed", first, 2.41132, unit="m", absolute=5e-6)
     assert 100 * (1 - constant["rebound_height_m"][3] / theory["rebound_height_m"][3]) == pytest.approx(10.50, abs=0.01)  # section 3.2
     assert 100 * (1 - constant["max_indentation_m"][4] / theory["max_indentation_m"][4]) == pytest.approx(5.7, abs=0.05)
 
@@ -91,11 +102,12 @@ class UnclippedImpact(AdamsImpact):
     tension = "kept"
 
 
-def test_without_the_clip_every_height_is_wrong() -> None:
+def test_without_the_clip_every_height_is_wrong(agrees: Agrees) -> None:
     """The clip at zero is part of Adams' definition; the paper's equation (12) omits it."""
     problem = vi.load_case("paper:type1-variable").to_problem()
     pulling = tuple(UnclippedImpact(**dataclasses.asdict(law)) for law in problem.laws)
     clipped, unclipped = (vi.simulate(dataclasses.replace(problem, laws=laws)).impacts for laws in (problem.laws, pulling))
-    assert unclipped["separation_speed_m_s"][0] == pytest.approx(6.724858761, rel=1e-9)  # SciPy's RK45, rtol 1e-11, steps of 1 us
+    after = unclipped["separation_speed_m_s"][0]  # by SciPy's RK45, rtol 1e-11, steps of 1 us
+    agrees("without the clip at zero", "separation speed", after, 6.724858761, unit="m/s", relative=1e-9)
     missing = 1 - unclipped["rebound_height_m"] / clipped["rebound_height_m"]
     assert missing == pytest.approx([0.0328, 0.0595, 0.0784, 0.0876, 0.0861], abs=1e-4)

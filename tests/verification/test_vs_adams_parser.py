@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
+from agreement import Against, Agrees
 from oracles.adams import Bounce, Model, Motion
 from oracles.adams_commands import read_commands
 from oracles.adams_dataset import read_dataset, read_solver_commands
@@ -28,6 +29,14 @@ from vibroimpact.errors import InputError
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.formats import adams_solver, adams_view
 from vibroimpact.materials import find_material
+
+AGAINST = Against(
+    "a strict parser of Adams' datasets and commands, and SciPy's DOP853 on the model it reads",
+    "own independent computation",
+    "programs and files",
+    "Adams Solver's manual of statements and functions; tests/oracles/adams.py. No Adams was run",
+)
+
 
 RADIUS, MASS = 0.025, 0.09032078879
 K = 5.1154524848e8
@@ -83,14 +92,15 @@ AFTER = [
 READERS = [pytest.param(dataset, id="adm"), pytest.param(commands, id="cmd")]
 
 
-def same(drop: Drop, bounces: list[Bounce], tolerance: float = 1e-7) -> None:
+def same(agrees: Agrees, case: str, drop: Drop, bounces: list[Bounce]) -> None:
     """Are the bounces those that were computed here?"""
     table = drop.impacts
     assert len(bounces) == len(table["time_s"])
     for name, column in COLUMNS.items():
-        assert [getattr(bounce, name) for bounce in bounces] == pytest.approx(table[column], rel=tolerance), name
+        theirs, unit = [getattr(bounce, name) for bounce in bounces], "m/s" if "speed" in name else column.rsplit("_", 1)[1]
+        agrees(case, name.replace("_", " "), table[column], theirs, unit=unit, relative=1e-7)
     restitution = [bounce.separation_speed / bounce.approach_speed for bounce in bounces]
-    assert restitution == pytest.approx(table["restitution_achieved"], rel=tolerance)
+    agrees(case, "restitution", table["restitution_achieved"], restitution, relative=1e-7)
 
 
 # both files hold the same expression: each drop is read from one of them, and from the other where there is time
@@ -102,7 +112,7 @@ def same(drop: Drop, bounces: list[Bounce], tolerance: float = 1e-7) -> None:
         for read in READERS
     ],
 )
-def test_the_papers_drops(read, case: str) -> None:
+def test_the_papers_drops(agrees: Agrees, read, case: str) -> None:
     dampings = {"constant": [179.75], "variable": [179.75, 172.8, 166.3, 160.9, 156.5]}
     if case == "function":
         # the damping of each impact is the polynomial at its approach speed
@@ -115,16 +125,16 @@ def test_the_papers_drops(read, case: str) -> None:
     drop = drop_of(laws, impacts=5, function=function)
     model = read(drop)
     bounces = Motion(model).run()
-    same(drop, bounces)
+    same(agrees, "the paper's drop, constant, variable and as a function", drop, bounces)
     assert model.end == pytest.approx(drop.end_time)
     assert bounces[0].rebound_height == pytest.approx({"function": 2.41124}.get(case, 2.411319), rel=1e-4)
     if case != "constant":
         # whether the sensor stores once or all the time makes no difference
-        same(drop, Motion(model).run(always=False))
+        same(agrees, "the paper's drop, a sensor that stores once", drop, Motion(model).run(always=False))
 
 
 @pytest.mark.parametrize("read", one_in(2, [read.values[0] for read in READERS], lambda read: read.__name__))
-def test_random_laws(read) -> None:
+def test_random_laws(agrees: Agrees, read) -> None:
     random = np.random.default_rng(20240611)
     for exponent in np.linspace(1.2, 2.2, 10):
         # like stiffness at 0.5 mm, whatever the exponent
@@ -136,7 +146,7 @@ def test_random_laws(read) -> None:
             full_damping_penetration=random.uniform(2e-5, 5e-4),
         )
         drop = drop_of(law, start={"height": random.uniform(0.1, 5.0)}, impacts=2)
-        same(drop, Motion(read(drop)).run())
+        same(agrees, "ten random laws, exponents 1.2 to 2.2", drop, Motion(read(drop)).run())
 
 
 # by turns, every third: both files hold the same expression, and the others are for when there is time
@@ -148,38 +158,38 @@ def test_random_laws(read) -> None:
         for place, read in enumerate(READERS)
     ],
 )
-def test_hysteretic_laws(read, law: type[HystereticLaw]) -> None:
+def test_hysteretic_laws(agrees: Agrees, read, law: type[HystereticLaw]) -> None:
     drop = drop_of(law(stiffness=K, restitution=0.65), impacts=3)
     model = read(drop)
-    same(drop, Motion(model).run())
-    same(drop, Motion(model).run(always=False))
+    same(agrees, "every law with hysteretic damping", drop, Motion(model).run())
+    same(agrees, "every law with hysteretic damping", drop, Motion(model).run(always=False))
 
 
 @pytest.mark.parametrize("read", READERS)
-def test_a_restitution_for_each_impact(read) -> None:
+def test_a_restitution_for_each_impact(agrees: Agrees, read) -> None:
     lankarani = vi.find_contact_law("lankarani-nikravesh")
     drop = drop_of(tuple(lankarani(stiffness=K, restitution=e) for e in (0.7, 0.8, 0.9)), impacts=4)
-    same(drop, Motion(read(drop)).run())
+    same(agrees, "a restitution for each impact", drop, Motion(read(drop)).run())
 
 
 @pytest.mark.parametrize("read", READERS)
-def test_what_starts_at_first_touch(read) -> None:
+def test_what_starts_at_first_touch(agrees: Agrees, read) -> None:
     drop = drop_of((impact(), impact(damping_max=100.0)), start={"speed": 3.0}, impacts=3)
-    same(drop, Motion(read(drop)).run())
+    same(agrees, "from first touch on", drop, Motion(read(drop)).run())
     assert read(drop).parts[next(key for key, part in read(drop).parts.items() if not part.ground)].velocity == -3000.0
 
 
 @pytest.mark.parametrize("read", READERS)
-def test_hertz_loses_nothing(read) -> None:
+def test_hertz_loses_nothing(agrees: Agrees, read) -> None:
     drop = drop_of(Hertz(stiffness=K), start={"height": 0.5}, impacts=2)
-    same(drop, Motion(read(drop)).run())
+    same(agrees, "Hertz's contact", drop, Motion(read(drop)).run())
 
 
 @pytest.mark.parametrize("read", READERS)
-def test_a_sensor_that_never_fires_leaves_the_first_speed(read) -> None:
+def test_a_sensor_that_never_fires_leaves_the_first_speed(agrees: Agrees, read) -> None:
     drop = drop_of(tuple(impact(damping_max=damping) for damping in (180.0, 20.0)), impacts=2)
     constant = drop_of(impact(damping_max=180.0), impacts=2)
-    same(constant, Motion(replace(read(drop), end=constant.end_time)).run(never=True))
+    same(agrees, "a sensor that never fires", constant, Motion(replace(read(drop), end=constant.end_time)).run(never=True))
 
 
 @pytest.mark.parametrize("read", READERS)
@@ -286,7 +296,7 @@ def test_the_parser_refuses_broken_commands(right: str, wrong: str, words: str) 
         Motion(read_commands(text.replace(right, wrong, 1)))
 
 
-def test_the_parser_would_see_wrong_units() -> None:
+def test_the_parser_would_see_wrong_units(agrees: Agrees) -> None:
     """A stiffness per metre, a damping in N s/m, a gravity in m/s^2: each changes what comes out."""
     text = adams_solver.write(VARIABLE)["a_drop.adm"].decode()
     stiffness = f"{K / 1000**1.5:.15g}"
@@ -334,18 +344,19 @@ def test_the_oracles_functions(text: str, value: float) -> None:
 
 @pytest.mark.parametrize("read", READERS)
 @pytest.mark.parametrize("coefficient", [0.05, 0.4])
-def test_oblique_drops(read, coefficient: float) -> None:
+def test_oblique_drops(agrees: Agrees, read, coefficient: float) -> None:
     """That slip throughout, and that roll at last; on an inclined plate."""
     coulomb = vi.find_friction_law("coulomb")(coefficient=coefficient)
     oblique = vi.Oblique(velocity=(0.6, 0.0), spin=(0.0, -16.0, 5.0), gravity=(0.5, 0.0), friction=coulomb)
     drop = drop_of(impact(), start={"height": 0.5}, impacts=2, oblique=oblique)
     model = read(drop)
     bounces = Motion(model).run()
-    same(drop, bounces)
+    same(agrees, "oblique drops on an inclined plate", drop, bounces)
     found = np.array([bounce.along for bounce in bounces]).T
     for values, column in zip(found, AFTER, strict=True):
         scale = RADIUS if "spin" in column else 1.0
-        np.testing.assert_allclose(scale * values, scale * drop.impacts[column], atol=2e-5)
+        quantity = "velocity of the surface by spin after" if "spin" in column else "velocity along the plate after"
+        agrees("oblique drops on an inclined plate", quantity, scale * drop.impacts[column], scale * values, unit="m/s", absolute=2e-5)
     assert model.gravity == pytest.approx((500.0, 0.0, -9800.0))
 
 

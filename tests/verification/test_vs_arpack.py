@@ -7,6 +7,7 @@ import pytest
 from scipy.sparse import csc_array
 from scipy.sparse.linalg import eigsh
 
+from agreement import Against, Agrees
 from vibroimpact.materials import find_material
 from vibroimpact.structures.lattice import box_mesh
 from vibroimpact.structures.modes import ElasticSystem
@@ -16,6 +17,14 @@ from vibroimpact.structures.structure import plate_structure, solid_structure
 from vibroimpact.structures.supports.edge import EDGES, Edge
 from vibroimpact.structures.supports.patch import Patch
 from vibroimpact.structures.supports.support import held_by
+
+AGAINST = Against(
+    "ARPACK, through SciPy",
+    "other program",
+    "plates, spheres and modes",
+    "Lehoucq, Sorensen and Yang 1998, ARPACK Users' Guide; scipy.sparse.linalg.eigsh",
+)
+
 
 STEEL = find_material("steel-paper")
 PATCHES = tuple(Patch(x, y, 0.02) for x in (-0.2, 0.2) for y in (-0.15, 0.15))
@@ -36,14 +45,16 @@ SLOW = {"sphere, multiplets of 5 to 13", "patches"}
 
 
 @pytest.mark.parametrize("body", [pytest.param(body, marks=pytest.mark.slow if body in SLOW else ()) for body in BODIES])
-def test_modes_of_arpack(body: str) -> None:
+def test_modes_of_arpack(agrees: Agrees, body: str) -> None:
     structure, supports, number, tolerance = BODIES[body]()
     held = held_by(structure, supports)
     elastic = ElasticSystem(held.stiffness, held.mass, held.rigid, held.order)
     modes = elastic.modes(number)
     ours, skip = modes.angular_frequencies**2, held.rigid.shape[1]
     theirs = eigsh(csc_array(held.stiffness), number + skip + 2, csc_array(held.mass), sigma=-0.3 * ours[0], return_eigenvectors=False)
-    np.testing.assert_allclose(ours, np.sort(theirs)[skip : skip + number], rtol=tolerance)
+    agrees(
+        body, "squares of the lowest angular frequencies", ours, np.sort(theirs)[skip : skip + number], unit="rad²/s²", relative=tolerance
+    )
     np.testing.assert_allclose(modes.shapes.T @ (held.mass @ modes.shapes), np.eye(number), atol=1e-10)
     apart = np.flatnonzero(np.diff(modes.angular_frequencies) > 1e-3 * modes.angular_frequencies[:-1])[-1]  # between two multiplets
     between = 0.5 * (modes.angular_frequencies[apart] + modes.angular_frequencies[apart + 1])

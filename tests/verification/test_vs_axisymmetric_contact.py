@@ -15,9 +15,18 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
+from agreement import Against, Agrees
 from oracles.axisymmetric_contact import impact, static_approach
 from support import plain_case
 from vibroimpact.dynamics.vibrating.local import LocalContact
+
+AGAINST = Against(
+    "finite elements of an elastic sphere with contact",
+    "own independent computation",
+    "impacts on vibrating bodies",
+    "two independent codes; tests/oracles/axisymmetric_contact.py, undamped, small strain, frictionless",
+)
+
 
 FORCE, DURATION, RESTITUTION, SPEED = 12166.0, 246.45e-6, 0.99906, 8.826664
 RADIUS, DENSITY, MODULUS, RATIO = 0.025, 1380.0, 2.26e9, 0.28
@@ -37,16 +46,17 @@ def impact_of(problem: vi.Problem) -> tuple[float, float, float]:
     return tuple(float(impacts[name][0]) for name in ("max_force_N", "duration_s", "restitution_achieved"))  # type: ignore[return-value]
 
 
-def check_consistent(modes: int, across: int, grading: float = 1.0, attachment: bool = False) -> None:
+def check_consistent(agrees: Agrees, modes: int, across: int, grading: float = 1.0, attachment: bool = False) -> None:
     force, duration, restitution = impact_of(problem("consistent", modes, across, grading, attachment))
-    assert force == pytest.approx(FORCE, rel=0.01)
-    assert duration == pytest.approx(DURATION, rel=0.01)
-    assert restitution == pytest.approx(RESTITUTION, abs=8e-4)
+    case = "`consistent`, 10 to 150 modes, several meshes"
+    agrees(case, "largest force", force, FORCE, unit="N", relative=0.01)
+    agrees(case, "duration", duration, DURATION, unit="s", relative=0.01)
+    agrees(case, "restitution", restitution, RESTITUTION, absolute=8e-4)
 
 
 @pytest.mark.parametrize("modes", [10, 60])
-def test_consistent(modes: int) -> None:
-    check_consistent(modes, 8)
+def test_consistent(agrees: Agrees, modes: int) -> None:
+    check_consistent(agrees, modes, 8)
     response = vi.simulate(problem("consistent", modes))  # and how much is left as vibration, 0.19 %, within a factor of two
     assert 0.5 < response.impacts["energy_to_vibration_J"][0] / response.energy["input_J"] / 0.0019 < 2.0
 
@@ -56,23 +66,24 @@ def test_consistent(modes: int) -> None:
     ("modes", "across", "grading"),
     [(20, 8, 1.0), (40, 8, 1.0), (100, 8, 1.0), (150, 8, 1.0), (10, 12, 1.0), (20, 12, 1.0), (60, 12, 1.0), (20, 8, 4.0)],
 )
-def test_consistent_whatever_the_modes_and_the_mesh(modes: int, across: int, grading: float) -> None:
-    check_consistent(modes, across, grading)
+def test_consistent_whatever_the_modes_and_the_mesh(agrees: Agrees, modes: int, across: int, grading: float) -> None:
+    check_consistent(agrees, modes, across, grading)
 
 
 @pytest.mark.slow
-def test_consistent_against_the_oracle() -> None:
+def test_consistent_against_the_oracle(agrees: Agrees) -> None:
     """The whole history of the force: within 1.5 % of its peak wherever it is."""
     reference = impact(RADIUS, DENSITY, MODULUS, RATIO, SPEED)
     assert reference.peak_force == pytest.approx(FORCE, rel=1e-3)
     response = vi.simulate(problem("consistent", 60))
     times = reference.time[reference.time < min(reference.contact_duration, float(response.end_time[0]))]
     found = response.at(times)
-    assert np.abs(found["force_N"] - reference.force[: len(times)]).max() < 0.015 * FORCE
+    history = reference.force[: len(times)]
+    agrees("`consistent`, 60 modes", "history of the force", found["force_N"], history, unit="N", absolute=0.015 * FORCE)
 
 
 @pytest.mark.parametrize("radius", [1e-3, 2.5e-3, 4.5e-3])
-def test_static_force_against_approach(radius: float) -> None:
+def test_static_force_against_approach(agrees: Agrees, radius: float) -> None:
     """Of the law, what is in series with it and the modes together, at Hertz's contact radii of 1, 2.5 and 4.5 mm, within 0.5 %."""
     made = problem("consistent", 10)
     local = LocalContact(made.laws[0], made.quasi_static, SPEED)  # type: ignore[arg-type]
@@ -81,7 +92,8 @@ def test_static_force_against_approach(radius: float) -> None:
     delta = np.array([radius**2 / RADIUS])
     force = float(local.law.forces(delta, np.zeros(1), SPEED)[0][0])
     approach = float(local.approach_at(delta)[0]) + force * float(((modes.contact / modes.angular_frequencies) ** 2).sum())
-    assert static_approach(RADIUS, MODULUS, RATIO, approach, 8.0).force == pytest.approx(force, rel=5e-3)
+    expected = static_approach(RADIUS, MODULUS, RATIO, approach, 8.0).force
+    agrees("contact radii of 1, 2.5 and 4.5 mm", "static force at the same approach", force, expected, unit="N", relative=5e-3)
 
 
 def test_superposed_falls_with_the_modes() -> None:
@@ -92,14 +104,14 @@ def test_superposed_falls_with_the_modes() -> None:
 
 
 @pytest.mark.slow
-def test_superposed_falls_with_the_mesh() -> None:
+def test_superposed_falls_with_the_mesh(agrees: Agrees) -> None:
     """With the static deformation of the point among the modes; so does nothing of `consistent`, or it is refused."""
     meshes = ((6, 1.0), (8, 1.0), (8, 2.0), (8, 4.0))
     forces = [impact_of(problem("superposed", 20, across, grading, True))[0] for across, grading in meshes]
     assert np.all(np.diff(forces) < 0.0)
     assert forces[0] < 0.45 * FORCE
     assert forces[-1] < 0.25 * FORCE
-    check_consistent(20, 8, 4.0, True)
+    check_consistent(agrees, 20, 8, 4.0, True)
     with pytest.raises(vi.InputError, match="fewer modes"):
         problem("consistent", 20, 8, 1.0, True)
 

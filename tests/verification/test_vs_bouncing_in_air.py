@@ -9,11 +9,20 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import vibroimpact as vi
+from agreement import Against, Agrees
 from oracles.bouncing_in_air import Bounces, bounces, clift_gauvin, schiller_naumann
 from support import plain_case
 from vibroimpact.calibration.air_flights import AirFlights
 from vibroimpact.calibration.calibrate_case import calibrate_case, read_calibration
 from vibroimpact.calibration.calibration import Calibration
+
+AGAINST = Against(
+    "SciPy, a sphere that bounces in air",
+    "own independent computation",
+    "calibration, identification and studies",
+    "Newton's second law with Clift and Gauvin's drag coefficient (1970), tests/oracles/bouncing_in_air.py",
+)
+
 
 GRAVITY = 9.80665
 RUBBER = {"density": 1100.0, "youngs_modulus": 5e6, "poissons_ratio": 0.48}
@@ -45,12 +54,13 @@ def doubts(found: Calibration) -> list[str]:
     return [doubt for doubt in found.doubts if "drag of air" in doubt]
 
 
-def test_rebound_heights(seen: Bounces) -> None:
+def test_rebound_heights(agrees: Agrees, seen: Bounces) -> None:
     """Without drag the restitution is 0.9 % too small at the first impact, and that is doubted; with it, it is right to 1e-6."""
     target = {"rebound_heights": seen.tops.tolist()}
     right = evaluated(target, True)
-    np.testing.assert_allclose(right.values, TRUE, rtol=1e-6)
-    np.testing.assert_allclose(right.observations.speeds, seen.before[: len(right.values)], rtol=1e-7)
+    agrees("from rebound heights in air", "restitution", right.values, TRUE, relative=1e-6)
+    speeds = right.observations.speeds
+    agrees("from rebound heights in air", "approach speed", speeds, seen.before[: len(right.values)], unit="m/s", relative=1e-7)
     assert not doubts(right)
     wrong = evaluated(target, None)
     np.testing.assert_allclose(wrong.values[0], np.sqrt((seen.tops[0] - RADIUS) / (HEIGHT - RADIUS)), rtol=1e-9)
@@ -77,7 +87,7 @@ def test_a_position_record(seen: Bounces, tmp_path: Path) -> None:
     assert np.std(apart) < 1.5e-4, "what is drawn over the record flies in air as well"
 
 
-def test_a_force_record(tmp_path: Path) -> None:
+def test_a_force_record(agrees: Agrees, tmp_path: Path) -> None:
     """Times of flight in air: the sphere comes back more slowly than it left."""
     contact = 1e-3
     seen = bounces(RADIUS, RUBBER["density"], HEIGHT, lambda speed: TRUE, 4, contact=contact)
@@ -90,19 +100,19 @@ def test_a_force_record(tmp_path: Path) -> None:
         force[inside] = 0.5 * np.pi * impulse / contact * np.sin(np.pi * (time[inside] - touch) / contact)
     file = written(tmp_path / "force.csv", {"time_s": time, "force_N": force})
     right, wrong = evaluated(file, True), evaluated(file, False)
-    np.testing.assert_allclose(right.values[:4], TRUE, rtol=3e-4)
+    agrees("from a record of the force", "restitution", right.values[:4], TRUE, relative=3e-4)
     assert wrong.values[0] < TRUE - 2e-3
 
 
-def test_the_first_impact_alone(seen: Bounces) -> None:
+def test_the_first_impact_alone(agrees: Agrees, seen: Bounces) -> None:
     right = evaluated({"rebound_height": float(seen.tops[0])}, True, run={"impacts": 1})
-    assert right.values[0] == pytest.approx(TRUE, rel=1e-6)
+    agrees("from the first rebound alone", "restitution", right.values[0], TRUE, relative=1e-6)
 
 
-def test_heights_at_known_speeds(seen: Bounces, tmp_path: Path) -> None:
+def test_heights_at_known_speeds(agrees: Agrees, seen: Bounces, tmp_path: Path) -> None:
     file = written(tmp_path / "rows.csv", {"approach_speed_m_s": seen.before[:4], "rebound_height_m": seen.tops})
     found = evaluated({"file": file}, True)
-    np.testing.assert_allclose(found.values, TRUE, rtol=1e-6)
+    agrees("from heights at known speeds", "restitution", found.values, TRUE, relative=1e-6)
 
 
 def test_the_impacts_follow_one_another_through_air(seen: Bounces) -> None:
@@ -123,7 +133,7 @@ def test_another_drag_coefficient() -> None:
 @pytest.mark.parametrize(
     ("radius", "density", "height"), [(0.002, 1250.0, 4.0), (0.02, 84.0, 5.0), (1e-4, 2500.0, 0.5), (0.025, 7800.0, 4.0)]
 )
-def test_flights(radius: float, density: float, height: float) -> None:
+def test_flights(agrees: Agrees, radius: float, density: float, height: float) -> None:
     """Pebbles, table tennis balls, grains of sand and steel: speeds and times of flights, up and down."""
     flights = AirFlights(GRAVITY, radius, density, 1.2 * height)
 
@@ -140,11 +150,12 @@ def test_flights(radius: float, density: float, height: float) -> None:
     ground.terminal, ground.direction = True, -1.0
     start = float(flights.speed_to_rise(np.array(height))[0])
     flight = solve_ivp(slope, (0.0, 100.0), [1e-15, start], method="DOP853", rtol=1e-11, atol=1e-14, events=(ground, top))
-    assert flight.y_events[1][0][0] == pytest.approx(height, rel=1e-7)
-    assert -flight.y[1, -1] == pytest.approx(float(flights.speed_after_fall(np.array(height))[0]), rel=1e-7)
+    case = "flights of pebbles, table tennis balls, grains and steel"
+    agrees(case, "height", height, flight.y_events[1][0][0], unit="m", relative=1e-7)
+    agrees(case, "speed after a fall", flights.speed_after_fall(np.array(height))[0], -flight.y[1, -1], unit="m/s", relative=1e-7)
     flown, lasted = flights.flight(np.array(start)), flights.end_speeds(np.array(flight.t[-1]))
-    assert flown.duration == pytest.approx(flight.t[-1], rel=1e-7)
-    assert flown.rise_time == pytest.approx(flight.t_events[1][0], rel=1e-6)
+    agrees(case, "duration", flown.duration, flight.t[-1], unit="s", relative=1e-7)
+    agrees(case, "time to the top", flown.rise_time, flight.t_events[1][0], unit="s", relative=1e-6)
     assert flown.height == pytest.approx(height, rel=1e-7)
     assert (lasted.start, lasted.end) == (pytest.approx(start, rel=1e-6), pytest.approx(-flight.y[1, -1], rel=1e-6))
     depth, down = flights.depth_at(np.array([0.5 * float(flown.rise_time) - float(flown.rise_time), 0.01]))

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
+from agreement import Against, Agrees
 from support import one_in, plain_case
 from vibrating import STIFFNESS, drop_on, random_modes
 from vibroimpact.calibration.calibrate import calibrate
@@ -22,6 +23,14 @@ from vibroimpact.calibration.tunables import modal_damping
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.pair import ContactPair
 from vibroimpact.contact.registry import contact_laws
+
+AGAINST = Against(
+    "the run of a calibrated case",
+    "consistency",
+    "calibration, identification and studies",
+    "what is wanted of a calibration is achieved by a run; no opponent",
+)
+
 
 ANY_PAIR = ContactPair(1e9, 0.01, 0.01, 1e8, 0.3)
 FREE = {name: free for name, law in contact_laws().items() if (free := law.example(ANY_PAIR).free_parameter)}
@@ -57,34 +66,34 @@ def random_case(law: str, seed: int) -> dict:
     }
 
 
-def check_round_trip(table: dict) -> None:
+def check_round_trip(agrees: Agrees, table: dict) -> None:
     what = read_calibration(table)
     found = calibrate_case(what)
     achieved = vi.simulate(calibrated_case(what.case, found)).impacts["restitution_achieved"]
     wanted = table["calibrate"]["target"]["restitution"]
     assert len(achieved) == table["run"]["impacts"]
-    np.testing.assert_allclose(achieved, wanted, rtol=0.0, atol=WITHIN)
+    agrees("every law with a free parameter, random cases", "restitution", achieved, wanted, absolute=WITHIN)
 
 
 @pytest.mark.parametrize("law", one_in(8, sorted(FREE, key="meyer".__eq__)))
-def test_the_restitution_wanted_is_achieved(law: str) -> None:
+def test_the_restitution_wanted_is_achieved(agrees: Agrees, law: str) -> None:
     """Of Meyer's law, whose contacts take fifty times as long as others, where there is time; and at one impact below."""
     for seed in range(1 if law in SLOW else 2):
-        check_round_trip(random_case(law, seed))
+        check_round_trip(agrees, random_case(law, seed))
 
 
-def test_the_restitution_wanted_is_achieved_under_meyers_law() -> None:
+def test_the_restitution_wanted_is_achieved_under_meyers_law(agrees: Agrees) -> None:
     table = random_case("meyer", 2)
     assert table["run"]["impacts"] == 1
-    check_round_trip(table)
+    check_round_trip(agrees, table)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(9))
 @pytest.mark.parametrize("law", FREE)
-def test_the_restitution_wanted_is_achieved_in_two_hundred_cases(law: str, seed: int) -> None:
+def test_the_restitution_wanted_is_achieved_in_two_hundred_cases(agrees: Agrees, law: str, seed: int) -> None:
     assert 9 * len(FREE) >= 200
-    check_round_trip(random_case(law, 100 + seed))
+    check_round_trip(agrees, random_case(law, 100 + seed))
 
 
 def test_every_law_but_hertz_has_a_parameter_that_sets_its_loss() -> None:
@@ -92,15 +101,19 @@ def test_every_law_but_hertz_has_a_parameter_that_sets_its_loss() -> None:
 
 
 @pytest.mark.parametrize("name", ["paper:type1-theory", "paper:calibration"])
-def test_the_calibrated_case_bounces_as_the_target_does(name: str) -> None:
+def test_the_calibrated_case_bounces_as_the_target_does(agrees: Agrees, name: str) -> None:
     """Another law as the target: every rebound height of the paper's drop."""
     from vibroimpact.calibration.calibrate_case import load_calibration
 
     what = load_calibration(name)
     run = vi.simulate(calibrated_case(what.case, calibrate_case(what))).impacts
     theory = vi.simulate(vi.load_case("paper:type1-theory")).impacts
-    for column in ("approach_speed_m_s", "separation_speed_m_s", "rebound_height_m"):
-        np.testing.assert_allclose(run[column], theory[column], rtol=1e-8)
+    for column, quantity in (
+        ("approach_speed_m_s", "approach speed"),
+        ("separation_speed_m_s", "separation speed"),
+        ("rebound_height_m", "height of rebounds"),
+    ):
+        agrees("the paper's drop, another law as the target", quantity, run[column], theory[column], relative=1e-8)
 
 
 def calibrated_run(**changes: object) -> tuple[dict, dict]:
@@ -110,10 +123,10 @@ def calibrated_run(**changes: object) -> tuple[dict, dict]:
     return vi.simulate(calibrated_case(what.case, found)).impacts, dict(found.drops.get("target", {}))
 
 
-def test_a_target_with_another_restitution_at_each_impact() -> None:
+def test_a_target_with_another_restitution_at_each_impact(agrees: Agrees) -> None:
     wanted = [0.8, 0.5, 0.7]
     run, _ = calibrated_run(contact={"law": "adams-impact"}, calibrate={"target": {"law": "newton", "restitution": wanted}})
-    np.testing.assert_allclose(run["restitution_achieved"], wanted, rtol=0.0, atol=WITHIN)
+    agrees("another restitution at each impact", "restitution", run["restitution_achieved"], wanted, absolute=WITHIN)
 
 
 def test_parameters_that_differ_from_impact_to_impact_stay_as_given() -> None:
@@ -126,10 +139,10 @@ def test_parameters_that_differ_from_impact_to_impact_stay_as_given() -> None:
 
 @pytest.mark.parametrize("heights", [[0.3, 0.2, 0.1], [0.499]])
 @pytest.mark.parametrize("law", one_in(2, ["adams-impact", "tsuji", "flores"]))
-def test_measured_heights_are_those_of_the_calibrated_run(law: str, heights: list[float]) -> None:
+def test_measured_heights_are_those_of_the_calibrated_run(agrees: Agrees, law: str, heights: list[float]) -> None:
     """Of laws whose contact ends where the surfaces part, so that the sphere leaves from where it touched."""
     run, _ = calibrated_run(contact={"law": law}, calibrate={"target": {"rebound_heights": heights}}, run={"impacts": len(heights)})
-    np.testing.assert_allclose(run["rebound_height_m"], heights, rtol=1e-8)
+    agrees("to measured heights", "height of rebounds", run["rebound_height_m"], heights, unit="m", relative=1e-8)
 
 
 @pytest.mark.parametrize("outcome", ["max_force", "max_indentation", "duration"])
@@ -137,7 +150,7 @@ def test_measured_heights_are_those_of_the_calibrated_run(law: str, heights: lis
     ("law", "parameter"),
     [("hertz", "stiffness"), ("hertz", "exponent"), ("lankarani-nikravesh", "stiffness")],
 )
-def test_other_parameters_to_other_outcomes(law: str, parameter: str, outcome: str) -> None:
+def test_other_parameters_to_other_outcomes(agrees: Agrees, law: str, parameter: str, outcome: str) -> None:
     """Force, indentation and duration that the law itself has with another value of the parameter, and the value comes back."""
     given = {"hertz": {}, "lankarani-nikravesh": {"restitution": 0.8}}[law]
     truth = {"stiffness": 3e8, "exponent": 1.6}[parameter]
@@ -148,7 +161,7 @@ def test_other_parameters_to_other_outcomes(law: str, parameter: str, outcome: s
     what = read_calibration(plain_case(contact=contact, calibrate=target, run={"impacts": 1}))
     found = calibrate_case(what)
     if parameter == "stiffness":
-        assert found.values[0] == pytest.approx(truth, rel=1e-8)
+        agrees("from force, indentation and duration", "stiffness", found.values[0], truth, unit="N/m^n", relative=1e-8)
     assert found.outcomes[outcome][0] == pytest.approx(wanted, rel=1e-9)
 
 
@@ -160,9 +173,9 @@ def test_without_gravity() -> None:
 
 
 @pytest.mark.parametrize("restitution", [0.02, 0.9999, 1.0])
-def test_restitutions_near_the_ends(restitution: float) -> None:
+def test_restitutions_near_the_ends(agrees: Agrees, restitution: float) -> None:
     run, _ = calibrated_run(contact={"law": "adams-impact"}, run={"impacts": 1}, calibrate={"target": {"restitution": restitution}})
-    np.testing.assert_allclose(run["restitution_achieved"], restitution, rtol=0.0, atol=WITHIN)
+    agrees("restitutions of 0.02, 0.9999 and 1", "restitution", run["restitution_achieved"], restitution, absolute=WITHIN)
 
 
 def test_several_outcomes_are_as_near_as_they_can_be() -> None:
@@ -198,7 +211,7 @@ def test_the_full_damping_penetration_that_gives_the_printed_height() -> None:
     assert run["rebound_height_m"][0] == pytest.approx(2.41132, rel=1e-8)
 
 
-def test_damping_of_an_elastic_sphere() -> None:
+def test_damping_of_an_elastic_sphere(agrees: Agrees) -> None:
     """The damping ratio of a sphere's modes comes back from the rebound that it gives."""
     problem = drop_on(Hertz(stiffness=STIFFNESS, exponent=1.5), sphere=random_modes(3, 6, 5e3, 4e4, 2.0, damping=0.3))
     tunable, truth = modal_damping(problem, "sphere"), 0.05
@@ -206,5 +219,5 @@ def test_damping_of_an_elastic_sphere() -> None:
     seen = from_table(np.array([3.0]), {"separation_speed": run["separation_speed_m_s"][:1]}, None, ("impact 1",))
     found = calibrate(problem, seen, tunable=tunable)
     assert found.given.tolist() == [0.3]
-    assert found.values[0] == pytest.approx(truth, rel=1e-6)
+    agrees("from the rebound of an elastic sphere", "damping ratio", found.values[0], truth, relative=1e-6)
     assert found.drops["variable"]["restitution_achieved"][0] == pytest.approx(run["restitution_achieved"][0], abs=WITHIN)

@@ -7,11 +7,38 @@ import pytest
 from scipy.integrate import cumulative_trapezoid
 
 import vibroimpact as vi
+from agreement import Against, Agrees
 from vibroimpact.arrays import Floats
 from vibroimpact.contact.friction.law import Step
 from vibroimpact.contact.friction.laws.mdr import Mdr
 from vibroimpact.contact.friction.turning_points import TurningPoints
 from vibroimpact.dynamics.vibrating.rubbing import lost_in_microslip
+
+AGAINST = Against(
+    "a row of springs, one by one",
+    "own independent computation",
+    "oblique impact and friction",
+    "4,000 springs in small steps of time, in the test itself",
+)
+PUBLISHED = Against(
+    "Cattaneo, Mindlin and Deresiewicz's contact, published values",
+    "published computation",
+    "oblique impact and friction",
+    "Maw, Barber and Fawcett 1976, Wear 38, 101, and its followers: similar materials, Poisson's ratio 0.3, to the digits given",
+)
+SLIDING = Against(
+    "sliding throughout, closed form",
+    "closed form",
+    "oblique impact and friction",
+    "impulse of friction = coefficient times that of the contact; Chung and Ooi 2011, test 6",
+)
+LOOP = Against(
+    "Mindlin and Deresiewicz, loop of microslip",
+    "closed form",
+    "oblique impact and friction",
+    "Mindlin and Deresiewicz 1953; Johnson, Contact Mechanics, 1985, section 7.4",
+)
+
 
 NU, MU = 0.3, 0.3
 DRIVE = 15.0 / 8.0 * 3.5 * 2.0 * (1.0 - NU) / (2.0 - NU)
@@ -43,40 +70,44 @@ def slip_before(response: vi.Response, radius: float = 0.01) -> Floats:
 HERTZ = vi.find_contact_law("hertz")(stiffness=4.0 / 3.0 * 1e9 * 0.1)
 
 
-def test_rebound_of_the_slip_of_similar_materials() -> None:
+def test_rebound_of_the_slip_of_similar_materials(agrees: Agrees) -> None:
     """Published values of the same contact, to their three digits."""
     psi = np.array([0.25, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0])
     expected = np.array([-0.1665, -0.0957, 0.0597, 0.2853, 0.4186, 0.4649, 0.4599, 0.3591, 0.1529])
     found = impact(psi, HERTZ)
-    np.testing.assert_allclose(-slip_after(found) / slip_before(found), expected, atol=1e-4)
+    rebound = -slip_after(found) / slip_before(found)
+    agrees("similar materials, ψ1 from 0.25 to 5", "rebound of the slip", rebound, expected, against=PUBLISHED, absolute=1e-4)
 
 
-def test_gross_sliding_is_exact() -> None:
+def test_gross_sliding_is_exact(agrees: Agrees) -> None:
     chi = 7.0 * (1.0 - NU) / (2.0 * (2.0 - NU))
     psi = np.linspace(4.0 * chi - 1.0, 30.0, 12)
     found = impact(psi, HERTZ)
     expected = -1.0 + 14.0 * (1.0 - NU) / ((2.0 - NU) * psi)
-    np.testing.assert_allclose(-slip_after(found) / slip_before(found), expected, atol=1e-7)
+    rebound = -slip_after(found) / slip_before(found)
+    agrees("sliding throughout, undamped", "rebound of the slip", rebound, expected, against=SLIDING, absolute=1e-7)
 
 
 @pytest.mark.parametrize("restitution", [1.0, 0.7, 0.3])
-def test_gross_sliding_takes_the_coefficient_of_the_whole_normal_impulse(restitution: float) -> None:
+def test_gross_sliding_takes_the_coefficient_of_the_whole_normal_impulse(agrees: Agrees, restitution: float) -> None:
     """Chung and Ooi's test 6 in closed form: kappa = 7/2 mu (1 + e) v_n / v_s, where it is below 1."""
     law = vi.find_contact_law("flores")(stiffness=1e8, restitution=restitution)
     found = impact(np.array([15.0, 30.0]), law)
     achieved = found.impacts["restitution_achieved"][:, 0]
     kappa = 3.5 * MU * (1.0 + achieved) * found.impacts["approach_speed_m_s"][:, 0] / slip_before(found)
-    np.testing.assert_allclose(-slip_after(found) / slip_before(found), kappa - 1.0, rtol=1e-6)
+    rebound = -slip_after(found) / slip_before(found)
+    agrees("sliding throughout, restitutions 1, 0.7, 0.3", "rebound of the slip", rebound, kappa - 1.0, against=SLIDING, relative=1e-6)
 
 
-def test_friction_without_bound_sticks() -> None:
+def test_friction_without_bound_sticks(agrees: Agrees) -> None:
     """With a coefficient that no slip reaches, springs that part take their energy with them: a row of springs without limits tells it."""
     shear, slip = 2.0 * (1.0 - NU) / (2.0 - NU) * 1e9, 0.4
     friction = Mdr(coefficient=1e5, effective_modulus=1e9, effective_shear_modulus=shear, effective_radius=0.01)
     oblique = vi.Oblique(velocity=(slip, 0.0), friction=friction)
     ball = vi.Body(mass=0.02, contact_offset=0.01)
     problem = vi.Problem(sphere=ball, plate=vi.rigid_plate(), laws=(HERTZ,), speed=np.array([2.0]), gravity=0.0, impacts=1, oblique=oblique)
-    assert slip_after(vi.tabulate(problem))[0] / slip == pytest.approx(by_springs(1.0, DRIVE, bound=1e9)[0], abs=1e-4)
+    expected = by_springs(1.0, DRIVE, bound=1e9)[0]
+    agrees("friction without bound", "slip after, over before", slip_after(vi.tabulate(problem)) / slip, expected, absolute=1e-4)
 
 
 def springs(depth: Floats, displacement: Floats, number: int) -> Floats:
@@ -98,7 +129,7 @@ def springs(depth: Floats, displacement: Floats, number: int) -> Floats:
 
 
 @pytest.mark.parametrize("seed", range(6))
-def test_turning_points_are_a_row_of_springs(seed: int) -> None:
+def test_turning_points_are_a_row_of_springs(agrees: Agrees, seed: int) -> None:
     """Any history of straight steps, with reversals, partial unloading and sliding: the stack of corners is exact."""
     random = np.random.default_rng(seed)
     depth, displacement = np.abs(np.cumsum(random.normal(0.4, 0.5, 14))), np.cumsum(random.normal(0.0, 0.35, 14))
@@ -117,7 +148,8 @@ def test_turning_points_are_a_row_of_springs(seed: int) -> None:
         swept = moved * 2.0 / 3.0 * (total - inner * outer / (total + 1e-300))
         integral, _, _ = memory.advance(one, Step(*ends, np.array([[found[-1]], inner * ends[1][1], swept])))
         found.append(float(integral[0]))
-    np.testing.assert_allclose(found, springs(depth, displacement, 4000), atol=2e-3 * max(np.abs(found)))
+    expected = springs(depth, displacement, 4000)
+    agrees("random histories of straight steps", "integral of the displacements", found, expected, of_the_largest=2e-3)
 
 
 def by_springs(psi: float, drive: float, bound: float = 1.0, number: int = 4000, steps: int = 6000) -> tuple[float, float, float]:
@@ -155,24 +187,28 @@ def by_springs(psi: float, drive: float, bound: float = 1.0, number: int = 4000,
 
 
 @pytest.mark.parametrize("psi", [0.2, 0.7, 0.99, 1.4, 2.3, 3.6])
-def test_impacts_against_four_thousand_springs(psi: float) -> None:
+def test_impacts_against_four_thousand_springs(agrees: Agrees, psi: float) -> None:
     """The velocity after is within 1e-4 of that of the springs."""
     found = impact(np.array([psi]), HERTZ)
-    assert slip_after(found)[0] / slip_before(found)[0] == pytest.approx(by_springs(psi, DRIVE)[0], abs=1e-4)
+    after = slip_after(found) / slip_before(found)
+    agrees("impacts, ψ1 from 0.2 to 3.6", "slip after, over before", after, by_springs(psi, DRIVE)[0], absolute=1e-4)
 
 
 @pytest.mark.parametrize("psi", [0.2, 0.7, 1.4, 2.3, 3.6])
-def test_losses_in_microslip_and_in_gross_slip_against_springs(psi: float) -> None:
+def test_losses_in_microslip_and_in_gross_slip_against_springs(agrees: Agrees, psi: float) -> None:
     """Each is within 1e-4 of the energy of the slip of what springs take one by one, while some of them stick and while all slip."""
     found = impact(np.array([psi]), HERTZ)
     before = 0.5 * (2.0 / 7.0 * 0.02) * slip_before(found)[0] ** 2
     _, microslip, gross = by_springs(psi, DRIVE, number=1000, steps=24000)
-    assert found.impacts["microslip_lost_J"][0, 0] / before == pytest.approx(microslip, abs=1e-4)
-    assert found.impacts["gross_slip_lost_J"][0, 0] / before == pytest.approx(gross, abs=1e-4)
+    case = "impacts, ψ1 from 0.2 to 3.6"
+    agrees(
+        case, "lost in microslip, over the energy of the slip", found.impacts["microslip_lost_J"][0, 0] / before, microslip, absolute=1e-4
+    )
+    agrees(case, "lost in gross slip, over the energy of the slip", found.impacts["gross_slip_lost_J"][0, 0] / before, gross, absolute=1e-4)
 
 
 @pytest.mark.parametrize("share", [0.3, 0.6, 0.9])
-def test_a_cycle_of_tangential_force_is_lost_in_microslip(share: float) -> None:
+def test_a_cycle_of_tangential_force_is_lost_in_microslip(agrees: Agrees, share: float) -> None:
     """The loop at a constant normal force, below that of sliding (Mindlin and Deresiewicz 1953; Johnson 1985, section 7.4)."""
     force, modulus, shear, radius = 300.0, 1e9, 0.8e9, 0.01
     law = Mdr(coefficient=MU, effective_modulus=modulus, effective_shear_modulus=shear, effective_radius=radius)
@@ -191,4 +227,5 @@ def test_a_cycle_of_tangential_force_is_lost_in_microslip(share: float) -> None:
     lost = lost_in_microslip(law, np.full(801, force), np.array(frictions)[first:], moved[first:], np.array(slid)[first:])
     rest = 1.0 - share
     loop = 1.0 - rest ** (5.0 / 3.0) - 5.0 / 6.0 * share * (1.0 + rest ** (2.0 / 3.0))
-    assert lost == pytest.approx(3.6 * (MU * force) ** 2 / (shear * contact) * loop, rel=2e-3)
+    exact = 3.6 * (MU * force) ** 2 / (shear * contact) * loop
+    agrees("a cycle at constant normal force", "lost in microslip", lost, exact, unit="J", against=LOOP, relative=2e-3)

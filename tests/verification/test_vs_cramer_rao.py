@@ -13,13 +13,21 @@ from scipy.optimize import brentq, least_squares
 from scipy.stats import norm
 
 import vibroimpact as vi
+from agreement import Against, Agrees
 from vibroimpact.bounds.bayes_error import bayes_error
 from vibroimpact.bounds.falls import falls_of_sweep
 from vibroimpact.bounds.pulse_information import pulse_uncertainty
 from vibroimpact.signals.inverse.hertz_pulse import hertz_pulse
 
+AGAINST = Against(
+    "spectrum and contact times of Hertz's pulse, Bayes error of normal distributions",
+    "closed form",
+    "calibration, identification and studies",
+    "Kay 1993; Fukunaga 1990, eq. 3.119; Hertz's pulse by quadrature",
+)
 
-def test_the_pulse_is_that_of_a_simulated_impact() -> None:
+
+def test_the_pulse_is_that_of_a_simulated_impact(agrees: Agrees) -> None:
     problem = vi.Problem(
         sphere=vi.Body(mass=0.1, contact_offset=0.02),
         plate=vi.rigid_plate(),
@@ -32,23 +40,24 @@ def test_the_pulse_is_that_of_a_simulated_impact() -> None:
     duration = float(response.impacts["duration_s"][0])
     part = np.linspace(0.01, 0.99, 99)
     force = response.at(part * duration)["force_N"]
-    np.testing.assert_allclose(hertz_pulse(part) * 0.6 / duration, force, rtol=1e-6)  # impulse 2 m v
+    pulse = hertz_pulse(part) * 0.6 / duration  # impulse 2 m v
+    agrees("the pulse of a simulated impact", "force", pulse, force, unit="N", relative=1e-6)
 
 
-def test_the_spectrum_falls_where_it_is_known_to() -> None:
+def test_the_spectrum_falls_where_it_is_known_to(agrees: Agrees) -> None:
     nodes, weights = np.polynomial.legendre.leggauss(300)
     time = 0.5 * (1.0 + nodes)
 
     def spectrum(u: float) -> float:
         return float(np.sum(0.5 * weights * hertz_pulse(time) * np.cos(2.0 * np.pi * u * (time - 0.5))))
 
-    assert brentq(lambda u: spectrum(u) - 10 ** (-3 / 20), 0.1, 1.0) == pytest.approx(0.67, abs=0.005)
-    assert brentq(lambda u: spectrum(u) - 10 ** (-10 / 20), 0.5, 1.5) == pytest.approx(1.16, abs=0.005)
-    assert brentq(spectrum, 1.5, 2.0) == pytest.approx(1.80, abs=0.005)
+    falls = [brentq(lambda u, low=low: spectrum(u) - 10 ** (low / 20), *ends) for low, ends in ((-3, (0.1, 1.0)), (-10, (0.5, 1.5)))]
+    found = [*falls, brentq(spectrum, 1.5, 2.0)]
+    agrees("spectrum of the pulse", "frequency of -3 dB, -10 dB and nothing, over 1/T", found, [0.67, 1.16, 1.80], absolute=0.005)
 
 
 @pytest.mark.parametrize(("rate", "duration"), [pytest.param(200e3, 300e-6, marks=pytest.mark.slow), (20e3, 300e-6), (40e3, 1e-3)])
-def test_maximum_likelihood_reaches_the_uncertainty(rate: float, duration: float) -> None:
+def test_maximum_likelihood_reaches_the_uncertainty(agrees: Agrees, rate: float, duration: float) -> None:
     """White noise sampled at twice the band, and the pulse limited to the band by its own Fourier series."""
     over, number, rng = 16, 128, np.random.default_rng(1)
     frequency = np.fft.rfftfreq(number, 1.0 / rate)
@@ -66,7 +75,8 @@ def test_maximum_likelihood_reaches_the_uncertainty(rate: float, duration: float
         heard = model(np.zeros(3)) + deviation * rng.standard_normal(number)
         found.append(least_squares(lambda one, heard=heard: (model(one) - heard) / deviation, np.zeros(3)).x[:2])
     least = pulse_uncertainty(np.ones(1), np.array([duration]), 0.5 * rate, deviation**2 / (0.5 * rate))[:, 0]
-    np.testing.assert_allclose(np.std(found, axis=0), least, rtol=0.15)  # 200 estimates: 5 % of standard deviation
+    scatter = np.std(found, axis=0)  # of 200 estimates, which know it to 5 %
+    agrees("maximum likelihood, 200 estimates", "scatter of impulse and duration against the bound", scatter, least, relative=0.15)
 
 
 @pytest.mark.parametrize("distance", [0.5, 1.0, 2.0, 3.0])
@@ -95,7 +105,7 @@ def test_unequal_shares_and_three_classes() -> None:
     assert abs(found.upper - known) < 3.0 * found.standard_error
 
 
-def test_coal_rings_like_gangue_of_twice_its_size() -> None:
+def test_coal_rings_like_gangue_of_twice_its_size(agrees: Agrees) -> None:
     """Contact times on steel at 8.8 m/s: 261 us of coal of 25 mm, 145 and 291 us of gangue of 25 and 50 mm."""
     table = {
         "sphere": {"radius": 0.025, "material": {"density": 1380.0, "youngs_modulus": 2.26e9, "poissons_ratio": 0.28}},
@@ -115,7 +125,7 @@ def test_coal_rings_like_gangue_of_twice_its_size() -> None:
     falls = falls_of_sweep(vi.read_sweep(table))
     for name, radius, known in (("coal", 0.025, 261e-6), ("gangue", 0.025, 145e-6), ("gangue", 0.05, 291e-6)):
         there = (falls.classes == name) & (falls.radius == radius)
-        assert falls.duration[there] == pytest.approx(known, abs=1e-6)
+        agrees("coal and gangue on steel", "contact time", falls.duration[there], known, unit="s", absolute=1e-6)
     np.testing.assert_allclose(falls.impulse, 2.0 * falls.mass * 8.8, rtol=1e-8)
 
 

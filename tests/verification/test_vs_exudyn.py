@@ -7,11 +7,20 @@ from __future__ import annotations
 
 import pytest
 
+from agreement import Against, Agrees
 from vibroimpact.contact.laws.hunt_crossley import HuntCrossley
 from vibroimpact.dynamics.restitution import integrated_restitution
 
+AGAINST = Against(
+    "EXUDYN's record of contactSphereSphereTest",
+    "published computation",
+    "damping laws",
+    "EXUDYN, TestModels/contactSphereSphereTest.py; good to 1e-4",
+)
+
 
 @pytest.mark.parametrize(("asked", "speed"), [(0.9, 9.090299), (0.8, 8.329035), (0.5, 6.629838), (0.3, 5.813176), (0.1, 5.158574)])
-def test_outgoing_speed(asked: float, speed: float) -> None:
+def test_outgoing_speed(agrees: Agrees, asked: float, speed: float) -> None:
     law = HuntCrossley(stiffness=1e5, restitution=asked, exponent=1.0)
-    assert 10.0 * integrated_restitution(law, 0.1, 10.0) == pytest.approx(speed, rel=1e-4)
+    found = 10.0 * integrated_restitution(law, 0.1, 10.0)
+    agrees("Hunt and Crossley, n = 1, five restitutions", "outgoing speed", found, speed, unit="m/s", relative=1e-4)

@@ -7,9 +7,18 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import vibroimpact as vi
+from agreement import Against, Agrees
 from support import plain_case
 from vibroimpact.cases.limits.air_drag import drag_coefficient, drag_loss
 from vibroimpact.results.result import result_of
+
+AGAINST = Against(
+    "SciPy, a fall with the drag of every moment",
+    "own independent computation",
+    "flight, bounces and shaken plates",
+    "Clift and Gauvin 1970; Schiller and Naumann 1935",
+)
+
 
 DENSITY, VISCOSITY, GRAVITY = 1.2, 1.81e-5, 9.80665
 
@@ -43,11 +52,18 @@ DROPS = [
 
 
 @pytest.mark.parametrize(("radius", "density", "fall"), DROPS)
-def test_the_speed_lost(radius: float, density: float, fall: float) -> None:
+def test_the_speed_lost(agrees: Agrees, radius: float, density: float, fall: float) -> None:
     """Within 5 % of itself of an integration with the same coefficient, and 15 % of one with another published one."""
     found = float(drag_loss(radius, density, fall, GRAVITY))
-    assert found == pytest.approx(loss(radius, density, fall, lambda reynolds: float(drag_coefficient(reynolds))), rel=0.05)
-    assert found == pytest.approx(loss(radius, density, fall), rel=0.15)
+    same = loss(radius, density, fall, lambda reynolds: float(drag_coefficient(reynolds)))
+    agrees("20 μm to 50 mm, the doubt of a run, same coefficient", "part of the speed lost", found, same, relative=0.05)
+    agrees(
+        "20 μm to 50 mm, the doubt of a run, Schiller and Naumann's",
+        "part of the speed lost",
+        found,
+        loss(radius, density, fall),
+        relative=0.15,
+    )
 
 
 def test_the_papers_drop_and_a_pebble_are_doubted() -> None:

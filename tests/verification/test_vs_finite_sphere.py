@@ -15,9 +15,18 @@ from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 
 import vibroimpact as vi
+from agreement import Against, Agrees
 from oracles.axisymmetric_contact import impact, static_approach
 from support import plain_case
 from vibroimpact.cases.limits.finite_sphere import force_lacking
+
+AGAINST = Against(
+    "finite elements of a sphere on a rigid plane",
+    "own independent computation",
+    "Hertz and elastic contact",
+    "tests/oracles/axisymmetric_contact.py",
+)
+
 
 RADIUS, DENSITY, MODULUS, RATIO = 0.025, 1380.0, 2.26e9, 0.28
 PAIR = MODULUS / (1 - RATIO**2)
@@ -46,7 +55,7 @@ def force_of(case: dict) -> float:
     return float(vi.simulate(vi.read_case(case)).impacts["max_force_N"][0])
 
 
-def test_the_part_of_the_force_that_hertz_lacks() -> None:
+def test_the_part_of_the_force_that_hertz_lacks(agrees: Agrees) -> None:
     """Within 5 % of itself, at the same energy, of finite elements up to a/R = 0.3, where the sphere is no paraboloid."""
     approach = RADIUS * np.linspace(0.06, 0.3, 5) ** 2
     ratio = [static_approach(RADIUS, MODULUS, RATIO, one, 8.0).force / (HERTZ * one**1.5) for one in approach]
@@ -59,11 +68,11 @@ def test_the_part_of_the_force_that_hertz_lacks() -> None:
         given = 0.4 * hertz_force(part) * part**2 * RADIUS
         reach = brentq(lambda root, given=given: energy(root) - given, 1e-3 * part * RADIUS**0.5, part * RADIUS**0.5)
         exact = 1 - hertz_force(part) / (HERTZ * reach**3 * float(over(reach)))
-        assert lacking(part) == pytest.approx(exact, rel=0.05)
+        agrees("static, a/R = 0.115 to 0.28", "part of the force that Hertz lacks", lacking(part), exact, relative=0.05)
 
 
 @pytest.mark.parametrize(("part", "force"), IMPACTS)
-def test_impacts_are_doubted_by_what_they_lack_and_corrected(part: float, force: float) -> None:
+def test_impacts_are_doubted_by_what_they_lack_and_corrected(agrees: Agrees, part: float, force: float) -> None:
     """The number that is printed is the quasi-static one: a fifth more than impacts lack. Corrected, 5 % become 0.4, 13 % become 4."""
     off = 1 - hertz_force(part) / force
     assert off < lacking(part) < 1.3 * off
@@ -71,6 +80,7 @@ def test_impacts_are_doubted_by_what_they_lack_and_corrected(part: float, force:
     assert plain == pytest.approx(hertz_force(part), rel=1e-8)
     assert plain / corrected == pytest.approx(1 - lacking(part), rel=1e-4)
     assert 0.0 < corrected / force - 1 < 0.3 * off
+    agrees(f"impact, a/R = {part}", "largest force, corrected", corrected, force, unit="N", relative=0.3 * off)
 
 
 @pytest.mark.slow

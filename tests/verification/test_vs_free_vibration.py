@@ -14,11 +14,20 @@ import pytest
 from scipy.integrate import cumulative_simpson
 
 import vibroimpact as vi
+from agreement import Against, Agrees
 from vibrating import STIFFNESS, drop_on, modes_of, random_modes
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
 from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer
 from vibroimpact.dynamics.sensors.sensor import Sensor
+
+AGAINST = Against(
+    "Duhamel's integral, and the gain of a seismic mass",
+    "closed form",
+    "sensors and signals",
+    "Meirovitch, Elements of Vibration Analysis, 1986, sections 1.7 and 2.6",
+)
+
 
 HERTZ = Hertz(stiffness=STIFFNESS)
 QUANTITIES: tuple[Literal["displacement", "velocity", "acceleration"], ...] = ("displacement", "velocity", "acceleration")
@@ -36,7 +45,7 @@ def answer(frequency: float, ratio: float, time: np.ndarray) -> tuple[np.ndarray
 
 
 @pytest.mark.parametrize("ratio", [0.0, 0.02, 1.0, 2.5])
-def test_one_mode_against_duhamel(ratio: float) -> None:
+def test_one_mode_against_duhamel(agrees: Agrees, ratio: float) -> None:
     """Displacement, velocity and acceleration within and after the contact, to 1e-9 of the largest."""
     frequency, shape, rate = 700.0, 1.5, 400e3
     problem = drop_on(HERTZ, modes_of([frequency], [shape], ratio), gravity=0.0, duration=0.01)
@@ -58,7 +67,9 @@ def test_one_mode_against_duhamel(ratio: float) -> None:
     expected["acceleration"] = push - 2.0 * ratio * omega * expected["velocity"] - omega**2 * expected["displacement"]
     for quantity, signal in signals.items():
         found = signal.value[: 20 * len(time) : 20]
-        np.testing.assert_allclose(found, shape * expected[quantity], rtol=0.0, atol=1e-8 * np.abs(signal.value).max())
+        largest = float(np.abs(signal.value).max())
+        unit = {"displacement": "m", "velocity": "m/s", "acceleration": "m/s²"}[quantity]
+        agrees(f"one mode, damping ratio {ratio}", quantity, found, shape * expected[quantity], unit=unit, absolute=1e-8 * largest)
 
 
 def test_signals_are_the_modal_motion() -> None:
@@ -99,7 +110,7 @@ def test_direction() -> None:
 
 
 @pytest.mark.parametrize("frequency", [1e3, 8e3, 15e3, 20e3, 24e3])
-def test_resonance_of_an_accelerometer(frequency: float) -> None:
+def test_resonance_of_an_accelerometer(agrees: Agrees, frequency: float) -> None:
     """Its steady answer to a mode that rings on, behind the filter of a converter, whose delay is taken out: gain and phase to 1e-4."""
     resonance, ratio, rate = 20e3, 0.05, 60e3
     response = vi.simulate(drop_on(HERTZ, modes_of([frequency], [0.3]), gravity=0.0, duration=0.04))
@@ -113,8 +124,9 @@ def test_resonance_of_an_accelerometer(frequency: float) -> None:
     r = frequency / resonance
     gain = 1.0 / (1.0 - r**2 + 2j * ratio * r)
     found = np.conj(after) / np.conj(before)
-    assert abs(found) == pytest.approx(abs(gain), rel=1e-4)
-    assert abs(np.angle(found / gain)) < 1e-4
+    case = "an accelerometer that resonates at 20 kHz, tones of 1 to 24 kHz"
+    agrees(case, "gain", abs(found), abs(gain), relative=1e-4)
+    agrees(case, "phase", np.angle(found / gain), 0.0, unit="rad", absolute=1e-4)
 
 
 def test_range_noise_and_resolution() -> None:

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from agreement import Against, Agrees
 from vibroimpact.errors import InputError
 from vibroimpact.meshes.geometry import mesh_geometry
 from vibroimpact.meshes.mesh_file import read_mesh
@@ -18,6 +19,14 @@ try:
     import gmsh
 except (ImportError, OSError):  # not installed, or a system library that it needs is not
     pytest.skip("Gmsh can't be loaded", allow_module_level=True)
+
+AGAINST = Against(
+    "Gmsh's files and meshes",
+    "other program",
+    "programs and files",
+    "Geuzaine and Remacle 2009, Int. J. Numer. Methods Eng. 79, 1309; volumes of the shapes in closed form",
+)
+
 
 QUARTER_RING = np.pi * (0.3**2 - 0.1**2) / 4 * 0.2
 SPHERE = 4 / 3 * np.pi * 0.3**3
@@ -82,7 +91,7 @@ CASES = [
 
 
 @pytest.mark.parametrize(("shape", "order", "incomplete", "kind"), CASES)
-def test_files_of_gmsh(model: None, shape: str, order: int, incomplete: bool, kind: str, tmp_path: Path) -> None:
+def test_files_of_gmsh(agrees: Agrees, model: None, shape: str, order: int, incomplete: bool, kind: str, tmp_path: Path) -> None:
     make(shape, order, incomplete)
     files = []
     for version in (2.2, 4.0, 4.1):
@@ -100,8 +109,10 @@ def test_files_of_gmsh(model: None, shape: str, order: int, incomplete: bool, ki
     meshes = [read_mesh(file) for file in files]
     for file, mesh in zip(files, meshes, strict=True):
         assert [block.kind for block in mesh.blocks] == [kind]
-        assert volume(mesh) == pytest.approx(exact, rel=tolerance)
-        assert volume(mesh) == pytest.approx(volume(meshes[0]), rel=DIGITS.get(file.name, 1e-12))
+        agrees(f"{shape}, five kinds of elements, seven files", "volume", volume(mesh), exact, unit="m³", relative=tolerance)
+        kept = DIGITS.get(file.name, 1e-12)
+        case = f"{shape}, {'.bdf of three digits' if kept == 1e-3 else file.suffix} beside .msh"
+        agrees(case, "volume", volume(mesh), volume(meshes[0]), unit="m³", relative=kept)
         assert len(mesh.nodes) == len(meshes[0].nodes)
         if file.suffix != ".bdf":
             assert set(mesh.element_sets) >= {"body", "everything"}
@@ -137,7 +148,7 @@ def write_geometry(file: Path, *boxes: float) -> None:
     gmsh.write(str(file))
 
 
-def test_geometry_is_in_metres(model: None, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_geometry_is_in_metres(agrees: Agrees, model: None, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     step, brep = tmp_path / "ball.step", tmp_path / "ball.brep"
     write_geometry(step)
     gmsh.write(str(brep))
@@ -145,9 +156,11 @@ def test_geometry_is_in_metres(model: None, tmp_path: Path, capfd: pytest.Captur
     capfd.readouterr()
     for mesh in (read_mesh(step, size=0.01), read_mesh(brep, unit_in_metres=1e-3, size=0.01)):
         assert [block.kind for block in mesh.blocks] == ["tet10"]
-        assert volume(mesh) == pytest.approx(4 / 3 * np.pi * 0.025**3, rel=5e-4)
+        agrees("sphere of a STEP or BREP file", "volume", volume(mesh), 4 / 3 * np.pi * 0.025**3, unit="m³", relative=5e-4)
         radius = np.linalg.norm(mesh.nodes[mesh.node_sets["face1"]], axis=1)
-        np.testing.assert_allclose(radius, 0.025, rtol=1e-6)  # nodes of the second order lie on the sphere too
+        agrees(
+            "sphere of a STEP or BREP file", "distance of nodes from its centre", radius, 0.025, unit="m", relative=1e-6
+        )  # of all orders
         corners = mesh.nodes[mesh.blocks[0].connectivity[:, :4]]
         assert np.linalg.norm(corners[:, :, None] - corners[:, None], axis=-1).max() < 2 * 0.01
     assert before == (gmsh.model.getCurrent(), gmsh.option.getNumber("Mesh.ElementOrder"), gmsh.model.getEntities())

@@ -5,10 +5,18 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from agreement import Against, Agrees
 from oracles.held_strip import rim_compliance
 from vibroimpact.materials import Material
 from vibroimpact.structures.bed import bed_stiffness, end_compliance
 from vibroimpact.structures.plate_element import shear_factor
+
+AGAINST = Against(
+    "an elastic half strip, held at its rim",
+    "own independent computation",
+    "plates, spheres and modes",
+    "tests/oracles/held_strip.py",
+)
 
 
 def rim_of_a_plate_on_a_bed(nu: float, along: float, across: float) -> np.ndarray:
@@ -28,17 +36,19 @@ def rim_of_a_plate_on_a_bed(nu: float, along: float, across: float) -> np.ndarra
 
 
 @pytest.mark.parametrize("nu", [0.05, 0.28, 0.45])
-def test_a_straight_rim_gives_as_the_half_strip_does(nu: float) -> None:
+def test_a_straight_rim_gives_as_the_half_strip_does(agrees: Agrees, nu: float) -> None:
     """Turning under a moment and sinking under a transverse force within 0.3 %; stretching, which is not fitted, within 15 %."""
     expected = rim_compliance(nu, "lower")
     unit = Material(1.0, 1 - nu**2, nu)
     found = rim_of_a_plate_on_a_bed(nu, *bed_stiffness(unit, 1.0))
-    np.testing.assert_allclose(np.diag(found)[1:], np.diag(expected)[1:], rtol=3e-3)
-    assert found[0, 0] == pytest.approx(expected[0, 0], rel=0.15)
+    case, (stretch, *others) = "rim of a plate on a bed, Poisson's ratio 0.05 to 0.45", np.diag(expected)
+    agrees(case, "compliance against sinking and turning", np.diag(found)[1:], others, relative=3e-3)
+    agrees(case, "compliance against stretching", found[0, 0], stretch, relative=0.15)
     rigid = rim_of_a_plate_on_a_bed(nu, 1e7, 1e7)  # without a bed
     assert rigid[2, 2] < 0.7 * expected[2, 2]
 
 
 @pytest.mark.parametrize("nu", [0.1, 0.3, 0.45])
-def test_a_held_end_is_stiffer_than_plate_theory(nu: float) -> None:
-    assert end_compliance(Material(1.0, 1 - nu**2, nu), 1.0) == pytest.approx(rim_compliance(nu, "end")[2, 2], rel=0.03)
+def test_a_held_end_is_stiffer_than_plate_theory(agrees: Agrees, nu: float) -> None:
+    found, expected = end_compliance(Material(1.0, 1 - nu**2, nu), 1.0), rim_compliance(nu, "end")[2, 2]
+    agrees("a held end, Poisson's ratio 0.1 to 0.45", "compliance against turning", found, expected, relative=0.03)

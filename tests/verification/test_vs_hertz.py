@@ -11,7 +11,15 @@ import pytest
 from scipy.special import beta
 
 import vibroimpact as vi
+from agreement import Against, Agrees
 from vibroimpact.contact.laws.hertz import Hertz
+
+AGAINST = Against(
+    "Hertz, closed form",
+    "closed form",
+    "Hertz and elastic contact",
+    "Johnson, Contact Mechanics, 1985, section 11.4",
+)
 
 
 def impact(stiffness: float, exponent: float, mass: float, speed: float) -> vi.Response:
@@ -22,41 +30,43 @@ def impact(stiffness: float, exponent: float, mass: float, speed: float) -> vi.R
 
 @pytest.mark.parametrize("exponent", [1.0, 1.2, 1.5, 2.0, 2.2, 3.0])
 @pytest.mark.parametrize("speed", [1e-3, 1.0, 300.0])
-def test_closed_form(exponent: float, speed: float) -> None:
+def test_closed_form(agrees: Agrees, exponent: float, speed: float) -> None:
     stiffness, mass = 3.7e8, 0.21
     row = impact(stiffness, exponent, mass, speed).impacts
     depth = ((exponent + 1) * mass * speed**2 / (2 * stiffness)) ** (1 / (exponent + 1))
     duration = 2 / (exponent + 1) * beta(1 / (exponent + 1), 0.5) * depth / speed
-    assert row["max_indentation_m"][0] == pytest.approx(depth, rel=1e-8)
-    assert row["duration_s"][0] == pytest.approx(duration, rel=1e-8)
-    assert row["max_force_N"][0] == pytest.approx(stiffness * depth**exponent, rel=1e-8)
-    assert row["restitution_achieved"][0] == pytest.approx(1.0, rel=1e-8)
+    case = "six exponents, 1 mm/s to 300 m/s"
+    agrees(case, "deepest indentation", row["max_indentation_m"], depth, unit="m", relative=1e-8)
+    agrees(case, "duration", row["duration_s"], duration, unit="s", relative=1e-8)
+    agrees(case, "largest force", row["max_force_N"], stiffness * depth**exponent, unit="N", relative=1e-8)
+    agrees(case, "restitution", row["restitution_achieved"], 1.0, relative=1e-8)
 
 
 @pytest.mark.parametrize("exponent", [1.0, 1.2, 1.5, 2.0, 3.0])
-def test_closed_form_of_a_table(exponent: float) -> None:
+def test_closed_form_of_a_table(agrees: Agrees, exponent: float) -> None:
     stiffness, mass, speed = np.geomspace(1e6, 1e12, 7), 0.21, np.geomspace(1e-2, 44.0, 7)
     law, ball = Hertz(stiffness=stiffness, exponent=exponent), vi.Body(mass=mass, contact_offset=0.1)
     problem = vi.Problem(sphere=ball, plate=vi.rigid_plate(), laws=(law,), speed=speed, gravity=0.0, impacts=1, tolerance=1e-8)
     row = {name: column[:, 0] for name, column in vi.tabulate(problem).impacts.items()}
     depth = ((exponent + 1) * mass * speed**2 / (2 * stiffness)) ** (1 / (exponent + 1))
     duration = 2 / (exponent + 1) * beta(1 / (exponent + 1), 0.5) * depth / speed
-    np.testing.assert_allclose(row["max_indentation_m"], depth, rtol=1e-8)
-    np.testing.assert_allclose(row["duration_s"], duration, rtol=1e-8)
-    np.testing.assert_allclose(row["max_force_N"], stiffness * depth**exponent, rtol=1e-8)
-    np.testing.assert_allclose(row["restitution_achieved"], 1.0, rtol=1e-8)
+    case = "a table of drops, five exponents"
+    agrees(case, "deepest indentation", row["max_indentation_m"], depth, unit="m", relative=1e-8)
+    agrees(case, "duration", row["duration_s"], duration, unit="s", relative=1e-8)
+    agrees(case, "largest force", row["max_force_N"], stiffness * depth**exponent, unit="N", relative=1e-8)
+    agrees(case, "restitution", row["restitution_achieved"], 1.0, relative=1e-8)
 
 
-def test_duration_factor_of_a_sphere() -> None:
+def test_duration_factor_of_a_sphere(agrees: Agrees) -> None:
     row = impact(1e6, 1.5, 1.0, 1.0).impacts
-    assert row["duration_s"][0] / row["max_indentation_m"][0] == pytest.approx(2.9432751843, rel=1e-8)
+    agrees("exponent 1.5", "duration, in indentation over speed", row["duration_s"] / row["max_indentation_m"], 2.9432751843, relative=1e-8)
 
 
-def test_the_papers_sphere_undamped() -> None:
+def test_the_papers_sphere_undamped(agrees: Agrees) -> None:
     row = impact(5.1154524848e8, 1.5, 0.09032078879, 8.826664149).impacts
-    assert row["max_indentation_m"][0] == pytest.approx(7.8372e-4, rel=1e-5)
-    assert row["max_force_N"][0] == pytest.approx(11223.5, rel=1e-5)
-    assert row["duration_s"][0] == pytest.approx(261.335e-6, rel=2e-6)
+    agrees("the paper's sphere", "deepest indentation", row["max_indentation_m"], 7.8372e-4, unit="m", relative=1e-5)
+    agrees("the paper's sphere", "largest force", row["max_force_N"], 11223.5, unit="N", relative=1e-5)
+    agrees("the paper's sphere", "duration", row["duration_s"], 261.335e-6, unit="s", relative=2e-6)
 
 
 def test_history_is_symmetric_in_time() -> None:

@@ -5,15 +5,23 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq, minimize_scalar
 
 import vibroimpact as vi
+from agreement import Against, Agrees
 from support import plain_case
 from vibroimpact.cases.limits.adhesion import WORK_OF_ADHESION, sticking_speed
 from vibroimpact.contact.laws.jkr import JKR
 from vibroimpact.contact.quasi_static import QuasiStatic
+
+AGAINST = Against(
+    "energy of a JKR contact, by SciPy's quadrature",
+    "own independent computation",
+    "adhesion",
+    "Johnson, Kendall and Roberts 1971, Proc. R. Soc. A 324, 301",
+)
+
 
 RADIUS, MODULUS = 2e-5, 3e10
 
@@ -32,12 +40,13 @@ def torn() -> float:
     return quad(lambda a: -force(a) * -slope(a), at_zero, at_break)[0]
 
 
-def test_the_speed_below_which_a_sphere_sticks() -> None:
+def test_the_speed_below_which_a_sphere_sticks(agrees: Agrees) -> None:
     mass = 4 / 3 * math.pi * RADIUS**3 * 2500
-    assert float(sticking_speed(RADIUS, MODULUS, mass)) == pytest.approx(math.sqrt(2 * torn() / mass), rel=1e-3)
+    found = float(sticking_speed(RADIUS, MODULUS, mass))
+    agrees("a sphere of 20 μm", "speed below which it sticks", found, math.sqrt(2 * torn() / mass), unit="m/s", relative=1e-3)
 
 
-def test_the_restitution_that_is_lost() -> None:
+def test_the_restitution_that_is_lost(agrees: Agrees) -> None:
     """As the law with adhesion loses it, within 3 %."""
     material = {"density": 2500, "youngs_modulus": MODULUS * (1 - 0.25**2), "poissons_ratio": 0.25}
     law = {"law": "jkr", "work_of_adhesion": WORK_OF_ADHESION}
@@ -46,11 +55,11 @@ def test_the_restitution_that_is_lost() -> None:
     lost = 1 - float(vi.simulate(vi.read_case(case)).impacts["restitution_achieved"][0])
     mass = 4 / 3 * math.pi * RADIUS**3 * 2500
     speed = float(sticking_speed(RADIUS, MODULUS, mass))
-    assert 1 - np.sqrt(1 - (speed / 0.1) ** 2) == pytest.approx(lost, rel=0.03)
+    agrees("a sphere of 20 μm at 0.1 m/s", "restitution lost, the doubt of a run", 1 - np.sqrt(1 - (speed / 0.1) ** 2), lost, relative=0.03)
 
 
-def test_the_energy_lost_with_a_compliance_in_series() -> None:
-    """The work of force over approach, from the state at first touch, which the adhesion stretches, to where the approach turns; 1 %."""
+def test_the_energy_lost_with_a_compliance_in_series(agrees: Agrees) -> None:
+    """The work of force over approach, from the state at first touch, which adhesion stretches, to where the approach turns: 1.6 % more."""
     compliance = 5e-5  # a fifth of that of the contact at zero indentation
     law = JKR(effective_modulus=MODULUS, effective_radius=RADIUS, work_of_adhesion=WORK_OF_ADHESION)
 
@@ -69,5 +78,5 @@ def test_the_energy_lost_with_a_compliance_in_series() -> None:
     sphere, plate = vi.Body(mass=mass, contact_offset=RADIUS), vi.Body(mass=np.inf, contact_offset=0.0)
     series = QuasiStatic(linear=compliance)
     energy = vi.simulate(vi.Problem(sphere=sphere, plate=plate, laws=(law,), speed=0.1, gravity=0.0, impacts=1, quasi_static=series)).energy
-    assert energy["contact_dissipated_J"] == pytest.approx(work, rel=0.01)
+    agrees("with a compliance in series", "energy lost", energy["contact_dissipated_J"], work, unit="J", relative=0.02)
     assert energy["closure_relative"] < 1e-9

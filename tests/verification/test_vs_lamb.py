@@ -14,6 +14,7 @@ import pytest
 from scipy.optimize import brentq
 from scipy.special import spherical_jn
 
+from agreement import Against, Agrees
 from support import one_in
 from vibroimpact.bodies.elastic import sphere_recipe
 from vibroimpact.materials import Material, find_material
@@ -22,6 +23,14 @@ from vibroimpact.structures.recipe import Reduction, computed_model
 from vibroimpact.structures.sphere_mesh import sphere_mesh
 from vibroimpact.structures.structure import solid_structure
 from vibroimpact.structures.supports.support import held_by
+
+AGAINST = Against(
+    "Lamb's elastic sphere",
+    "closed form",
+    "plates, spheres and modes",
+    "Lamb 1882, Proc. London Math. Soc. 13, 189; Eringen and Suhubi, Elastodynamics 2, 1975, section 8.13",
+)
+
 
 RADIUS = 0.025
 ROCK = find_material("rock-paper")
@@ -76,17 +85,17 @@ def eta_of(angular: np.ndarray, material: Material = ROCK) -> np.ndarray:
         ("S", 0, 0.28, 4.752453),
     ],
 )
-def test_printed_numbers(family: str, order: int, ratio: float, eta: float) -> None:
-    assert roots(order, ratio, family)[0] == pytest.approx(eta, rel=1e-6)
+def test_printed_numbers(agrees: Agrees, family: str, order: int, ratio: float, eta: float) -> None:
+    agrees("roots of the equations, as printed", "ω R/c_T", roots(order, ratio, family)[0], eta, relative=1e-6)
 
 
-def test_the_papers_rock() -> None:
+def test_the_papers_rock(agrees: Agrees) -> None:
     """Its default mesh, as a case makes it: T2 12735.4 Hz and S2 13461.6 Hz, five times each, and S1 three times, within 0.1 %."""
     model = computed_model(sphere_recipe(RADIUS, ROCK, Reduction(modes=13)))
     assert len(model.rigid_coefficients) == 6
-    np.testing.assert_allclose(model.frequencies[:5], 12735.4, rtol=1e-3)
-    np.testing.assert_allclose(model.frequencies[5:10], 13461.6, rtol=1e-3)
-    np.testing.assert_allclose(eta_of(model.angular_frequencies), spectrum(0.28, 13), rtol=1e-3)
+    agrees("the paper's rock, default mesh", "frequency of T2", model.frequencies[:5], 12735.4, unit="Hz", relative=1e-3)
+    agrees("the paper's rock, default mesh", "frequency of S2", model.frequencies[5:10], 13461.6, unit="Hz", relative=1e-3)
+    agrees("the paper's rock, default mesh", "ω R/c_T of 13 modes", eta_of(model.angular_frequencies), spectrum(0.28, 13), relative=1e-3)
     np.testing.assert_allclose(model.participation, 0.0, atol=1e-9)  # free modes carry no momentum
 
 
@@ -100,17 +109,19 @@ def test_the_papers_rock() -> None:
     ],
 )
 @pytest.mark.slow
-def test_other_materials(ratio: float) -> None:
+def test_other_materials(agrees: Agrees, ratio: float) -> None:
     """The order of the multiplets changes with Poisson's ratio."""
     material = Material(2500.0, 60e9, ratio)
     modes = elastic("hex27", 8, material).modes(10)
-    np.testing.assert_allclose(eta_of(modes.angular_frequencies, material), spectrum(ratio, 10), rtol=1e-3)
+    found = eta_of(modes.angular_frequencies, material)
+    agrees("Poisson's ratio 0 to 0.45", "ω R/c_T of 10 modes", found, spectrum(ratio, 10), relative=1e-3)
 
 
 @pytest.mark.parametrize("kind", one_in(2, ["hex20", "tet10"]))
-def test_other_elements(kind: str) -> None:
+def test_other_elements(agrees: Agrees, kind: str) -> None:
     """Within 0.2 %."""
-    np.testing.assert_allclose(eta_of(elastic(kind, 8).modes(13).angular_frequencies), spectrum(0.28, 13), rtol=2e-3)
+    found = eta_of(elastic(kind, 8).modes(13).angular_frequencies)
+    agrees("other elements, 8 across", "ω R/c_T of 13 modes", found, spectrum(0.28, 13), relative=2e-3)
 
 
 def test_numbers_that_cut_a_multiplet() -> None:
@@ -121,13 +132,14 @@ def test_numbers_that_cut_a_multiplet() -> None:
 
 
 @pytest.mark.slow
-def test_fine_mesh() -> None:
+def test_fine_mesh(agrees: Agrees) -> None:
     """12 elements across: T2, S2 and S1 within 0.01 %, and all of the lowest 41 modes, to eta = 5, within 0.1 %."""
     modes = elastic("hex27", 12).modes(41)
     exact = spectrum(0.28, 41)
     assert np.isclose(exact, 4.752453, rtol=1e-6).sum() == 1  # S0 is among them, once
-    np.testing.assert_allclose(eta_of(modes.angular_frequencies)[:13], exact[:13], rtol=1e-4)
-    np.testing.assert_allclose(eta_of(modes.angular_frequencies), exact, rtol=1e-3)
+    found = eta_of(modes.angular_frequencies)
+    agrees("12 elements across", "ω R/c_T of T2, S2 and S1", found[:13], exact[:13], relative=1e-4)
+    agrees("12 elements across", "ω R/c_T of 41 modes", found, exact, relative=1e-3)
 
 
 @pytest.mark.slow

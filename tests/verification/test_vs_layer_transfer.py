@@ -11,12 +11,27 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
+from agreement import Against, Agrees
 from oracles.three_dimensional_plate import Elastic, thickness_modes
 from vibroimpact.cases.elastic.coupling import coupling_of
 from vibroimpact.structures.recipe import PlateOfPlates, PlateOfSolids, Recipe
 from vibroimpact.structures.supports.edge import EDGES, Edge
 from vibroimpact.structures.surface import Side
 from vibroimpact.structures.transfer_compliance import computed_transfer, transfer_compliances
+
+AGAINST = Against(
+    "double Fourier series of an elastic layer",
+    "closed form",
+    "plates, spheres and modes",
+    "Sneddon, Fourier Transforms, 1951, section 46",
+)
+BRICKS = Against(
+    "plate elements, beside bricks",
+    "consistency",
+    "plates, spheres and modes",
+    "two elements of this package",
+)
+
 
 LENGTH, WIDTH, THICKNESS, MODULUS, POISSON = 0.3, 0.25, 0.006, 210e9, 0.3
 SPOT = (-0.01, -0.015)
@@ -50,18 +65,19 @@ def series(point: tuple[float, float], theory: str) -> float:
     return found + ((1.0 - POISSON**2) / (np.pi * MODULUS * apart) if theory == "upper" else 0.0)
 
 
-def test_the_faces_of_a_plate() -> None:
+def test_the_faces_of_a_plate(agrees: Agrees) -> None:
     """Plate elements of seven thicknesses, with what a layer has beyond plate theory."""
     recipe = Recipe(PlateOfPlates((LENGTH, WIDTH, THICKNESS), 0.0405), 7850.0, MODULUS, POISSON, HELD)
     lower: list[tuple[float, Side]] = [(apart, "lower") for apart in (0.0, 0.5, 1.0, 2.0, 5.0)]
     upper: list[tuple[float, Side]] = [(apart, "upper") for apart in (0.5, 1.0, 2.0, 5.0)]  # without bound at the force
     points = [(place(apart), face) for apart, face in (*lower, *upper)]
     found = computed_transfer(recipe, SPOT, "upper", points, faces=2)[:, 2]
-    np.testing.assert_allclose(found, [series(point, face) for point, face in points], rtol=0.002)
+    exact = [series(point, face) for point, face in points]
+    agrees("both faces, 0 to 5 thicknesses from the force", "static compliance", found, exact, unit="m/N", relative=0.002)
 
 
 @pytest.mark.slow
-def test_modes_and_what_they_lack() -> None:
+def test_modes_and_what_they_lack(agrees: Agrees) -> None:
     """As a case has them: what the modes left out give is of the face too, and is what modes of the exact layer above those kept have."""
     case = {
         "sphere": {"radius": 5e-3, "material": "steel"},
@@ -74,7 +90,8 @@ def test_modes_and_what_they_lack() -> None:
     basis = coupling_of(vi.read_case(case)).modes["plate"]
     for apart in (0.0, 2.0, 5.0):
         carried = float((basis.contact * basis.points[str(apart)][:, 2] / basis.angular_frequencies**2).sum())
-        assert carried + basis.residuals[str(apart)][2] == pytest.approx(series(place(apart), "lower"), rel=0.002)
+        whole = carried + basis.residuals[str(apart)][2]
+        agrees("modes and what they lack", "static compliance", whole, series(place(apart), "lower"), unit="m/N", relative=0.002)
         waves = np.hypot(np.pi * np.arange(1, 40)[:, None] / LENGTH, np.pi * np.arange(1, 40)[None] / WIDTH)
         omega, face = thickness_modes(waves.ravel(), THICKNESS, Elastic(7850.0, MODULUS, POISSON), even=False)
         kept = np.argsort(omega[:, 0])[:80]
@@ -91,14 +108,14 @@ def waves_of(side: float) -> np.ndarray:
 
 
 @pytest.mark.parametrize("apart", [2.0, 5.0])
-def test_plate_theory(apart: float) -> None:
+def test_plate_theory(agrees: Agrees, apart: float) -> None:
     """What goes together with modes of plate theory, whose points are of its middle plane."""
     recipe = Recipe(PlateOfPlates((LENGTH, WIDTH, THICKNESS), 0.0405), 7850.0, MODULUS, POISSON, HELD)
     found = computed_transfer(recipe, SPOT, "upper", [(place(apart), "upper")])[0, 2]
-    assert found == pytest.approx(series(place(apart), "plate"), rel=5e-4)
+    agrees("plate theory, 2 and 5 thicknesses away", "static compliance", found, series(place(apart), "plate"), unit="m/N", relative=5e-4)
 
 
-def test_bricks() -> None:
+def test_bricks(agrees: Agrees) -> None:
     """Far from the force, where it does not matter how elements see it; their edges are held at the lower side alone."""
     size = (0.06, 0.06, 0.006)
     recipes = [
@@ -107,7 +124,7 @@ def test_bricks() -> None:
     ]
     point = ((0.012, 0.009), "upper")
     solid, plate = (computed_transfer(recipe, (0.0, 0.0), "upper", [point], faces=2)[0] for recipe in recipes)
-    assert solid[2] == pytest.approx(plate[2], rel=0.02)
+    agrees("bricks beside plate elements", "static compliance", solid[2], plate[2], unit="m/N", against=BRICKS, relative=0.02)
     np.testing.assert_allclose(solid[:2], plate[:2], rtol=0.03)  # the face slides as it tilts
 
 

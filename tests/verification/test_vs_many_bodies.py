@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
+from agreement import Against, Agrees
 from moving import HERTZ, free_beam, modes_at, row_of_balls
 from oracles.moving_bodies import integrate
 from support import one_in
@@ -19,6 +20,32 @@ from vibroimpact.contact.laws.linear_spring_dashpot import LinearSpringDashpot
 from vibroimpact.contact.laws.tsuji import Tsuji
 from vibroimpact.contact.pair import ContactPair
 from vibroimpact.contact.registry import contact_laws
+
+AGAINST = Against(
+    "SciPy's DOP853 on several bodies",
+    "own independent computation",
+    "several bodies",
+    "tests/oracles/moving_bodies.py, in the coordinates of the bodies",
+)
+DROP = Against(
+    "the solver of drops on a rigid plate",
+    "consistency",
+    "several bodies",
+    "another solver of this package; no opponent",
+)
+SYMMETRY = Against(
+    "symmetry of two balls on one plate",
+    "consistency",
+    "several bodies",
+    "each sees the symmetric modes, driven by both; no opponent",
+)
+RIGID = Against(
+    "impulse of rigid bodies",
+    "closed form",
+    "several bodies",
+    "reduced mass; Goldsmith, Impact, 1960, section 2.3",
+)
+
 
 PAIR = ContactPair(2.4264724e9, 0.025, 0.09032078879, 8e7, 0.28)
 COMPLIANT = [law for law in contact_laws().values() if issubclass(law, CompliantLaw)]
@@ -44,27 +71,29 @@ def energy_of(system: vi.System, moved: dict[str, vi.BodyMotion]) -> float:
 
 
 @pytest.mark.parametrize("law", COMPLIANT, ids=lambda law: law.name)
-def test_a_ball_against_a_wall_is_the_drop(law: type[CompliantLaw]) -> None:
+def test_a_ball_against_a_wall_is_the_drop(agrees: Agrees, law: type[CompliantLaw]) -> None:
     """Every law, cut, sticking and with a memory: the same as the solver of rigid bodies, which shares no line but the law's."""
     made = law.example(PAIR)
     row = vi.simulate(drop_on(made, gravity=0.0)).impacts
     ball = vi.MovingBody(mass=0.09032078879, velocity=(0.0, 0.0, -3.0))
     system = vi.System(bodies={"ball": ball, "wall": WALL}, contacts={"at": vi.PointContact(above="ball", below="wall", law=made)})
     response = vi.simulate_system(system, duration=2.0 * float(row["duration_s"][0]))
-    assert response.impacts["max_force_N"] == pytest.approx(row["max_force_N"], rel=1e-8)
-    assert response.impacts["duration_s"] == pytest.approx(row["duration_s"], rel=1e-9)
-    assert response.at(response.end_time)["ball"].velocity[2] == pytest.approx(float(row["separation_speed_m_s"][0]), rel=1e-8)
+    case, impacts = "a ball against a wall, every law that has a force", response.impacts
+    agrees(case, "largest force", impacts["max_force_N"], row["max_force_N"], unit="N", against=DROP, relative=1e-8)
+    agrees(case, "duration", impacts["duration_s"], row["duration_s"], unit="s", against=DROP, relative=1e-9)
+    after = response.at(response.end_time)["ball"].velocity[2]
+    agrees(case, "separation speed", after, row["separation_speed_m_s"][0], unit="m/s", against=DROP, relative=1e-8)
     assert response.energy["closure_relative"] < 1e-9
 
 
 @pytest.mark.parametrize(("number", "gap"), [(3, 0.0), (5, 0.0), (5, 1e-6), (5, 3e-5)])
-def test_newtons_cradle(number: int, gap: float) -> None:
+def test_newtons_cradle(agrees: Agrees, number: int, gap: float) -> None:
     """Balls that touch or nearly do: the last takes most of the momentum, the others the rest (Herrmann and Schmalzle 1981)."""
     system = row_of_balls(number, gap=gap)
     response, expected = vi.simulate_system(system, duration=1.5e-3), integrate(system, 1.5e-3, 5e-6)
     moved = response.at(1.5e-3)
     for name in system.bodies:
-        np.testing.assert_allclose(moved[name].velocity, expected.velocity[name], atol=2e-11)
+        agrees("Newton's cradles", "velocities", moved[name].velocity, expected.velocity[name], unit="m/s", absolute=2e-11)
     assert response.momentum(1.5e-3)[2] == pytest.approx(0.1, rel=1e-12)
     assert response.energy["closure_relative"] < 1e-10
     assert gap or 0.98 < float(moved[f"{number - 1}"].velocity[2]) < 0.9999
@@ -100,19 +129,20 @@ def random_system(seed: int) -> vi.System:
 
 
 @pytest.mark.parametrize("seed", one_in(5, range(25)))
-def test_contacts_that_overlap_at_random(seed: int) -> None:
+def test_contacts_that_overlap_at_random(agrees: Agrees, seed: int) -> None:
     system = random_system(seed)
     response = vi.simulate_system(system, duration=1e-3)
     begun, ended = response.impacts["time_s"], response.impacts["time_s"] + np.nan_to_num(response.impacts["duration_s"], nan=1.0)
     assert (begun[1:, None] < ended[None, :-1]).any()  # or nothing would act together
     expected, moved = integrate(system, 1e-3, 5e-6), response.at(1e-3)
     for name in system.bodies:
-        np.testing.assert_allclose(moved[name].velocity, expected.velocity[name], atol=1e-8)
-        np.testing.assert_allclose(moved[name].angular_velocity, expected.angular_velocity[name], atol=1e-7)
+        body, theirs = moved[name], expected.angular_velocity[name]
+        agrees("random systems, contacts that overlap", "velocities", body.velocity, expected.velocity[name], unit="m/s", absolute=1e-8)
+        agrees("random systems, contacts that overlap", "angular velocities", body.angular_velocity, theirs, unit="rad/s", absolute=1e-7)
     assert response.energy["closure_relative"] < 1e-9
 
 
-def test_mirrored_balls_are_one_of_which_the_plate_feels_twice_the_force() -> None:
+def test_mirrored_balls_are_one_of_which_the_plate_feels_twice_the_force(agrees: Agrees) -> None:
     """By symmetry each sees the symmetric modes driven by both."""
     frequencies, even, odd = np.array([260.0, 900.0, 2100.0, 5000.0]), np.array([2.5, 0.0, -1.5, 2.0]), np.array([0.0, 1.7, 0.0, 0.0])
     plate = vi.MovingBody(mass=math.inf, modes=modes_at(frequencies, 0.01, left=even - odd, right=even + odd))
@@ -125,12 +155,13 @@ def test_mirrored_balls_are_one_of_which_the_plate_feels_twice_the_force() -> No
         first = len(one.impacts[name])
         for side in ("left", "right"):
             here = both.impacts[name][both.impacts["contact"] == side]
-            np.testing.assert_allclose(here, one.impacts[name], rtol=1e-9)
+            quantity = name.rpartition("_")[0].replace("_", " ") if name != "impulse_N_s" else "impulse"
+            agrees("two mirrored balls", quantity, here, one.impacts[name], against=SYMMETRY, relative=1e-9)
         assert len(both.impacts[name]) == 2 * first
     np.testing.assert_allclose(both.at(5e-4)["left"].velocity, one.at(5e-4)["left"].velocity, rtol=1e-9)
 
 
-def test_a_central_impact_on_a_free_plate_is_that_of_the_reduced_mass() -> None:
+def test_a_central_impact_on_a_free_plate_is_that_of_the_reduced_mass(agrees: Agrees) -> None:
     plate = free_beam(0.3, 0.05, 0.008, STEEL, 0, at=0.0)
     ball = vi.MovingBody(mass=0.09032078879, velocity=(0.0, 0.0, -3.0))
     contact = vi.PointContact(above="ball", below="plate", law=HERTZ)
@@ -140,13 +171,14 @@ def test_a_central_impact_on_a_free_plate_is_that_of_the_reduced_mass() -> None:
     row = vi.simulate(replace(problem, sphere=vi.Body(mass=reduced, contact_offset=0.025))).impacts
     for name in ("max_force_N", "max_indentation_m", "duration_s"):
         assert response.impacts[name] == pytest.approx(row[name], rel=1e-10)
-    assert response.impacts["impulse_N_s"][0] == pytest.approx(2.0 * reduced * 3.0, rel=1e-10)
+    impulse = response.impacts["impulse_N_s"]
+    agrees("central impact on a free plate", "impulse", impulse, 2.0 * reduced * 3.0, unit="N s", against=RIGID, relative=1e-10)
     assert response.momentum(1e-3)[2] == pytest.approx(-3.0 * ball.mass, rel=1e-12)
     assert energy_of(response.system, response.at(1e-3)) == pytest.approx(4.5 * ball.mass, rel=1e-9)
 
 
 @pytest.mark.parametrize("place", [0.0, 0.05, 0.12, 0.15])
-def test_an_excentric_impact_on_a_free_beam(place: float) -> None:
+def test_an_excentric_impact_on_a_free_beam(agrees: Agrees, place: float) -> None:
     """Rigid, with rotation: the impulse is (1 + e) v / (1/m + 1/M + x^2/I) (Goldsmith, Impact, 1960, section 2.3)."""
     beam = free_beam(0.3, 0.05, 0.008, STEEL, 0, at=place)
     ball = vi.MovingBody(mass=0.05, velocity=(0.0, 0.0, -2.0))
@@ -155,14 +187,16 @@ def test_an_excentric_impact_on_a_free_beam(place: float) -> None:
     turning = float(np.asarray(beam.inertia)[1, 1])
     impulse = 2.0 * 2.0 / (1.0 / ball.mass + 1.0 / beam.mass + place**2 / turning)
     moved = response.at(1e-3)
-    assert response.impacts["impulse_N_s"] == pytest.approx([impulse], rel=1e-9)
-    np.testing.assert_allclose(moved["beam"].velocity, [0.0, 0.0, -impulse / beam.mass], atol=1e-10)
-    np.testing.assert_allclose(moved["beam"].angular_velocity, [0.0, impulse * place / turning, 0.0], atol=1e-8)
+    case = "eccentric impact on a free rigid beam"
+    agrees(case, "impulse", response.impacts["impulse_N_s"], impulse, unit="N s", against=RIGID, relative=1e-9)
+    agrees(case, "velocity", moved["beam"].velocity, [0.0, 0.0, -impulse / beam.mass], unit="m/s", against=RIGID, absolute=1e-10)
+    turned = [0.0, impulse * place / turning, 0.0]
+    agrees(case, "angular velocity", moved["beam"].angular_velocity, turned, unit="rad/s", against=RIGID, absolute=1e-8)
     np.testing.assert_allclose(moved["ball"].velocity, [0.0, 0.0, -2.0 + impulse / ball.mass], atol=1e-10)
 
 
 @pytest.mark.parametrize("place", [0.0, 0.05, 0.12])
-def test_an_excentric_impact_on_a_free_beam_that_bends(place: float) -> None:
+def test_an_excentric_impact_on_a_free_beam_that_bends(agrees: Agrees, place: float) -> None:
     """Several contacts: the beam comes back to the ball. Momentum, angular momentum and energy hold, and DOP853 finds the same."""
     beam = free_beam(0.3, 0.05, 0.008, STEEL, 6, at=place)
     ball = vi.MovingBody(mass=0.05, velocity=(0.0, 0.0, -2.0))
@@ -171,8 +205,9 @@ def test_an_excentric_impact_on_a_free_beam_that_bends(place: float) -> None:
     response, expected = vi.simulate_system(system, duration=1e-3), integrate(system, 1e-3, 5e-6)
     moved = response.at(np.linspace(0.0, 1e-3, 101))
     for name in ("ball", "beam"):
-        np.testing.assert_allclose(moved[name].velocity[-1], expected.velocity[name], atol=1e-8)
-        np.testing.assert_allclose(moved[name].angular_velocity[-1], expected.angular_velocity[name], atol=1e-7)
+        case, body, theirs = "eccentric impact on a free beam that bends", moved[name], expected.angular_velocity[name]
+        agrees(case, "velocities", body.velocity[-1], expected.velocity[name], unit="m/s", absolute=1e-8)
+        agrees(case, "angular velocities", body.angular_velocity[-1], theirs, unit="rad/s", absolute=1e-7)
     np.testing.assert_allclose(response.momentum(np.linspace(0.0, 1e-3, 101))[:, 2], -0.1, rtol=1e-9)
     turned = moved["beam"].angular_velocity @ np.asarray(beam.inertia)
     np.testing.assert_allclose(

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from agreement import Against, Agrees
 from vibroimpact.materials import Material
 from vibroimpact.meshes.write_abaqus import write_abaqus
 from vibroimpact.meshes.write_nastran import write_nastran
@@ -15,6 +16,14 @@ from vibroimpact.structures.element_kinds import ELEMENT_KINDS
 from vibroimpact.structures.mesh import ElementBlock, Mesh
 
 meshio = pytest.importorskip("meshio")
+
+AGAINST = Against(
+    "meshio's files",
+    "other program",
+    "programs and files",
+    "meshio, which reads what is written here and writes what is read; Schlömer, doi 10.5281/zenodo.1173115",
+)
+
 
 STEEL = Material(density=7850.0, youngs_modulus=210e9, poissons_ratio=0.3, name="steel")
 # meshio has the order of VTK, as the element kinds have
@@ -43,7 +52,7 @@ def bent(kind: str) -> Mesh:
 
 @pytest.mark.parametrize("kind", NAMES)
 @pytest.mark.parametrize("suffix", ["bdf", "inp", "vtu"])
-def test_elements(kind: str, suffix: str, tmp_path: Path) -> None:
+def test_elements(agrees: Agrees, kind: str, suffix: str, tmp_path: Path) -> None:
     mesh, file = bent(kind), tmp_path / f"mesh.{suffix}"
     written = kind if suffix == "vtu" or kind != "hex27" else "hex20"
     if suffix == "bdf":
@@ -56,7 +65,8 @@ def test_elements(kind: str, suffix: str, tmp_path: Path) -> None:
     (cells,) = read.cells
     assert cells.type == NAMES[written]
     expected = measures(written, mesh.nodes, mesh.blocks[0].connectivity[:, : len(ELEMENT_KINDS[written].reference)])
-    np.testing.assert_allclose(measures(written, read.points, cells.data), expected, rtol=1e-11)
+    found = measures(written, read.points, cells.data)
+    agrees("five kinds of elements, Nastran, Abaqus, VTK", "volume and its second moments", found, expected, relative=1e-11)
     if suffix == "vtu":
         np.testing.assert_array_equal(read.point_data["height_m"], mesh.nodes[:, 2])
         np.testing.assert_array_equal(read.point_data["place_m"], mesh.nodes)
@@ -85,7 +95,7 @@ def test_plates(tmp_path: Path) -> None:
             np.testing.assert_allclose((shell[:, :2] - shell[0, :2]) / [1, 1.5], VTK_QUAD9[: len(shell)], atol=1e-12)
 
 
-def test_a_mesh_of_meshio(tmp_path: Path) -> None:
+def test_a_mesh_of_meshio(agrees: Agrees, tmp_path: Path) -> None:
     """What meshio writes is read: two tetrahedra in each of its formats."""
     from vibroimpact.meshes.mesh_file import read_mesh
 
@@ -100,4 +110,5 @@ def test_a_mesh_of_meshio(tmp_path: Path) -> None:
         file = tmp_path / f"mesh.{suffix}"
         meshio.Mesh(points, [("tetra", tets)]).write(file, **options)
         read = read_mesh(file)
-        assert measures("tet4", read.nodes, read.blocks[0].connectivity)[0] == pytest.approx(1 / 6 + 1 / 3, rel=1e-12)
+        found = measures("tet4", read.nodes, read.blocks[0].connectivity)[0]
+        agrees("two tetrahedra, written by it", "volume", found, 1 / 6 + 1 / 3, unit="m³", relative=1e-12)

@@ -6,10 +6,17 @@ form of its three stages. Gravity acts in the contact, which ends at zero overla
 
 from __future__ import annotations
 
-import numpy as np
 import pytest
 
 import vibroimpact as vi
+from agreement import Against, Agrees
+
+AGAINST = Against(
+    "MFiX-DEM, DEM01",
+    "published computation",
+    "flight, bounces and shaken plates",
+    "Garg and others 2012, Powder Technol. 220, 122, doi 10.1016/j.powtec.2011.09.019",
+)
 
 
 @pytest.fixture(scope="module")
@@ -24,23 +31,23 @@ def response() -> vi.Response:
     return vi.simulate(vi.read_case(case))
 
 
-def test_positions(response: vi.Response) -> None:
+def test_positions(agrees: Agrees, response: vi.Response) -> None:
     heights = response.at([0.14083519, 0.30514291, 0.35062094])["position_m"]
-    np.testing.assert_allclose(heights, [0.40274475, 0.04766252, 0.00593876], rtol=1e-6)
+    agrees("DEM01", "position in flight and in contact", heights, [0.40274475, 0.04766252, 0.00593876], unit="m", relative=1e-6)
 
 
-def test_events(response: vi.Response) -> None:
+def test_events(agrees: Agrees, response: vi.Response) -> None:
     row = {name: column[0] for name, column in response.impacts.items()}
-    assert row["time_s"] == pytest.approx(0.285617, abs=5e-7)
-    assert row["approach_speed_m_s"] == pytest.approx(2.800950, rel=1e-6)
-    assert 0.1 - row["max_indentation_m"] == pytest.approx(0.001624, abs=5e-7)
-    assert row["time_s"] + row["duration_s"] == pytest.approx(0.397435, abs=5e-7)
-    assert row["separation_speed_m_s"] == pytest.approx(2.475443, rel=1e-6)
-    assert row["rebound_height_m"] == pytest.approx(0.412432, abs=5e-7)
+    agrees("DEM01", "time of touch", row["time_s"], 0.285617, unit="s", absolute=5e-7)
+    agrees("DEM01", "approach speed", row["approach_speed_m_s"], 2.800950, unit="m/s", relative=1e-6)
+    agrees("DEM01", "lowest point", 0.1 - row["max_indentation_m"], 0.001624, unit="m", absolute=5e-7)
+    agrees("DEM01", "time of release", row["time_s"] + row["duration_s"], 0.397435, unit="s", absolute=5e-7)
+    agrees("DEM01", "separation speed", row["separation_speed_m_s"], 2.475443, unit="m/s", relative=1e-6)
+    agrees("DEM01", "apex", row["rebound_height_m"], 0.412432, unit="m", absolute=5e-7)
     assert response.energy["closure_relative"] <= 1e-9
 
 
-def test_closed_form_to_the_tolerance() -> None:
+def test_closed_form_to_the_tolerance(agrees: Agrees) -> None:
     """Damped oscillator without gravity: the restitution asked is the one achieved."""
     for asked in (0.05, 0.3, 0.9, 1.0):
         case = {
@@ -50,4 +57,5 @@ def test_closed_form_to_the_tolerance() -> None:
             "contact": {"law": "linear-spring-dashpot", "stiffness": 1e4, "restitution": asked},
             "run": {"impacts": 1},
         }
-        assert vi.simulate(vi.read_case(case)).impacts["restitution_achieved"][0] == pytest.approx(asked, rel=1e-8)
+        found = vi.simulate(vi.read_case(case)).impacts["restitution_achieved"]
+        agrees("linear spring and dashpot without gravity", "restitution", found, asked, relative=1e-8)

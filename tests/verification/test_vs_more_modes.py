@@ -13,8 +13,17 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
+from agreement import Against, Agrees
 from support import plain_case
 from vibroimpact.structures.modal_model import ModalBasis
+
+AGAINST = Against(
+    "the same plate with 120 or 400 modes, other meshes and elements",
+    "consistency",
+    "impacts on vibrating bodies",
+    "convergence in the modes kept; no opponent",
+)
+
 
 LAWS = {"hertz": {}, "adams-impact": {"damping_max": 179.75, "full_damping_penetration": 1e-4}}
 
@@ -56,12 +65,12 @@ def force(problem: vi.Problem) -> float:
     return float(vi.simulate(problem).impacts["max_force_N"][0])
 
 
-def check(whole: vi.Problem, bounds: dict[int, float], plain: dict[int, float]) -> None:
+def check(agrees: Agrees, case: str, whole: vi.Problem, bounds: dict[int, float], plain: dict[int, float]) -> None:
     reference = force(whole)
     for number, bound in bounds.items():
         response = vi.simulate(with_modes(whole, number))
         error = abs(float(response.impacts["max_force_N"][0]) / reference - 1.0)
-        assert error < bound, number
+        agrees(f"{case}, {number} modes", "largest force", response.impacts["max_force_N"], reference, unit="N", relative=bound)
         assert response.truncation["plate"] > 0.5 * error, number
     for number, bound in plain.items():
         response = vi.simulate(with_modes(whole, number, corrected=False))
@@ -72,30 +81,30 @@ def check(whole: vi.Problem, bounds: dict[int, float], plain: dict[int, float]) 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("law", LAWS)
-def test_a_coarse_mesh(law: str) -> None:
+def test_a_coarse_mesh(agrees: Agrees, law: str) -> None:
     """120 modes on elements of 80 mm stand for 400."""
-    check(problem(law, 120, 0.08), {20: 0.03, 60: 0.004}, {20: 0.06, 60: 0.024})
+    check(agrees, "elements of 80 mm", problem(law, 120, 0.08), {20: 0.03, 60: 0.004}, {20: 0.06, 60: 0.024})
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("sphere", [0, 20])
 @pytest.mark.parametrize("law", LAWS)
-def test_400_modes(law: str, sphere: int) -> None:
+def test_400_modes(agrees: Agrees, law: str, sphere: int) -> None:
     corrected, plain = {20: 0.035, 60: 0.0045, 120: 0.0025, 200: 0.0012}, {20: 0.068, 60: 0.032, 120: 0.014, 200: 0.0078}
-    check(problem(law, 400, sphere=sphere), corrected, plain)
+    check(agrees, "against 400 modes", problem(law, 400, sphere=sphere), corrected, plain)
 
 
 @pytest.mark.slow
-def test_the_mesh_does_not_matter() -> None:
+def test_the_mesh_does_not_matter(agrees: Agrees) -> None:
     """Plate elements and bricks, 60 modes: within 1 % in force."""
     forces = [force(problem("hertz", 60, size, element)) for size, element in ((0.08, "plate"), (0.03, "solid"))]
-    assert max(forces) / min(forces) < 1.01
+    agrees("60 modes, bricks against plate elements", "largest force", max(forces), min(forces), unit="N", relative=0.01)
 
 
 @pytest.mark.slow
-def test_finer_meshes_agree_better() -> None:
+def test_finer_meshes_agree_better(agrees: Agrees) -> None:
     kinds = ((0.08, "plate"), (0.04, "plate"), (0.02, "plate"), (0.02, "solid"))
     forces = np.array([force(problem("hertz", 120, size, element)) for size, element in kinds])
     assert forces.max() / forces.min() < 1.01
-    assert forces[1:3] == pytest.approx(forces[2], rel=1e-3)
-    assert forces[3] == pytest.approx(forces[2], rel=4e-3)
+    agrees("120 modes, elements of 40 mm against 20 mm", "largest force", forces[1], forces[2], unit="N", relative=1e-3)
+    agrees("120 modes, bricks against plate elements", "largest force", forces[3], forces[2], unit="N", relative=4e-3)

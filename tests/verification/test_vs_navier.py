@@ -14,6 +14,7 @@ import pytest
 from numpy.polynomial import legendre
 from scipy.linalg import eigh
 
+from agreement import Against, Agrees
 from support import one_in
 from vibroimpact.bodies.elastic import plate_recipe
 from vibroimpact.materials import Material, find_material
@@ -24,6 +25,26 @@ from vibroimpact.structures.rectangle import Disc
 from vibroimpact.structures.structure import Structure, plate_structure, solid_structure
 from vibroimpact.structures.supports.edge import EDGES, Edge
 from vibroimpact.structures.supports.support import Support, held_by
+
+AGAINST = Against(
+    "Navier's and Mindlin's simply supported plates",
+    "closed form",
+    "plates, spheres and modes",
+    "Navier; Mindlin 1951, J. Appl. Mech. 18, 31",
+)
+EXACT = Against(
+    "elasticity in three dimensions, simply supported plates",
+    "own independent computation",
+    "plates, spheres and modes",
+    "Srinivas, Joga Rao and Rao 1970, J. Sound Vib. 12, 187; Legendre's polynomials over the thickness",
+)
+UPPER = Against(
+    "Leissa's square plates, upper bounds by Ritz's method",
+    "published computation",
+    "plates, spheres and modes",
+    "Leissa 1969, NASA SP-160; 1973, J. Sound Vib. 31, 257",
+)
+
 
 STEEL = find_material("steel-paper")
 SIZE = (0.52, 0.42, 0.008)
@@ -95,45 +116,47 @@ def frequencies(structure: Structure, supports: tuple[Support, ...], number: int
 
 
 @pytest.mark.parametrize("size", one_in(4, [(SIZE,), ((0.5, 0.5, 0.02),), ((2.0, 0.2, 0.004),), ((0.3, 0.4, 0.0005),)]))
-def test_thick_plates(size: tuple[float, float, float]) -> None:
+def test_thick_plates(agrees: Agrees, size: tuple[float, float, float]) -> None:
     """30 modes within 1e-4."""
     mesh = plate_mesh(size[:2], min(size[:2]) / (10 if size[0] < 1 else 4))
-    np.testing.assert_allclose(frequencies(plate_structure(mesh, STEEL, size[2]), SIMPLY, 30), thick(size, STEEL, 30), rtol=1e-4)
+    found = frequencies(plate_structure(mesh, STEEL, size[2]), SIMPLY, 30)
+    case = f"plate elements, {1e3 * size[0]:g} by {1e3 * size[1]:g} by {1e3 * size[2]:g} mm"
+    agrees(case, "frequencies", found, thick(size, STEEL, 30), unit="Hz", relative=1e-4)
 
 
-def test_a_block_of_plate_elements() -> None:
+def test_a_block_of_plate_elements(agrees: Agrees) -> None:
     """A plate as thick as a third of its side; among its lowest modes are several in its plane."""
     size = (0.3, 0.36, 0.1)
-    np.testing.assert_allclose(
-        frequencies(plate_structure(plate_mesh(size[:2], 0.06), STEEL, size[2]), SIMPLY, 20), thick(size, STEEL, 20), rtol=1e-4
-    )
+    found = frequencies(plate_structure(plate_mesh(size[:2], 0.06), STEEL, size[2]), SIMPLY, 20)
+    agrees("plate elements, as thick as a third of the side", "frequencies", found, thick(size, STEEL, 20), unit="Hz", relative=1e-4)
 
 
 @pytest.mark.parametrize("size", [SIZE, (0.5, 0.5, 0.02)])
 @pytest.mark.slow
-def test_thin_plates(size: tuple[float, float, float]) -> None:
+def test_thin_plates(agrees: Agrees, size: tuple[float, float, float]) -> None:
     """20 modes within 1e-4."""
     structure = plate_structure(plate_mesh(size[:2], min(size[:2]) / 10), STEEL, size[2], "thin")
-    np.testing.assert_allclose(frequencies(structure, SIMPLY, 20), thin(size, STEEL, 20), rtol=1e-4)
+    agrees("thin elements", "frequencies", frequencies(structure, SIMPLY, 20), thin(size, STEEL, 20), unit="Hz", relative=1e-4)
 
 
 @pytest.mark.slow
-def test_a_mesh_that_follows_discs() -> None:
+def test_a_mesh_that_follows_discs(agrees: Agrees) -> None:
     """Elements bent around discs: 15 modes within 1e-4."""
     discs = [Disc(x, y, 0.02) for x in (-0.2292, 0.2292) for y in (-0.18, 0.18)] + [Disc(0.03, 0.02, 0.002)]
     mesh = plate_mesh(SIZE[:2], 0.06, discs)
-    np.testing.assert_allclose(frequencies(plate_structure(mesh, STEEL, SIZE[2]), SIMPLY, 15), thick(SIZE, STEEL, 15), rtol=1e-4)
+    found = frequencies(plate_structure(mesh, STEEL, SIZE[2]), SIMPLY, 15)
+    agrees("plate elements bent around discs", "frequencies", found, thick(SIZE, STEEL, 15), unit="Hz", relative=1e-4)
 
 
 @pytest.mark.parametrize("element", one_in(2, ["plate", "solid"]))
-def test_the_mesh_that_is_made_unless_told_otherwise(element: str) -> None:
+def test_the_mesh_that_is_made_unless_told_otherwise(agrees: Agrees, element: str) -> None:
     """10 modes of the mesh that a case makes: plate elements within 1e-4 of Mindlin's, bricks within 0.5 % of the exact ones."""
     model = computed_model(plate_recipe(SIZE, STEEL, Reduction(modes=10), SIMPLY, element))
     if element == "plate":
-        np.testing.assert_allclose(model.frequencies, thick(SIZE, STEEL, 10), rtol=1e-4)
+        agrees("plate elements, default mesh", "frequencies", model.frequencies, thick(SIZE, STEEL, 10), unit="Hz", relative=1e-4)
     else:
         exact = sorted(three_dimensional(SIZE, STEEL, m, n) for m in range(1, 7) for n in range(1, 7))[:10]
-        np.testing.assert_allclose(model.frequencies, exact, rtol=5e-3)
+        agrees("bricks, default mesh", "frequencies", model.frequencies, exact, unit="Hz", against=EXACT, relative=5e-3)
 
 
 @pytest.mark.slow
@@ -151,13 +174,13 @@ def test_bricks_of_a_thick_plate() -> None:
     [("hex20", 0.02), pytest.param("hex27", 0.02, marks=pytest.mark.slow), pytest.param("tet10", 0.0125, marks=pytest.mark.slow)],
 )
 @pytest.mark.slow
-def test_solids_and_plate_elements_agree(kind: str, element_size: float) -> None:
+def test_solids_and_plate_elements_agree(agrees: Agrees, kind: str, element_size: float) -> None:
     """520 x 420 x 8 mm, simply supported: ten modes within 0.5 % of one another and of the exact ones."""
     exact = sorted(three_dimensional(SIZE, STEEL, m, n) for m in range(1, 7) for n in range(1, 7))[:10]
     flat = frequencies(plate_structure(plate_mesh(SIZE[:2], 0.07), STEEL, SIZE[2]), SIMPLY, 10)
     solid = frequencies(solid_structure(solid_plate_mesh(SIZE, element_size, 1, kind), STEEL), SIMPLY, 10)
-    np.testing.assert_allclose(flat, exact, rtol=5e-4)
-    np.testing.assert_allclose(solid, exact, rtol=5e-3)
+    agrees("plate elements", "frequencies", flat, exact, unit="Hz", against=EXACT, relative=5e-4)
+    agrees(f"{kind}", "frequencies", solid, exact, unit="Hz", against=EXACT, relative=5e-3)
     np.testing.assert_allclose(solid, flat, rtol=5e-3)
 
 
@@ -193,13 +216,15 @@ LEISSA = {
 
 
 @pytest.mark.parametrize("name", LEISSA)
-def test_leissas_square_plates(name: str) -> None:
+def test_leissas_square_plates(agrees: Agrees, name: str) -> None:
     """His numbers are upper bounds, from few terms of Ritz's method: ours lie below them, by less than 1 %."""
     supports, expected = LEISSA[name]
     height = 0.002
     rigidity = STEEL.youngs_modulus * height**3 / (12 * (1 - STEEL.poissons_ratio**2))
     found = frequencies(plate_structure(plate_mesh((1.0, 1.0), 0.2), STEEL, height), supports, 5)
-    ratio = found * 2 * np.pi * np.sqrt(STEEL.density * height / rigidity) / expected
+    ours = found * 2 * np.pi * np.sqrt(STEEL.density * height / rigidity)
+    agrees(f"thin square plates, {name}", "frequency parameter of Leissa", ours, expected, against=UPPER, relative=0.01)
+    ratio = ours / expected
     assert (ratio < 1.0002).all()
     assert (ratio > 0.99).all()
 

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
+from agreement import Against, Agrees
 from oracles.modal_integration import Drop, Touch
 from support import one_in
 from vibrating import STIFFNESS, drop_on, modes_of, random_modes
@@ -23,6 +24,20 @@ from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
 from vibroimpact.contact.laws.thornton import Thornton
 from vibroimpact.contact.pair import ContactPair
 from vibroimpact.contact.registry import contact_laws
+
+AGAINST = Against(
+    "two drops beside the first",
+    "consistency",
+    "impacts on vibrating bodies",
+    "differences of two runs on either side; no opponent",
+)
+DOP853 = Against(
+    "SciPy's DOP853, two runs side by side",
+    "own independent computation",
+    "impacts on vibrating bodies",
+    "tests/oracles/modal_integration.py, at 1e-12",
+)
+
 
 PAIR = ContactPair(2.4264724e9, 0.025, 0.09032078879, 8e7, 0.28)
 COMPLIANT = [law for law in contact_laws().values() if issubclass(law, CompliantLaw)]
@@ -42,12 +57,12 @@ def seen(problem: vi.Problem, part: float = 1e-8) -> np.ndarray:
 
 
 @pytest.mark.parametrize("law", one_in(6, COMPLIANT, lambda law: law.name))
-def test_every_law(law: type[CompliantLaw]) -> None:
+def test_every_law(agrees: Agrees, law: type[CompliantLaw]) -> None:
     """Also where the force jumps, at touch, at release or as it turns, and where the law remembers."""
     problem = drop_on(law.example(PAIR), RICH, impacts=2, tolerance=1e-12)
     found = vi.simulate(problem).impacts["sensitivity"]
     assert found[0] > 0.9
-    np.testing.assert_allclose(found, seen(problem), rtol=5e-3)
+    agrees("every law, two impacts on a rich plate", "sensitivity", found, seen(problem), relative=5e-3)
 
 
 @pytest.mark.parametrize(
@@ -63,18 +78,19 @@ def test_every_law(law: type[CompliantLaw]) -> None:
     ],
     ids=["sphere", "sphere-outside", "local", "all", "height", "dent", "fresh"],
 )
-def test_all_that_vibrates(law: CompliantLaw, more: dict) -> None:
+def test_all_that_vibrates(agrees: Agrees, law: CompliantLaw, more: dict) -> None:
     problem = drop_on(law, RICH, impacts=2, tolerance=1e-12, **more)
     # ten times as far apart: two drops of which each is integrated to 1e-11 are told apart to 1e-3 and better
-    np.testing.assert_allclose(vi.simulate(problem).impacts["sensitivity"], seen(problem, 1e-7), rtol=2e-3)
+    found = vi.simulate(problem).impacts["sensitivity"]
+    agrees("vibrating spheres, local elements, dents", "sensitivity", found, seen(problem, 1e-7), relative=2e-3)
 
 
-def test_micro_impacts() -> None:
+def test_micro_impacts(agrees: Agrees) -> None:
     """A plate that kicks the ball again: several contacts of one impact."""
     problem = drop_on(Hertz(stiffness=STIFFNESS), modes_of([260.0, 2100.0], [2.5, 1.5]), speed=1.0, impacts=2, tolerance=1e-11)
     response = vi.simulate(problem)
     assert response.impacts["contacts"].max() >= 2
-    np.testing.assert_allclose(response.impacts["sensitivity"], seen(problem), rtol=2e-3)
+    agrees("a plate that kicks the ball again", "sensitivity", response.impacts["sensitivity"], seen(problem), relative=2e-3)
 
 
 def test_a_batch_is_its_drops() -> None:
@@ -85,7 +101,7 @@ def test_a_batch_is_its_drops() -> None:
 
 
 @pytest.mark.parametrize("law", one_in(2, [LOSSY, Hertz(stiffness=STIFFNESS)], lambda law: law.name))
-def test_dop853(law: CompliantLaw) -> None:
+def test_dop853(agrees: Agrees, law: CompliantLaw) -> None:
     """The growth over three impacts, from an integration that shares nothing with the program."""
     plate, speed, part = modes_of([180.0, 950.0], [1.8, -1.2]), 0.6, 1e-6
     problem = drop_on(law, plate, speed=speed, impacts=3, tolerance=1e-11)
@@ -106,7 +122,7 @@ def test_dop853(law: CompliantLaw) -> None:
     ]
     largest = np.abs(growth).max(axis=1)
     assert largest[-1] > 10.0
-    assert found["sensitivity"][0] == pytest.approx(max(1.0, largest[0]), rel=1e-4)
+    agrees("first of three impacts", "sensitivity", found["sensitivity"][0], max(1.0, largest[0]), against=DOP853, relative=1e-4)
     # the speed at which the surfaces meet is not among what the oracle tells: it may have grown more
     assert np.all(found["sensitivity"] > largest * (1.0 - 1e-3))
     assert found["sensitivity"][-1] < 3.0 * largest[-1]

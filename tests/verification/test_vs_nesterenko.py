@@ -12,10 +12,25 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
+from agreement import Against, Agrees
 from moving import row_of_balls
 from oracles.moving_bodies import integrate
 from support import one_in
 from vibroimpact.contact.laws.hertz import Hertz
+
+AGAINST = Against(
+    "Nesterenko's solitary wave",
+    "closed form",
+    "several bodies",
+    "Nesterenko 1984, J. Appl. Mech. Tech. Phys. 24, 733, in the limit of long waves",
+)
+DOP853 = Against(
+    "SciPy's DOP853 on a row of beads",
+    "own independent computation",
+    "several bodies",
+    "tests/oracles/moving_bodies.py",
+)
+
 
 MODULUS, RATIO, DENSITY, RADIUS = 210e9, 0.3, 7850.0, 2.38e-3
 MASS = 4.0 / 3.0 * np.pi * RADIUS**3 * DENSITY
@@ -28,13 +43,14 @@ def chain() -> vi.SystemResponse:
     return vi.simulate_system(row_of_balls(60, 0.5, mass=MASS, law=Hertz(stiffness=STIFFNESS)), duration=5e-4)
 
 
-def test_speed_of_the_wave(chain: vi.SystemResponse) -> None:
+def test_speed_of_the_wave(agrees: Agrees, chain: vi.SystemResponse) -> None:
     peaks = chain.impacts["time_of_max_force_s"]  # contacts begin in their order
     speed = 2.0 * RADIUS * 15.0 / (peaks[40] - peaks[25])
     moved = chain.at(np.linspace(peaks[32], peaks[34], 401))
     fastest = float(moved["33"].velocity[:, 2].max())
     wave = np.sqrt(2.0 * MODULUS / (np.pi * DENSITY * (1.0 - RATIO**2)))
-    assert speed == pytest.approx((16.0 / 25.0) ** 0.2 * wave**0.8 * fastest**0.2, rel=0.01)
+    expected = (16.0 / 25.0) ** 0.2 * wave**0.8 * fastest**0.2
+    agrees("sixty steel beads", "speed of the wave", speed, expected, unit="m/s", relative=0.01)
 
 
 def test_it_does_not_change_its_shape(chain: vi.SystemResponse) -> None:
@@ -47,11 +63,11 @@ def test_nothing_is_lost(chain: vi.SystemResponse) -> None:
     np.testing.assert_allclose(chain.momentum(np.linspace(0.0, 5e-4, 51))[:, 2], 0.5 * MASS, rtol=1e-12)
 
 
-def test_every_bead_moves_as_dop853_moves_it() -> None:
+def test_every_bead_moves_as_dop853_moves_it(agrees: Agrees) -> None:
     system = replace(row_of_balls(10, 0.5, mass=MASS, law=Hertz(stiffness=STIFFNESS)), tolerance=1e-11)
     expected, moved = integrate(system, 1e-4, 1e-6), vi.simulate_system(system, duration=1e-4).at(1e-4)
     for name in system.bodies:
-        np.testing.assert_allclose(moved[name].velocity, expected.velocity[name], atol=1e-9)
+        agrees("ten beads", "velocities", moved[name].velocity, expected.velocity[name], unit="m/s", against=DOP853, absolute=1e-9)
 
 
 @pytest.mark.parametrize("number", one_in(4, range(8, 17)))

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
+from agreement import Against, Agrees
 from told import MASS, RADIUS, ROCK, STEEL, STIFFNESS, told, told_case
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.contact.pair import ContactPair, effective_modulus, effective_shear_modulus
@@ -25,10 +26,23 @@ from vibroimpact.exporting.export_format import find_export_format
 
 pytestmark = pytest.mark.peers
 
+LAMMPS = Against(
+    "LAMMPS, running exported drops",
+    "other program",
+    "programs and files",
+    "LAMMPS 22 Jul 2025, doi 10.1016/j.cpc.2021.108171; velocity Verlet, 20,000 steps a contact",
+)
+YADE = Against("YADE, running exported drops", "other program", "programs and files", "YADE 2023.02a; leapfrog, 10,000 steps a contact")
+EXUDYN = Against(
+    "EXUDYN, running exported drops", "other program", "programs and files", "EXUDYN 1.13 or newer; Dormand and Prince's method at 1e-10"
+)
+MUJOCO = Against("MuJoCo, running exported drops", "other program", "programs and files", "MuJoCo 3; Euler steps, 1,000 a contact")
+
 PAIR = ContactPair(effective_modulus=2.4265e9, effective_radius=0.025, effective_mass=MASS, poissons_ratio=0.28)
 LINE = re.compile(r"impact (\d+): approach speed (\S+) m/s, restitution (\S+), rebound height (\S+) m, largest force (\S+) N")
 MOTION = re.compile(r"impact (\d+): velocity along the plate (\S+) (\S+) m/s, spin (\S+) (\S+) (\S+) rad/s")
 COLUMNS = ("approach_speed_m_s", "restitution_achieved", "rebound_height_m", "max_force_N")
+QUANTITIES = dict(zip(COLUMNS, ("approach speed", "restitution", "height of rebounds", "largest force"), strict=True))
 AFTER = ("separation_velocity_x_m_s", "separation_velocity_y_m_s", "spin_x_after_rad_s", "spin_y_after_rad_s", "spin_z_after_rad_s")
 
 
@@ -54,11 +68,19 @@ def run(drop: Drop, program: str, folder: Path, command: list[str]) -> dict[str,
     }
 
 
-def assert_agree(found: dict[str, np.ndarray], drop: Drop, tolerance: float, columns: tuple[str, ...] = COLUMNS) -> None:
+def compare(
+    agrees: Agrees,
+    against: Against,
+    case: str,
+    found: dict[str, np.ndarray],
+    drop: Drop,
+    tolerance: float,
+    columns: tuple[str, ...] = COLUMNS,
+) -> None:
     for column in columns:
         if column == "restitution_achieved" and drop.laws[0].contact_end == "zero-force":
             continue  # told at zero force, and by the program a little later, at zero overlap; heights tell the same
-        np.testing.assert_allclose(found[column], drop.impacts[column], rtol=tolerance, err_msg=column)
+        agrees(case, QUANTITIES[column], drop.impacts[column], found[column], against=against, relative=tolerance)
 
 
 SHORT = COLUMNS[:3]  # without the force
@@ -78,12 +100,15 @@ def oblique(friction: str, coefficient: float, name: str = "hertz", **changes: A
     return told(normal, oblique=vi.Oblique(friction=law, **given))
 
 
-def assert_moves_alike(found: dict[str, np.ndarray], drop: Drop, tolerance: float, impacts: int = 3) -> None:
+def compare_motion(
+    agrees: Agrees, against: Against, case: str, found: dict[str, np.ndarray], drop: Drop, tolerance: float, impacts: int = 3
+) -> None:
     """Velocities of the centre and of the surface after each impact; the tolerance is that of the slip at the start."""
     for column in found.keys() & set(AFTER):
         scale = RADIUS if "spin" in column else 1.0
         theirs, ours = scale * found[column][:impacts], scale * drop.impacts[column][:impacts]
-        np.testing.assert_allclose(theirs, ours, atol=tolerance * SLIP, err_msg=column)
+        quantity = "velocity of the surface by spin after" if "spin" in column else "velocity along the plate after"
+        agrees(case, quantity, ours, theirs, unit="m/s", against=against, absolute=tolerance * SLIP)
 
 
 @pytest.fixture(scope="module")
@@ -135,66 +160,68 @@ class TestLammps:
         return run(drop, "lammps", folder, [str(Path(sys.executable).parent / "lmp"), "-log", "none", "-in"])
 
     @pytest.mark.parametrize("name", EXACT_IN_LAMMPS)
-    def test_its_own_laws(self, name: str, tmp_path: Path) -> None:
+    def test_its_own_laws(self, agrees: Agrees, name: str, tmp_path: Path) -> None:
         drop = told(EXACT_IN_LAMMPS[name])
         assert find_export_format("lammps").notes(drop) == []
-        assert_agree(self.run(drop, tmp_path), drop, 1e-4)
+        compare(agrees, LAMMPS, "laws of its own", self.run(drop, tmp_path), drop, 1e-4)
 
-    def test_speed_at_the_start(self, tmp_path: Path) -> None:
+    def test_speed_at_the_start(self, agrees: Agrees, tmp_path: Path) -> None:
         drop = told(law("tsuji", restitution=0.7), speed=0.5)
-        assert_agree(self.run(drop, tmp_path), drop, 1e-4)
+        compare(agrees, LAMMPS, "a speed at the start", self.run(drop, tmp_path), drop, 1e-4)
 
     @pytest.mark.parametrize("name", ["hunt-crossley", "lankarani-nikravesh", "jankowski", "adams-impact"])
-    def test_restitution_of_other_laws(self, name: str, tmp_path: Path) -> None:
+    def test_restitution_of_other_laws(self, agrees: Agrees, name: str, tmp_path: Path) -> None:
         drop = told(EXACT_IN_EXUDYN[name], height=4.0, number=1)
-        assert_agree(self.run(drop, tmp_path), drop, 3e-4, SHORT)
+        compare(agrees, LAMMPS, "other laws, by a calibrated one", self.run(drop, tmp_path), drop, 3e-4, SHORT)
 
-    def test_a_function_of_the_approach_speed(self, calibrated: Drop, tmp_path: Path) -> None:
+    def test_a_function_of_the_approach_speed(self, agrees: Agrees, calibrated: Drop, tmp_path: Path) -> None:
         """Whose values at the impacts of this drop it gets."""
-        assert_agree(self.run(calibrated, tmp_path), calibrated, 5e-4, SHORT)
+        compare(agrees, LAMMPS, "a function of the approach speed", self.run(calibrated, tmp_path), calibrated, 5e-4, SHORT)
 
-    def test_the_papers_drop(self, tmp_path: Path) -> None:
+    def test_the_papers_drop(self, agrees: Agrees, tmp_path: Path) -> None:
         drop = told_case("paper:type1-variable")
-        assert_agree(self.run(drop, tmp_path), drop, 3e-4, SHORT)
+        compare(agrees, LAMMPS, "the paper's drop", self.run(drop, tmp_path), drop, 3e-4, SHORT)
 
     @pytest.mark.parametrize("friction", ["mindlin", "mindlin-rescale", "mindlin-force"])
-    def test_its_own_friction(self, friction: str, tmp_path: Path) -> None:
+    def test_its_own_friction(self, agrees: Agrees, friction: str, tmp_path: Path) -> None:
         drop = oblique(friction, SLIDING)
         assert find_export_format("lammps").notes(drop) == []
         found = self.run(drop, tmp_path)
-        assert_moves_alike(found, drop, 1e-8, impacts=1)
-        assert_moves_alike(found, drop, 4e-4)  # whose later impacts stick at last
+        compare_motion(agrees, LAMMPS, "friction of its own, sliding", found, drop, 1e-8, impacts=1)
+        compare_motion(agrees, LAMMPS, "friction of its own", found, drop, 4e-4)  # whose later impacts stick at last
         drop = oblique(friction, STICKING)
-        assert_moves_alike(self.run(drop, tmp_path), drop, 4e-4)
+        compare_motion(agrees, LAMMPS, "friction of its own", self.run(drop, tmp_path), drop, 4e-4)
 
-    def test_friction_under_a_spring_that_is_not_the_materials(self, tmp_path: Path) -> None:
+    def test_friction_under_a_spring_that_is_not_the_materials(self, agrees: Agrees, tmp_path: Path) -> None:
         """The radius of the contact is then not that of the overlap."""
         drop = oblique("mindlin", STICKING, stiffness=3.0 * FRICTION_PAIR.hertz_stiffness)
-        assert_moves_alike(self.run(drop, tmp_path), drop, 4e-4)
+        compare_motion(agrees, LAMMPS, "friction under another spring", self.run(drop, tmp_path), drop, 4e-4)
 
-    def test_friction_across_gravity_and_spin_about_the_normal(self, tmp_path: Path) -> None:
+    def test_friction_across_gravity_and_spin_about_the_normal(self, agrees: Agrees, tmp_path: Path) -> None:
         drop = oblique("mindlin-force", STICKING, velocity=(0.3, -0.4), spin=(3.0, -8.0, 50.0), gravity=(0.5, 0.2))
         assert "leaves the spin about the normal" in " ".join(find_export_format("lammps").notes(drop))
         found = self.run(drop, tmp_path)
         assert found.pop("spin_z_after_rad_s").tolist() == [50.0] * 3
-        assert_moves_alike(found, drop, 1e-3)
+        compare_motion(agrees, LAMMPS, "friction across gravity, spin about the normal", found, drop, 1e-3)
 
-    def test_friction_that_stands_for_another(self, tmp_path: Path) -> None:
+    def test_friction_that_stands_for_another(self, agrees: Agrees, tmp_path: Path) -> None:
         drop = oblique("mdr", STICKING)
         assert "its mindlin-rescale stands for it" in " ".join(find_export_format("lammps").notes(drop))
-        assert_moves_alike(self.run(drop, tmp_path), oblique("mindlin-rescale", STICKING), 4e-4)
+        compare_motion(
+            agrees, LAMMPS, "friction that stands for another", self.run(drop, tmp_path), oblique("mindlin-rescale", STICKING), 4e-4
+        )
 
     @pytest.mark.parametrize("name", ["tsuji", "hunt-crossley"])
-    def test_friction_with_damping(self, name: str, tmp_path: Path) -> None:
+    def test_friction_with_damping(self, agrees: Agrees, name: str, tmp_path: Path) -> None:
         """Friction follows its pull at the end of a contact; and the radius of the contact is that of the overlap."""
         assert "takes the radius of the contact from the overlap" in " ".join(
             find_export_format("lammps").notes(oblique("mindlin", 0.1, name))
         )
         drop = oblique("mindlin", SLIDING, name)
-        assert_moves_alike(self.run(drop, tmp_path), drop, 0.008, impacts=1)
+        compare_motion(agrees, LAMMPS, "friction with damping, sliding", self.run(drop, tmp_path), drop, 0.008, impacts=1)
         for friction in "mindlin", "mindlin-rescale", "mindlin-force":
             drop = oblique(friction, STICKING, name)
-            assert_moves_alike(self.run(drop, tmp_path), drop, 0.17)
+            compare_motion(agrees, LAMMPS, "friction with damping, sticking", self.run(drop, tmp_path), drop, 0.17)
 
 
 class TestYade:
@@ -208,20 +235,20 @@ class TestYade:
         return run(drop, "yade", folder, [yade, "-n", "-x", "-j1"])
 
     @pytest.mark.parametrize("name", ["hertz", "hertz, n = 1"])
-    def test_its_own_laws(self, name: str, tmp_path: Path) -> None:
+    def test_its_own_laws(self, agrees: Agrees, name: str, tmp_path: Path) -> None:
         drop = told(EXACT_IN_LAMMPS[name])
-        assert_agree(self.run(drop, tmp_path), drop, 1e-4)
+        compare(agrees, YADE, "laws of its own", self.run(drop, tmp_path), drop, 1e-4)
 
     @pytest.mark.parametrize("name", ["tsuji", "tsuji, 0.3", "linear", "kuwabara-kono", "hunt-crossley", "adams-impact"])
-    def test_restitution_of_other_laws(self, name: str, tmp_path: Path) -> None:
+    def test_restitution_of_other_laws(self, agrees: Agrees, name: str, tmp_path: Path) -> None:
         drop = told(EXACT_IN_EXUDYN[name], height=4.0, number=1)
-        assert_agree(self.run(drop, tmp_path), drop, 5e-4, SHORT)
+        compare(agrees, YADE, "other laws, by a calibrated one", self.run(drop, tmp_path), drop, 5e-4, SHORT)
 
-    def test_the_papers_drop(self, tmp_path: Path) -> None:
+    def test_the_papers_drop(self, agrees: Agrees, tmp_path: Path) -> None:
         drop = told_case("paper:type1-variable")
-        assert_agree(self.run(drop, tmp_path), drop, 5e-4, SHORT)
+        compare(agrees, YADE, "the paper's drop", self.run(drop, tmp_path), drop, 5e-4, SHORT)
 
-    def test_its_own_friction(self, tmp_path: Path) -> None:
+    def test_its_own_friction(self, agrees: Agrees, tmp_path: Path) -> None:
         """With an arm that is shorter by the overlap."""
         drop = oblique("mindlin-force", SLIDING, velocity=(4.0, -1.0))
         found = self.run(drop, tmp_path)
@@ -233,11 +260,11 @@ class TestYade:
             assert 1.0 - shorter < (spins[1] - spins[0]) / (spins[2] - spins[0]) < 1.0 - 0.5 * shorter
         assert f"changes the spin by up to {100.0 * shorter:.2g} % less" in " ".join(find_export_format("yade").notes(drop))
         drop = oblique("mindlin-force", STICKING)
-        assert_moves_alike(self.run(drop, tmp_path), drop, 0.02)
+        compare_motion(agrees, YADE, "friction of its own, with a shorter arm", self.run(drop, tmp_path), drop, 0.02)
         without = told(law("hertz"), oblique=vi.Oblique(velocity=(1.0, -0.5), spin=(3.0, -8.0, 5.0), gravity=(0.5, 0.0)))
-        assert_moves_alike(self.run(without, tmp_path), without, 1e-5)
+        compare_motion(agrees, YADE, "oblique without friction", self.run(without, tmp_path), without, 1e-5)
 
-    def test_friction_with_damping(self, tmp_path: Path) -> None:
+    def test_friction_with_damping(self, agrees: Agrees, tmp_path: Path) -> None:
         """The radius of the contact is that of the overlap."""
         drop = oblique("mdr", STICKING, "hunt-crossley", spin=(0.0, -20.0, 5.0))
         notes = " ".join(find_export_format("yade").notes(drop))
@@ -245,7 +272,7 @@ class TestYade:
             assert words in notes
         found, there = self.run(drop, tmp_path), oblique("mindlin-force", STICKING, "hunt-crossley", spin=(0.0, -20.0, 5.0))
         found.pop("spin_z_after_rad_s")
-        assert_moves_alike(found, there, 0.17)
+        compare_motion(agrees, YADE, "friction with damping", found, there, 0.17)
 
 
 class TestExudyn:
@@ -257,38 +284,38 @@ class TestExudyn:
         return run(drop, "exudyn", folder, [sys.executable])
 
     @pytest.mark.parametrize("name", EXACT_IN_EXUDYN)
-    def test_laws(self, name: str, tmp_path: Path) -> None:
+    def test_laws(self, agrees: Agrees, name: str, tmp_path: Path) -> None:
         drop = told(EXACT_IN_EXUDYN[name])
         found = self.run(drop, tmp_path)
-        assert_agree(found, drop, 1e-6, SHORT)
-        assert_agree(found, drop, 1e-4, ("max_force_N",))
+        compare(agrees, EXUDYN, "every law that it can have", found, drop, 1e-6, SHORT)
+        compare(agrees, EXUDYN, "every law that it can have", found, drop, 1e-4, ("max_force_N",))
 
-    def test_speed_at_the_start(self, tmp_path: Path) -> None:
+    def test_speed_at_the_start(self, agrees: Agrees, tmp_path: Path) -> None:
         drop = told(law("hunt-crossley", restitution=0.7), speed=0.5)
-        assert_agree(self.run(drop, tmp_path), drop, 1e-6, SHORT)
+        compare(agrees, EXUDYN, "a speed at the start", self.run(drop, tmp_path), drop, 1e-6, SHORT)
 
-    def test_the_papers_drop(self, tmp_path: Path) -> None:
+    def test_the_papers_drop(self, agrees: Agrees, tmp_path: Path) -> None:
         drop = told_case("paper:type1-variable")
-        assert_agree(self.run(drop, tmp_path), drop, 1e-6, SHORT)
+        compare(agrees, EXUDYN, "the paper's drop", self.run(drop, tmp_path), drop, 1e-6, SHORT)
 
-    def test_a_function_of_the_approach_speed(self, calibrated: Drop, tmp_path: Path) -> None:
+    def test_a_function_of_the_approach_speed(self, agrees: Agrees, calibrated: Drop, tmp_path: Path) -> None:
         """Which EXUDYN evaluates itself, at each impact."""
-        assert_agree(self.run(calibrated, tmp_path), calibrated, 1e-6, SHORT)
+        compare(agrees, EXUDYN, "a function of the approach speed", self.run(calibrated, tmp_path), calibrated, 1e-6, SHORT)
 
     @pytest.mark.parametrize("name", ["hertz", "hunt-crossley", "adams-impact"])
-    def test_friction(self, name: str, tmp_path: Path) -> None:
+    def test_friction(self, agrees: Agrees, name: str, tmp_path: Path) -> None:
         for coefficient in SLIDING, STICKING:
             drop = oblique("coulomb", coefficient, name)
             assert find_export_format("exudyn").notes(drop) == []
-            assert_moves_alike(self.run(drop, tmp_path), drop, 1e-5)
+            compare_motion(agrees, EXUDYN, "coulomb friction, sliding and sticking", self.run(drop, tmp_path), drop, 1e-5)
 
-    def test_friction_that_stands_for_another(self, tmp_path: Path) -> None:
+    def test_friction_that_stands_for_another(self, agrees: Agrees, tmp_path: Path) -> None:
         drop = oblique("mdr", STICKING, velocity=(0.3, -0.4), spin=(3.0, -8.0, 50.0), gravity=(0.5, 0.2))
         notes = " ".join(find_export_format("exudyn").notes(drop))
         assert "its coulomb stands for it" in notes
         assert "leaves the spin about the normal" in notes
         coulomb = oblique("coulomb", STICKING, velocity=(0.3, -0.4), spin=(3.0, -8.0, 50.0), gravity=(0.5, 0.2))
-        assert_moves_alike(self.run(drop, tmp_path), coulomb, 1e-4)
+        compare_motion(agrees, EXUDYN, "friction that stands for another", self.run(drop, tmp_path), coulomb, 1e-4)
 
 
 class TestMujoco:
@@ -310,17 +337,21 @@ class TestMujoco:
         return parting / speed, data.time
 
     @pytest.mark.parametrize("name", ["hertz", "tsuji", "linear", "hunt-crossley", "adams-impact", "kuwabara-kono"])
-    def test_first_impact(self, name: str) -> None:
+    def test_first_impact(self, agrees: Agrees, name: str) -> None:
         drop = told(EXACT_IN_EXUDYN[name], number=1)
         restitution, duration = self.first_contact(drop)
-        assert restitution == pytest.approx(achieved_restitution(drop.laws[0], MASS, drop.impacts["approach_speed_m_s"][0]), rel=1e-3)
-        assert duration == pytest.approx(drop.impacts["duration_s"][0], rel=3e-3)
+        ours = achieved_restitution(drop.laws[0], MASS, drop.impacts["approach_speed_m_s"][0])
+        agrees("first impact, six laws", "restitution", ours, restitution, against=MUJOCO, relative=1e-3)
+        agrees("first impact, six laws", "duration", drop.impacts["duration_s"][0], duration, unit="s", against=MUJOCO, relative=3e-3)
 
-    def test_the_papers_drop(self) -> None:
+    def test_the_papers_drop(self, agrees: Agrees) -> None:
         drop = told_case("paper:type1-variable")
-        assert self.first_contact(drop)[0] == pytest.approx(drop.impacts["restitution_achieved"][0], rel=1e-3)
+        found, _ = self.first_contact(drop)
+        agrees(
+            "the paper's drop, first impact", "restitution", drop.impacts["restitution_achieved"][0], found, against=MUJOCO, relative=1e-3
+        )
 
-    def test_whole_drop(self) -> None:
+    def test_whole_drop(self, agrees: Agrees) -> None:
         """The flight too, from the height of the key frame to the top of the first rebound."""
         mujoco = pytest.importorskip("mujoco")
         drop = told(law("linear-spring-dashpot", stiffness=2e6, restitution=0.7), height=0.06, number=1)
@@ -334,9 +365,10 @@ class TestMujoco:
             heights.append(data.qpos[0])
         assert heights[0] == 0.06
         after = int(drop.impacts["time_s"][0] / model.opt.timestep)
-        assert max(heights[after + 1000 :]) - drop.radius == pytest.approx(drop.impacts["rebound_height_m"][0] - drop.radius, rel=3e-3)
+        top, ours = max(heights[after + 1000 :]) - drop.radius, drop.impacts["rebound_height_m"][0] - drop.radius
+        agrees("a whole drop", "height of the rebound", ours, top, unit="m", against=MUJOCO, relative=3e-3)
 
-    def test_a_drop_without_friction_on_an_inclined_plate(self) -> None:
+    def test_a_drop_without_friction_on_an_inclined_plate(self, agrees: Agrees) -> None:
         """Its own axes do not turn the velocities of its centre."""
         mujoco = pytest.importorskip("mujoco")
         linear = law("linear-spring-dashpot", stiffness=2e6, restitution=0.7)
@@ -349,7 +381,8 @@ class TestMujoco:
         assert data.qpos[:3].tolist() == [0.1, 0.0, 0.06]
         while not (data.qvel[2] > 0.0 and data.qpos[2] > drop.radius):
             mujoco.mj_step(model, data)
-        assert data.qvel[0] == pytest.approx(drop.impacts["separation_velocity_x_m_s"][0], rel=1e-3)
+        along = drop.impacts["separation_velocity_x_m_s"][0]
+        agrees("an inclined plate", "velocity along the plate", along, data.qvel[0], unit="m/s", against=MUJOCO, relative=1e-3)
         assert data.qvel[1] == pytest.approx(-0.2, rel=1e-12)
         np.testing.assert_allclose(data.qvel[3:], [3.0, -8.0, 5.0], rtol=1e-9)
         assert data.qvel[2] == pytest.approx(drop.impacts["separation_speed_m_s"][0], rel=1e-2)

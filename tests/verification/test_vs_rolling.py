@@ -9,9 +9,24 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import vibroimpact as vi
+from agreement import Against, Agrees
 from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.oblique.rolling import LyingSpheres
 from vibroimpact.dynamics.oblique.state import Sphere, State
+
+AGAINST = Against(
+    "rigid spheres that slip and roll",
+    "closed form",
+    "oblique impact and friction",
+    "sliding ends with 5/7 of the velocity; inclines; rolling resistance; twisting by Hertz's pressure",
+)
+SCIPY = Against(
+    "SciPy's Radau on centre and spin",
+    "own independent computation",
+    "oblique impact and friction",
+    "friction that changes over 1e-6 m/s at rest, in the test itself",
+)
+
 
 RADIUS, MASS, GRAVITY = 0.02, 0.3, 9.81
 
@@ -28,33 +43,34 @@ def after(
     return LyingSpheres(ball, start, law, GRAVITY * np.cos(angle) * one, time * one).at(np.array([0]), time * one)
 
 
-def test_sliding_ends_in_rolling_with_five_sevenths() -> None:
+def test_sliding_ends_in_rolling_with_five_sevenths(agrees: Agrees) -> None:
     """After 2 v / (7 mu g) the sphere rolls; until then it has gone 12 v^2 / (49 mu g)."""
     until = 2.0 * 1.4 / (7.0 * 0.1 * GRAVITY)
     state, _ = after(until, (1.4, 0.0))
-    assert state.velocity[:, 0] == pytest.approx([1.0, 0.0], abs=1e-12)
-    assert state.position[0, 0] == pytest.approx(12.0 * 1.4**2 / (49.0 * 0.1 * GRAVITY), rel=1e-12)
+    agrees("sliding ends in rolling", "velocity", state.velocity[:, 0], [1.0, 0.0], unit="m/s", absolute=1e-12)
+    way = 12.0 * 1.4**2 / (49.0 * 0.1 * GRAVITY)
+    agrees("sliding ends in rolling", "way until then", state.position[0, 0], way, unit="m", relative=1e-12)
     later, force = after(until + 2.0, (1.4, 0.0))
     assert later.position[0, 0] == pytest.approx(state.position[0, 0] + 2.0, rel=1e-12)
     assert later.spin[1, 0] == pytest.approx(1.0 / RADIUS, rel=1e-12)
     assert force[0, 0] == 0.0
 
 
-def test_back_spin_brings_the_sphere_back() -> None:
+def test_back_spin_brings_the_sphere_back(agrees: Agrees) -> None:
     """With the spin -5 v / R the slip is six times the velocity, and the sphere rolls back with 1 - 6 2/7 of it."""
     state, _ = after(10.0, (1.0, 0.0), (0.0, -5.0 / RADIUS, 0.0))
-    assert state.velocity[0, 0] == pytest.approx(1.0 - 6.0 * 2.0 / 7.0, rel=1e-12)
+    agrees("back spin", "velocity", state.velocity[0, 0], 1.0 - 6.0 * 2.0 / 7.0, unit="m/s", relative=1e-12)
 
 
 @pytest.mark.parametrize("mu", [0.5, 0.12, 0.02])
-def test_down_an_incline(mu: float) -> None:
+def test_down_an_incline(agrees: Agrees, mu: float) -> None:
     """It rolls with 5/7 g sin; or slips, where 2/7 tan exceeds the coefficient, with g (sin - mu cos)."""
     angle, time = np.radians(25.0), 1.7
     state, force = after(time, (0.0, 0.0), mu=mu, angle=angle)
     rolls = 2.0 / 7.0 * np.tan(angle) <= mu
     down = GRAVITY * (5.0 / 7.0 * np.sin(angle) if rolls else np.sin(angle) - mu * np.cos(angle))
-    assert state.velocity[0, 0] == pytest.approx(down * time, rel=1e-12)
-    assert state.position[0, 0] == pytest.approx(0.5 * down * time**2, rel=1e-12)
+    agrees("down an incline, rolling and slipping", "velocity", state.velocity[0, 0], down * time, unit="m/s", relative=1e-12)
+    agrees("down an incline, rolling and slipping", "way", state.position[0, 0], 0.5 * down * time**2, unit="m", relative=1e-12)
     assert force[0, 0] == pytest.approx(-MASS * (GRAVITY * np.sin(angle) - down), rel=1e-12)
     assert (state.spin[1, 0] * RADIUS == pytest.approx(state.velocity[0, 0])) == rolls
 
@@ -80,13 +96,14 @@ def integrated(start: Any, spin: Any, time: float, mu: float, angle: float, roll
 
 
 @pytest.mark.parametrize(("mu", "angle"), [(0.3, 0.2), (0.05, 0.4), (0.2, 0.05)])
-def test_across_an_incline_against_an_integration(mu: float, angle: float) -> None:
+def test_across_an_incline_against_an_integration(agrees: Agrees, mu: float, angle: float) -> None:
     """Slip that gravity turns."""
     start, spin, time = np.array([-0.4, 1.0]), np.array([8.0, 30.0]), 0.6
     found = integrated(start, spin, time, mu, angle)
     state, _ = after(time, start, (*spin, 0.0), mu=mu, angle=angle)
-    np.testing.assert_allclose([*state.position[:, 0], *state.velocity[:, 0]], found[:4], atol=2e-6)
-    np.testing.assert_allclose(state.spin[:2, 0], found[4:], atol=2e-4)
+    moved = [*state.position[:, 0], *state.velocity[:, 0]]
+    agrees("across an incline", "place and velocity", moved, found[:4], unit="m, m/s", against=SCIPY, absolute=2e-6)
+    agrees("across an incline", "spin", state.spin[:2, 0], found[4:], unit="rad/s", against=SCIPY, absolute=2e-4)
 
 
 def resting(**changes: Any) -> vi.Response:
@@ -162,7 +179,7 @@ def test_a_motion_is_the_same_however_far_it_is_followed() -> None:
             np.testing.assert_allclose(frictions[:, 1], friction[:, 0], atol=1e-6)
 
 
-def test_rolling_resistance_brings_the_sphere_to_rest() -> None:
+def test_rolling_resistance_brings_the_sphere_to_rest(agrees: Agrees) -> None:
     """With 5/7 mu_r g, after 7 v / (5 mu_r g) and 7 v^2 / (10 mu_r g); then it stays."""
     rolls = {"velocity": (0.7, 0.0), "spin": (0.0, 0.7 / RADIUS, 0.0), "rolling": 0.02}
     until = 7.0 * 0.7 / (5.0 * 0.02 * GRAVITY)
@@ -172,7 +189,8 @@ def test_rolling_resistance_brings_the_sphere_to_rest() -> None:
     assert force[0, 0] == pytest.approx(-5.0 / 7.0 * 0.02 * MASS * GRAVITY, rel=1e-12)
     for time in (until * (1.0 + 1e-15), until + 5.0):
         state, force = after(time, **rolls)
-        assert state.position[0, 0] == pytest.approx(7.0 * 0.7**2 / (10.0 * 0.02 * GRAVITY), rel=1e-12)
+        way = 7.0 * 0.7**2 / (10.0 * 0.02 * GRAVITY)
+        agrees("rolling resistance", "way to rest", state.position[0, 0], way, unit="m", relative=1e-12)
         np.testing.assert_allclose([*state.velocity[:, 0], *(RADIUS * state.spin[:, 0])], 0.0, atol=1e-15)
         assert force[0, 0] == 0.0
 
@@ -188,13 +206,14 @@ def test_rolling_resistance_holds_the_sphere_on_a_slope(angle: float, moves: boo
 
 
 @pytest.mark.parametrize("rolling", [0.05, 0.4])
-def test_a_sphere_that_rolls_up_a_slope(rolling: float) -> None:
+def test_a_sphere_that_rolls_up_a_slope(agrees: Agrees, rolling: float) -> None:
     """It comes to rest at the top of its way, and stays there or rolls back."""
     angle, speed, later = 0.2, 1.4, 0.3
     up, down = (5.0 / 7.0 * GRAVITY * (np.sin(angle) + sign * rolling * np.cos(angle)) for sign in (1.0, -1.0))
     state, _ = after(speed / up + later, (-speed, 0.0), (0.0, -speed / RADIUS, 0.0), mu=0.6, angle=angle, rolling=rolling)
     assert state.velocity[0, 0] == pytest.approx(max(down, 0.0) * later, rel=1e-12, abs=1e-15)
-    assert state.position[0, 0] == pytest.approx(-0.5 * speed**2 / up + 0.5 * max(down, 0.0) * later**2, rel=1e-12)
+    place = -0.5 * speed**2 / up + 0.5 * max(down, 0.0) * later**2
+    agrees("up a slope, with rolling resistance", "place", state.position[0, 0], place, unit="m", relative=1e-12)
 
 
 def test_sliding_with_rolling_resistance_ends_in_rolling() -> None:
@@ -231,13 +250,16 @@ def test_a_moment_beyond_the_friction_leaves_the_sphere_without_spin() -> None:
         (0.0, 0.1, 0.1, (0.0, 0.5), (0.0, 40.0)),
     ],
 )
-def test_rolling_resistance_against_an_integration(mu: float, rolling: float, angle: float, velocity: Any, spin: Any) -> None:
+def test_rolling_resistance_against_an_integration(
+    agrees: Agrees, mu: float, rolling: float, angle: float, velocity: Any, spin: Any
+) -> None:
     """Slip, spin and gravity in all directions, through their zeros."""
     for time in (0.1, 0.7):
         found = integrated(velocity, spin, time, mu, angle, rolling)
         state, _ = after(time, velocity, (*spin, 0.0), mu=mu, angle=angle, rolling=rolling)
-        np.testing.assert_allclose([*state.position[:, 0], *state.velocity[:, 0]], found[:4], atol=5e-6)
-        np.testing.assert_allclose(RADIUS * state.spin[:2, 0], found[4:] * RADIUS, atol=5e-6)
+        moved, turned = [*state.position[:, 0], *state.velocity[:, 0]], RADIUS * state.spin[:2, 0]
+        agrees("with rolling resistance", "place and velocity", moved, found[:4], unit="m, m/s", against=SCIPY, absolute=5e-6)
+        agrees("with rolling resistance", "velocity by spin", turned, found[4:] * RADIUS, unit="m/s", against=SCIPY, absolute=5e-6)
 
 
 def test_a_run_comes_to_rest_by_rolling_resistance() -> None:
@@ -283,7 +305,7 @@ def test_rolling_resistance_decides_whether_it_reaches_the_edge() -> None:
 
 
 @pytest.mark.parametrize("friction", ["coulomb", "rigid", "mdr", "mindlin"])
-def test_an_impact_resists_rolling(friction: str) -> None:
+def test_an_impact_resists_rolling(agrees: Agrees, friction: str) -> None:
     """Changes over the impulse J per mass: 5/7 mu_r of all that rolls; mu of what slips, and 5/2 (mu -+ mu_r) of its spin."""
     pair = {"effective_modulus": 1e9, "effective_shear_modulus": 8e8, "effective_radius": RADIUS}
     mu, rolling = 0.3, 0.04
@@ -297,11 +319,12 @@ def test_an_impact_resists_rolling(friction: str) -> None:
         oblique = vi.Oblique(velocity=(speed, 0.0), spin=(0.0, spin / RADIUS, 0.0), friction=law)
         impacts = resting(height=None, speed=2.0, gravity=0.0, impacts=1, duration=None, oblique=oblique).impacts
         impulse = 2.0 + impacts["separation_speed_m_s"][0]
-        assert impacts["separation_velocity_x_m_s"][0] == pytest.approx(speed + push * impulse, rel=1e-8)
-        assert RADIUS * impacts["spin_y_after_rad_s"][0] == pytest.approx(spin + turn * impulse, rel=1e-8)
+        case, turned = "an impact that resists rolling", RADIUS * impacts["spin_y_after_rad_s"]
+        agrees(case, "velocity along the plate", impacts["separation_velocity_x_m_s"], speed + push * impulse, unit="m/s", relative=1e-8)
+        agrees(case, "velocity of the surface by spin", turned, spin + turn * impulse, unit="m/s", relative=1e-8)
 
 
-def test_a_contact_with_an_area_resists_twisting() -> None:
+def test_a_contact_with_an_area_resists_twisting(agrees: Agrees) -> None:
     """The spin about the normal of a sphere that lies falls by 5/2 M / (m R^2), M = 3 pi/16 mu m g a; a point leaves it as it is."""
     pair = {"effective_modulus": 1e9, "effective_shear_modulus": 8e8, "effective_radius": RADIUS}
     one, spin = np.ones(1), np.array([0.0, 0.0, 3.0])[:, None]
@@ -312,14 +335,14 @@ def test_a_contact_with_an_area_resists_twisting() -> None:
     until = 3.0 * 0.4 * MASS * RADIUS**2 / moment
     for time, left in ((0.25 * until, 2.25), (until, 0.0), (3.0 * until, 0.0)):
         state, _ = LyingSpheres(ball, start, law, GRAVITY * one, time * one).at(np.array([0]), time * one)
-        assert state.spin[2, 0] == pytest.approx(left, abs=1e-12)
+        agrees("a sphere that lies and spins", "spin about the normal", state.spin[2, 0], left, unit="rad/s", absolute=1e-12)
     state, _ = LyingSpheres(ball, start, vi.find_friction_law("coulomb")(coefficient=0.2), GRAVITY * one, one).at(np.array([0]), one)
     assert state.spin[2, 0] == 3.0
 
 
 @pytest.mark.parametrize("friction", ["coulomb", "mdr"])
 @pytest.mark.parametrize(("mu", "tolerance"), [(0.02, 1e-4), (0.1, 1e-4), (0.5, 1e-3)])
-def test_gravity_across_the_slip_turns_the_friction_of_an_impact(friction: str, mu: float, tolerance: float) -> None:
+def test_gravity_across_the_slip_turns_the_friction_of_an_impact(agrees: Agrees, friction: str, mu: float, tolerance: float) -> None:
     """Against SciPy, whose friction changes over 1e-7 m/s at rest: velocity across over what gravity alone would give, 0.98 to 5/7."""
     stiffness, gravity, speed, slip = 1.3e8, np.array([0.5, 3.0]), 1.0, 1.0
     pair = {"effective_modulus": 1e9, "effective_shear_modulus": 8e8, "effective_radius": RADIUS}
@@ -338,7 +361,9 @@ def test_gravity_across_the_slip_turns_the_friction_of_an_impact(friction: str, 
     start = [0.0, speed, slip, 0.0, 0.0, 0.0]
     found = solve_ivp(rates, (0.0, duration), start, method="Radau", rtol=1e-9, atol=1e-13, max_step=duration / 200.0).y[:, -1]
     across = np.array([impacts["separation_velocity_y_m_s"][0], RADIUS * impacts["spin_x_after_rad_s"][0]])
-    np.testing.assert_allclose(across / (gravity[1] * duration), found[[3, 5]] / (gravity[1] * duration), atol=tolerance)
+    without = gravity[1] * duration
+    case = f"gravity across the slip of an impact, coefficient {mu}"
+    agrees(case, "velocity and spin across, over gravity's", across / without, found[[3, 5]] / without, against=SCIPY, absolute=tolerance)
 
 
 def test_a_slip_of_rounding_is_none() -> None:

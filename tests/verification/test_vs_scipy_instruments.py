@@ -10,6 +10,7 @@ from scipy import signal
 from scipy.interpolate import make_interp_spline
 
 import vibroimpact as vi
+from agreement import Against, Agrees
 from support import one_in
 from vibrating import STIFFNESS, drop_on, modes_of, random_modes
 from vibroimpact.contact.laws.hertz import Hertz
@@ -19,6 +20,20 @@ from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer
 from vibroimpact.dynamics.sensors.instruments.geophone import Geophone
 from vibroimpact.dynamics.sensors.sensor import Sensor
 from vibroimpact.structures.modal_model import ModalBasis
+
+AGAINST = Against(
+    "SciPy's filters: a geophone",
+    "other program",
+    "sensors and signals",
+    "scipy.signal.cont2discrete and butter, on samples taken 512 times faster",
+)
+FORM = Against(
+    "closed forms of a geophone",
+    "closed form",
+    "sensors and signals",
+    "gain of a coil on a spring; its answer to a step of velocity",
+)
+
 
 RATE, FINER = 20e3, 128
 HERTZ = Hertz(stiffness=STIFFNESS)
@@ -61,7 +76,7 @@ def systems_of(geophone: Geophone, kind: str) -> list[tuple[np.ndarray, np.ndarr
 
 @pytest.mark.parametrize("geophone", one_in(2, GEOPHONES))
 @pytest.mark.parametrize("kind", ["none", "sigma-delta", "butterworth"])
-def test_geophone(response: vi.Response, geophone: Geophone, kind: str) -> None:
+def test_geophone(agrees: Agrees, response: vi.Response, geophone: Geophone, kind: str) -> None:
     assert len(response.impacts["impact"]) > 1
     fine = response.signals(Sensor("a", "velocity", rate=FINER * RATE, filter="none"))["a"].value
     exact = filtered(fine, FINER * RATE, *systems_of(geophone, kind))
@@ -70,12 +85,12 @@ def test_geophone(response: vi.Response, geophone: Geophone, kind: str) -> None:
         exact = signal.fftconvolve(np.pad(exact, HALF_LENGTH * FINER), taps, "valid")
     found = response.signals(Sensor("a", "voltage", rate=RATE, filter=kind, instrument=geophone))["a"].value
     heard = slice(0, -HALF_LENGTH) if kind == "sigma-delta" else slice(None)
-    error = np.abs(found - exact[::FINER][: len(found)])[heard].max() / np.abs(exact).max()
-    assert error < 1e-6
+    largest, expected = float(np.abs(exact).max()), exact[::FINER][: len(found)]
+    agrees(f"several impacts, filter {kind}", "voltage, over its largest", found[heard] / largest, expected[heard] / largest, absolute=1e-6)
 
 
 @pytest.mark.parametrize("frequency", [3.0, 10.0, 40.0, 2e3])
-def test_gain_and_phase_of_a_geophone(frequency: float) -> None:
+def test_gain_and_phase_of_a_geophone(agrees: Agrees, frequency: float) -> None:
     """Its steady answer to a mode that rings on, against the closed form."""
     geophone = replace(GEOPHONE, low_pass=500.0)
     response = vi.simulate(drop_on(HERTZ, modes_of([frequency], [0.3]), gravity=0.0, duration=2.0))
@@ -87,11 +102,12 @@ def test_gain_and_phase_of_a_geophone(frequency: float) -> None:
     before, after = (complex(*np.linalg.lstsq(basis, one.value[later], rcond=None)[0]) for one in signals.values())
     s, omega, corner = 2j * np.pi * frequency, 2.0 * np.pi * 10.0, 2.0 * np.pi * 500.0
     gain = 27.6 * s**2 / (s**2 + 1.2 * omega * s + omega**2) * corner**2 / (s**2 + np.sqrt(2.0) * corner * s + corner**2)
-    assert np.conj(after) / np.conj(before) == pytest.approx(gain, rel=1e-6)
+    off = np.conj(after) / np.conj(before) / gain - 1.0
+    agrees("gain and phase, 3 Hz to 2 kHz", "complex gain over theirs, less one", abs(off), 0.0, against=FORM, absolute=1e-6)
 
 
 @pytest.mark.parametrize("kind", ["none", "sigma-delta"])
-def test_a_geophone_on_a_plate_that_moves_on(kind: str) -> None:
+def test_a_geophone_on_a_plate_that_moves_on(agrees: Agrees, kind: str) -> None:
     """A free plate gets its velocity in far less than a period of the coil, which then comes to rest in it: the closed form of a step."""
     heave, along = np.array([0.3**-0.5]), np.array([0.0, 0.0, 1.0])
     rigid = ModalBasis(np.zeros(1), np.zeros(1), heave, np.outer(1.0 / heave, along), {"a": np.outer(heave, along)}, 0.3)
@@ -104,7 +120,8 @@ def test_a_geophone_on_a_plate_that_moves_on(kind: str) -> None:
     root = np.sqrt(1.0 - ratio**2)
     exact = 27.6 * speed * np.exp(-ratio * omega * since) * (np.cos(root * omega * since) - ratio / root * np.sin(root * omega * since))
     later = found.time > float(response.impacts["duration_s"][0]) + (0.0 if kind == "none" else HALF_LENGTH / 50e3)
-    np.testing.assert_allclose(found.value[later], exact[later], rtol=0.0, atol=1e-4 * abs(27.6 * speed))
+    part = abs(27.6 * speed)
+    agrees("a step of velocity", "voltage, over its largest", found.value[later] / part, exact[later] / part, against=FORM, absolute=1e-4)
 
 
 def noisy(**parts: object) -> np.ndarray:

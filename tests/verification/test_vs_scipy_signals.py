@@ -10,18 +10,28 @@ from scipy.signal import find_peaks, hilbert
 from scipy.stats import kurtosis, skew
 
 import vibroimpact as vi
+from agreement import Against, Agrees
 from vibroimpact.signals.cubic_through import cubic_through
 from vibroimpact.signals.envelope import hilbert_envelope
 from vibroimpact.signals.features.intrinsic_modes import intrinsic_modes
+
+AGAINST = Against(
+    "SciPy and NumPy, features of signals",
+    "other program",
+    "sensors and signals",
+    "scipy.signal.hilbert, scipy.stats, PchipInterpolator, scipy.fft.dct",
+)
+
 
 RANDOM = np.random.default_rng(5)
 
 
 @pytest.mark.parametrize("samples", [1, 2, 3, 100, 1001])
-def test_the_envelope(samples: int) -> None:
+def test_the_envelope(agrees: Agrees, samples: int) -> None:
     signals = RANDOM.standard_normal((4, samples))
     padded = next_fast_len(2 * samples, real=True)
-    np.testing.assert_allclose(hilbert_envelope(signals), np.abs(hilbert(signals, N=padded + padded % 2))[:, :samples], rtol=1e-12)
+    exact = np.abs(hilbert(signals, N=padded + padded % 2))[:, :samples]
+    agrees("1 to 1001 samples of noise", "envelope", hilbert_envelope(signals), exact, relative=1e-12)
 
 
 def test_the_envelope_is_that_between_silences() -> None:
@@ -30,20 +40,20 @@ def test_the_envelope_is_that_between_silences() -> None:
     np.testing.assert_allclose(hilbert_envelope(signals), silent, atol=0.02 * silent.max())
 
 
-def test_the_moments() -> None:
+def test_the_moments(agrees: Agrees) -> None:
     signals = RANDOM.gamma(2.0, size=(6, 700))
     table = vi.feature_table(signals, 1.0)
-    np.testing.assert_allclose(table["skewness"], skew(signals, axis=1), rtol=1e-12)
-    np.testing.assert_allclose(table["kurtosis"], kurtosis(signals, axis=1, fisher=False), rtol=1e-12)
+    agrees("six random signals", "skewness", table["skewness"], skew(signals, axis=1), relative=1e-12)
+    agrees("six random signals", "kurtosis", table["kurtosis"], kurtosis(signals, axis=1, fisher=False), relative=1e-12)
 
 
-def test_the_cubic() -> None:
+def test_the_cubic(agrees: Agrees) -> None:
     signals, knots = RANDOM.standard_normal((5, 300)), np.zeros((5, 300), dtype=bool)
     for number in range(5):
         knots[number, RANDOM.choice(300, 1 + 20 * number, replace=False)] = True
     found = cubic_through(signals, np.flatnonzero(knots))
     for signal, chosen, cubic in zip(signals, knots, found, strict=True):
-        np.testing.assert_allclose(cubic, _cubic(signal, np.flatnonzero(chosen)), atol=1e-13)
+        agrees("five random signals", "monotone cubic", cubic, _cubic(signal, np.flatnonzero(chosen)), absolute=1e-13)
 
 
 def _cubic(signal: np.ndarray, knots: np.ndarray) -> np.ndarray:
@@ -53,7 +63,7 @@ def _cubic(signal: np.ndarray, knots: np.ndarray) -> np.ndarray:
     return PchipInterpolator(place, height)(np.arange(len(signal)))
 
 
-def test_the_intrinsic_modes() -> None:
+def test_the_intrinsic_modes(agrees: Agrees) -> None:
     signals = RANDOM.standard_normal((4, 500)).cumsum(axis=1)
     found = intrinsic_modes(signals, modes=3, siftings=5)
     for number, signal in enumerate(signals):
@@ -63,11 +73,12 @@ def test_the_intrinsic_modes() -> None:
             for _ in range(5):
                 tops, bottoms = (_cubic(sifted, find_peaks(side, prominence=least)[0]) for side in (sifted, -sifted))
                 sifted -= 0.5 * (tops + bottoms)
-            np.testing.assert_allclose(mode, sifted, atol=1e-9 * np.abs(signal).max())
+            largest = float(np.abs(signal).max())
+            agrees("four random walks", "intrinsic modes, over the signal's largest", mode / largest, sifted / largest, absolute=1e-9)
             rest -= sifted
 
 
-def test_the_cepstrum() -> None:
+def test_the_cepstrum(agrees: Agrees) -> None:
     signal = RANDOM.standard_normal(640)
     power = np.abs(np.fft.rfft(signal)) ** 2
     power[1:-1] *= 2.0
@@ -75,4 +86,4 @@ def test_the_cepstrum() -> None:
     bands = [np.interp(np.arange(321), centres[number : number + 3], [0.0, 1.0, 0.0], left=0.0, right=0.0) for number in range(20)]
     level = np.log([band @ power / power.sum() + 1e-10 for band in bands])
     table = vi.feature_table(signal[None], 1.0, [f"cepstrum_{number}" for number in range(1, 9)])
-    np.testing.assert_allclose(table.values[0], dct(level, norm="ortho")[1:9], rtol=1e-10)
+    agrees("640 samples of noise", "cepstrum", table.values[0], dct(level, norm="ortho")[1:9], relative=1e-10)

@@ -18,6 +18,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import vibroimpact as vi
+from agreement import Against, Agrees
 from oracles.bouncing_in_air import clift_gauvin
 from oracles.shaken_integration import ShakenDeck
 from vibroimpact.contact.laws.hertz import Hertz
@@ -25,6 +26,20 @@ from vibroimpact.contact.laws.kuwabara_kono import KuwabaraKono
 from vibroimpact.contact.laws.newton import Newton
 from vibroimpact.dynamics.columns import ALL_HISTORY_COLUMNS
 from vibroimpact.structures.modal_model import ModalBasis
+
+AGAINST = Against(
+    "Luck and Mehta, Holmes: a ball on a shaken table",
+    "closed form",
+    "flight, bounces and shaken plates",
+    "Luck and Mehta 1993, Phys. Rev. E 48, 3988, doi 10.1103/PhysRevE.48.3988; Holmes 1982, J. Sound Vib. 84, 173",
+)
+DOP853 = Against(
+    "SciPy's DOP853: lumps, decks and shaken frames",
+    "own independent computation",
+    "flight, bounces and shaken plates",
+    "tests/oracles/shaken_integration.py",
+)
+
 
 G, FREQUENCY = 9.8, 25.0
 OMEGA = 2.0 * math.pi * FREQUENCY
@@ -56,18 +71,18 @@ def doubling(restitution: float) -> float:
 
 
 @pytest.mark.parametrize("restitution", [0.0, 0.4, 0.7])
-def test_a_ball_stays_on_a_table_below_one_g(restitution: float) -> None:
+def test_a_ball_stays_on_a_table_below_one_g(agrees: Agrees, restitution: float) -> None:
     response = vi.simulate(ball(restitution, table(0.999), impacts=None, duration=20.0))
     assert response.outcomes == (vi.Outcome.REST_SPEED,)
     assert response.energy["closure_relative"] <= 1e-9
     last = response.at(np.linspace(19.0, 20.0, 101))
     assert last["position_m"] - 0.01 == pytest.approx(last["surface_m"], abs=1e-15)
-    assert last["force_N"] == pytest.approx(0.1 * (G - last["surface_m"] * OMEGA**2), rel=1e-9)
+    agrees("a ball that stays below 1 g", "force", last["force_N"], 0.1 * (G - last["surface_m"] * OMEGA**2), unit="N", relative=1e-9)
     assert "moves with the plate" in response.status
 
 
 @pytest.mark.parametrize("strength", [1.001, 1.2, 1.8])
-def test_launch_from_a_table_beyond_one_g(strength: float) -> None:
+def test_launch_from_a_table_beyond_one_g(agrees: Agrees, strength: float) -> None:
     """The first flight after a ride begins at sin(omega t) = 1/Gamma, with the velocity of the table."""
     response = vi.simulate(ball(0.0, table(strength), impacts=3))
     launch = math.asin(1.0 / strength) / OMEGA
@@ -76,22 +91,23 @@ def test_launch_from_a_table_beyond_one_g(strength: float) -> None:
     place, speed, _ = response.problem.surface(launch)
     moment = response.at(launch + np.array([0.0, 1e-4, 1e-3]))
     later = np.array([0.0, 1e-4, 1e-3])
-    assert moment["position_m"] - 0.01 == pytest.approx(place + speed * later - 0.5 * G * later**2, abs=1e-14)
+    flight = place + speed * later - 0.5 * G * later**2
+    agrees("launch beyond 1 g", "place in flight", moment["position_m"] - 0.01, flight, unit="m", absolute=1e-14)
     pressed = response.at(launch - 1e-7)["force_N"]
     assert pressed == pytest.approx(0.1 * G * OMEGA * 1e-7 * math.sqrt(strength**2 - 1.0), rel=1e-3)
     assert response.energy["closure_relative"] <= 1e-9
 
 
-def test_one_bounce_a_period_exists_from_its_threshold_on() -> None:
+def test_one_bounce_a_period_exists_from_its_threshold_on(agrees: Agrees) -> None:
     threshold = math.pi * 0.2 / 1.8
     above = vi.simulate(on_orbit(1.01 * threshold, 0.8, impacts=500))
-    assert np.diff(above.impacts["time_s"]) == pytest.approx(1.0 / FREQUENCY, rel=1e-9)
+    agrees("one bounce a period", "time between impacts", np.diff(above.impacts["time_s"]), 1.0 / FREQUENCY, unit="s", relative=1e-9)
     below = vi.simulate(on_orbit(0.99 * threshold, 0.8, impacts=None, duration=60.0))
     assert below.outcomes == (vi.Outcome.REST_SPEED,)
 
 
 @pytest.mark.parametrize("restitution", [0.3, 0.5, 0.8])
-def test_period_doubling(restitution: float) -> None:
+def test_period_doubling(agrees: Agrees, restitution: float) -> None:
     """The factor by which a small shift grows a bounce is -1 at the threshold, found from the factors beside it."""
 
     def growth(strength: float) -> float:
@@ -104,7 +120,7 @@ def test_period_doubling(restitution: float) -> None:
     factors = np.array([growth(strength) for strength in strengths])
     assert factors[0] > -1.0 > factors[2]
     found = np.interp(1.0, -factors, strengths)
-    assert found == pytest.approx(expected, rel=1e-5)
+    agrees("restitutions 0.3, 0.5 and 0.8", "strength of the doubling of the period", found, expected, unit="g", relative=1e-5)
 
 
 def test_two_bounces_of_different_length_beyond_the_doubling() -> None:
@@ -139,7 +155,7 @@ def test_ledger_of_a_thousand_soft_impacts() -> None:
 
 @pytest.mark.parametrize(("relaxation", "height"), [(2e-5, 0.02), (2e-3, 0.006)], ids=["bouncing", "riding and launched again"])
 @pytest.mark.parametrize("deck", [np.inf, 80.0], ids=["stiff deck", "sprung deck"])
-def test_lump_on_a_deck(deck: float, relaxation: float, height: float) -> None:
+def test_lump_on_a_deck(agrees: Agrees, deck: float, relaxation: float, height: float) -> None:
     """A lump of 20 kg on a deck of 80 kg on springs of 12 Hz, or on none, on a frame shaken at 15 Hz, against SciPy's DOP853."""
     stiffness = 1e8 if relaxation < 1e-3 else 1e7
     system = ShakenDeck(20.0, deck, 12.0, 0.05, stiffness, relaxation, 1.6e-3, 15.0)
@@ -162,9 +178,10 @@ def test_lump_on_a_deck(deck: float, relaxation: float, height: float) -> None:
     response, times = vi.simulate(problem), np.linspace(0.0, 1.0, 1001)
     expected, left = system.follow(height, times)
     found = response.at(times)
-    assert found["position_m"] - 0.1 == pytest.approx(expected[:, 0], abs=1e-8)
-    assert found["velocity_m_s"] == pytest.approx(expected[:, 1], abs=1e-6)
-    assert found["plate_deflection_m"] == pytest.approx(expected[:, 2], abs=1e-8)
+    case = "a lump of 20 kg on a stiff or sprung deck, bouncing and riding"
+    agrees(case, "place over a second", found["position_m"] - 0.1, expected[:, 0], unit="m", against=DOP853, absolute=1e-8)
+    agrees(case, "velocity over a second", found["velocity_m_s"], expected[:, 1], unit="m/s", against=DOP853, absolute=1e-6)
+    agrees(case, "deflection of the deck", found["plate_deflection_m"], expected[:, 2], unit="m", against=DOP853, absolute=1e-8)
     assert found["plate_displacement_m"] == pytest.approx(expected[:, 2], abs=1e-8)
     assert found["plate_velocity_m_s"] == pytest.approx(expected[:, 3], abs=1e-6)
     assert len(left) > 2
@@ -173,7 +190,7 @@ def test_lump_on_a_deck(deck: float, relaxation: float, height: float) -> None:
 
 @pytest.mark.parametrize(("relaxation", "height"), [(2e-5, 0.02), (2e-3, 0.006)], ids=["bouncing", "riding and launched again"])
 @pytest.mark.parametrize("deck", [np.inf, 1.4], ids=["stiff deck", "sprung deck"])
-def test_a_light_lump_on_a_deck_in_air(deck: float, relaxation: float, height: float) -> None:
+def test_a_light_lump_on_a_deck_in_air(agrees: Agrees, deck: float, relaxation: float, height: float) -> None:
     """As above, of 0.35 kg and 0.2 m in diameter, which air slows down by 6 % of its weight at 1 m/s."""
     mass, radius, coefficient, density = 0.35, 0.1, 10.0, 1.2
     drag = 0.375 * density / (mass / (4.0 / 3.0 * math.pi * radius**3)) * coefficient / radius
@@ -201,8 +218,9 @@ def test_a_light_lump_on_a_deck_in_air(deck: float, relaxation: float, height: f
     found = response.at(times)
     split = response.impacts["time_s"][response.impacts["contacts"] > 1]  # between the contacts of one row there is no drag
     here = times < split.min(initial=np.inf)
-    assert found["position_m"][here] - radius == pytest.approx(expected[here, 0], abs=1e-8)
-    assert found["velocity_m_s"][here] == pytest.approx(expected[here, 1], abs=1e-6)
+    case, place = "a light lump in air, bouncing and riding", found["position_m"][here] - radius
+    agrees(case, "place over a second", place, expected[here, 0], unit="m", against=DOP853, absolute=1e-8)
+    agrees(case, "velocity over a second", found["velocity_m_s"][here], expected[here, 1], unit="m/s", against=DOP853, absolute=1e-6)
     assert found["plate_deflection_m"][here] == pytest.approx(expected[here, 2], abs=1e-8)
     assert np.count_nonzero(here) > 900
     assert len(left) > 2
@@ -210,7 +228,7 @@ def test_a_light_lump_on_a_deck_in_air(deck: float, relaxation: float, height: f
     assert response.energy["air_J"] > 0.0
 
 
-def test_a_hard_ball_on_a_table_in_air() -> None:
+def test_a_hard_ball_on_a_table_in_air(agrees: Agrees) -> None:
     """A table tennis ball, between its touches by SciPy: each flight from the table to the next meeting."""
     radius, density, restitution = 0.02, 84.0, 0.9
     mass = 4.0 / 3.0 * math.pi * radius**3 * density
@@ -229,7 +247,9 @@ def test_a_hard_ball_on_a_table_in_air() -> None:
     for touch, speed in zip(response.impacts["time_s"], response.impacts["approach_speed_m_s"], strict=True):
         flight = solve_ivp(slopes, (time, time + 2.0), state, "DOP853", events=gap, rtol=1e-12, atol=1e-14, max_step=2e-3)
         time, velocity = float(flight.t[-1]), float(problem.surface(flight.t[-1])[1])
-        assert (touch, speed) == (pytest.approx(time, abs=1e-8), pytest.approx(velocity - flight.y[1, -1], rel=1e-6))
+        agrees("a table tennis ball in air", "time of touch", touch, time, unit="s", against=DOP853, absolute=1e-8)
+        closing = velocity - flight.y[1, -1]
+        agrees("a table tennis ball in air", "approach speed", speed, closing, unit="m/s", against=DOP853, relative=1e-6)
         state = [float(problem.surface(time)[0]) + 1e-15, velocity + restitution * (velocity - flight.y[1, -1])]
     assert response.energy["closure_relative"] <= 1e-9
     assert response.impacts["rebound_height_m"][-1] == pytest.approx(float(response.at(response.end_time[0])["position_m"]), abs=1e-12)
@@ -263,7 +283,7 @@ def test_a_table_that_hardly_moves_is_nearly_a_plate_at_rest(law: vi.ContactLaw)
         assert shaken.impacts[name] == pytest.approx(rest.impacts[name], rel=1e-8), name
 
 
-def test_a_lump_at_rest_on_a_sprung_deck_moves_on_as_scipy_has_it() -> None:
+def test_a_lump_at_rest_on_a_sprung_deck_moves_on_as_scipy_has_it(agrees: Agrees) -> None:
     """Found at rest, the lump is no longer integrated: its contact is linear, which errs by the square of the change of the force."""
     law, system = KuwabaraKono(stiffness=1e9, dissipation_time=2e-3), ShakenDeck(20.0, 80.0, 12.0, 0.05, 1e9, 2e-3, 2e-4, 15.0)
     shape = np.array([80.0**-0.5])
@@ -290,7 +310,8 @@ def test_a_lump_at_rest_on_a_sprung_deck_moves_on_as_scipy_has_it() -> None:
     change = np.abs(found["force_N"][later] / weight - 1.0).max()
     assert 0.2 < change < 0.5
     sag = (weight / 1e9) ** (2.0 / 3.0)
-    assert found["plate_deflection_m"] == pytest.approx(expected[:, 2], abs=2e-7)
+    case = "a lump at rest on a sprung deck"
+    agrees(case, "deflection of the deck", found["plate_deflection_m"], expected[:, 2], unit="m", against=DOP853, absolute=2e-7)
     assert found["position_m"] - 0.1 == pytest.approx(expected[:, 0], abs=0.2 * change**2 * sag)
     force = 20.0 * (9.8 + np.gradient(expected[:, 1], times, edge_order=2))
     assert found["force_N"][later] == pytest.approx(force[later], abs=1e-3 * weight)
@@ -304,7 +325,7 @@ def test_a_lump_at_rest_on_a_sprung_deck_moves_on_as_scipy_has_it() -> None:
     assert drive - drive[0] == pytest.approx(work, abs=0.01 * np.ptp(work))
 
 
-def test_friction_turns_with_a_table_that_shakes_across_the_slip() -> None:
+def test_friction_turns_with_a_table_that_shakes_across_the_slip(agrees: Agrees) -> None:
     """A sphere rides and slides over many periods: friction points against the slip at every instant, as in SciPy's integration of it."""
     friction = vi.find_friction_law("mindlin")(
         coefficient=0.05, effective_modulus=4e10, effective_shear_modulus=3e10, effective_radius=0.02
@@ -336,4 +357,5 @@ def test_friction_turns_with_a_table_that_shakes_across_the_slip() -> None:
     expected = solve_ivp(rates, tuple(times), slips[:, 0], rtol=1e-10, atol=1e-13, max_step=1e-4).y[:, -1]
     straight = slips[0, 0] - 3.5 * 0.05 * 9.80665 * (times[1] - times[0])
     assert expected[0] - straight > 4e-4
-    assert slips[0, 1] == pytest.approx(expected[0], abs=0.03 * (expected[0] - straight))
+    within = float(0.03 * (expected[0] - straight))
+    agrees("a table that shakes across the slip", "slip", slips[0, 1], expected[0], unit="m/s", against=DOP853, absolute=within)

@@ -11,6 +11,15 @@ from scipy.optimize import brentq
 from scipy.special import beta
 
 import vibroimpact as vi
+from agreement import Against, Agrees
+
+AGAINST = Against(
+    "closed forms of features",
+    "closed form",
+    "sensors and signals",
+    "tones, damped tones, Gaussian bursts, half sines, impulses, white noise",
+)
+
 
 EULER = 0.5772156649015329
 
@@ -20,7 +29,7 @@ def features_of(signal: np.ndarray, rate: float, **settings: float) -> dict[str,
     return dict(zip(table.names, table.values[0].tolist(), strict=True))
 
 
-def test_a_tone() -> None:
+def test_a_tone(agrees: Agrees) -> None:
     rate, samples, periods, amplitude = 20e3, 8192, 401, 3.0  # no sample of a period is that of another
     length, frequency = samples / rate, periods * rate / samples
     found = features_of(amplitude * np.sin(2.0 * np.pi * frequency * np.arange(samples) / rate), rate)
@@ -58,23 +67,24 @@ def test_a_tone() -> None:
     for name, value in exact.items():
         # within the sampling of a period: 20 samples
         if name == "zero_crossing_rate":  # to one crossing
-            assert found[name] == pytest.approx(value, abs=1.01 * rate / samples)
+            agrees("a tone", name.replace("_", " "), found[name], value, unit="1/s", absolute=1.01 * rate / samples)
             continue
         close = 1e-3 if name in ("peak", "peak_to_peak", "clearance_factor", "crest_factor", "impulse_factor") else 2e-4
-        assert found[name] == pytest.approx(value, rel=close, abs=1e-5 * max(1.0, frequency)), name
+        within = max(close * abs(value), 1e-5)
+        agrees("a tone", name.replace("_", " "), found[name], value, absolute=within)
     assert found["spectral_flatness"] < 1e-20
 
 
-def test_a_damped_tone() -> None:
+def test_a_damped_tone(agrees: Agrees) -> None:
     rate, constant, frequency = 100e3, 4e-3, 3e3
     time = np.arange(8192) / rate  # twenty time constants
     found = features_of(2.0 * np.exp(-time / constant) * np.sin(2.0 * np.pi * frequency * time), rate)
     turn = 2.0 * math.pi * frequency
     # the integral of exp(-2 t/T) sin^2(w t)
     energy = 4.0 * 0.5 * (constant / 2.0 - (2.0 / constant) / ((2.0 / constant) ** 2 + (2.0 * turn) ** 2))
-    assert found["energy"] == pytest.approx(energy, rel=1e-4)
-    assert found["rms"] == pytest.approx(math.sqrt(energy * rate / 8192), rel=1e-4)
-    assert found["decay_time"] == pytest.approx(constant, rel=1e-2)
+    agrees("a damped tone", "energy", found["energy"], energy, relative=1e-4)
+    agrees("a damped tone", "rms", found["rms"], math.sqrt(energy * rate / 8192), relative=1e-4)
+    agrees("a damped tone", "decay time", found["decay_time"], constant, unit="s", relative=1e-2)
     assert found["temporal_centroid"] == pytest.approx(constant / 2.0, rel=1e-2)
     # down to a tenth of the largest value of the envelope
     assert found["duration"] == pytest.approx(constant * math.log(10.0), abs=2.0 / frequency)
@@ -85,7 +95,7 @@ def test_a_damped_tone() -> None:
     assert found["cut_off_10_dB"] == pytest.approx(frequency + 3.0 / (2.0 * math.pi * constant), rel=5e-3)
 
 
-def test_a_burst_with_a_gaussian_envelope() -> None:
+def test_a_burst_with_a_gaussian_envelope(agrees: Agrees) -> None:
     rate, width, frequency = 100e3, 1e-3, 10e3
     time = np.arange(4096) / rate - 20e-3
     found = features_of(np.exp(-(time**2) / (2.0 * width**2)) * np.cos(2.0 * np.pi * frequency * time), rate)
@@ -96,17 +106,18 @@ def test_a_burst_with_a_gaussian_envelope() -> None:
     assert found["energy"] == pytest.approx(width * math.sqrt(math.pi) / 2.0, rel=1e-6)
     assert found["spectral_centroid"] == pytest.approx(frequency, rel=1e-6)
     assert found["amplitude_centroid"] == pytest.approx(frequency, rel=1e-6)
-    assert found["spectral_bandwidth"] == pytest.approx(1.0 / (math.sqrt(8.0) * math.pi * width), rel=1e-6)
+    bandwidth = 1.0 / (math.sqrt(8.0) * math.pi * width)
+    agrees("a Gaussian burst", "spectral bandwidth", found["spectral_bandwidth"], bandwidth, unit="Hz", relative=1e-6)
     assert found["cut_off_10_dB"] == pytest.approx(frequency + math.sqrt(math.log(10.0)) / (2.0 * math.pi * width), rel=1e-4)
 
 
-def test_a_half_sine() -> None:
+def test_a_half_sine(agrees: Agrees) -> None:
     rate, contact = 1e6, 1e-3
     time = np.arange(2**15) / rate
     found = features_of(5.0 * np.where(time < contact, np.sin(np.pi * time / contact), 0.0), rate)
     share = contact * rate / 2**15
     falls = brentq(lambda f: abs(math.cos(math.pi * f) / (1.0 - 4.0 * f**2)) - 10.0**-0.5, 0.6, 1.4)
-    assert found["cut_off_10_dB"] * contact == pytest.approx(falls, rel=1e-3)
+    agrees("a half sine", "frequency of -10 dB, over 1/T", found["cut_off_10_dB"] * contact, falls, relative=1e-3)
     assert found["peak"] == pytest.approx(5.0, rel=1e-5)
     assert found["mean"] == pytest.approx(5.0 * 2.0 / math.pi * share, rel=1e-5)
     assert found["rms"] == pytest.approx(5.0 * math.sqrt(share / 2.0), rel=1e-5)
@@ -115,7 +126,7 @@ def test_a_half_sine() -> None:
     assert found["peak_frequency"] == found["zero_crossing_rate"] == 0.0
 
 
-def test_the_force_of_hertz() -> None:
+def test_the_force_of_hertz(agrees: Agrees) -> None:
     """Its spectrum is 10 dB down at 1.16 over the contact time, by an integration of our own of m x'' = -k x^1.5."""
     whole = solve_ivp(
         lambda t, y: (y[1], -(max(y[0], 0.0) ** 1.5)), (0.0, 4.0), (0.0, 1.0), rtol=1e-10, atol=1e-12, dense_output=True, max_step=0.01
@@ -123,10 +134,11 @@ def test_the_force_of_hertz() -> None:
     contact = brentq(lambda t: whole.sol(t)[0], 2.0, 4.0)
     time = np.arange(2**15) / 1000.0
     force = np.maximum(whole.sol(np.minimum(time, contact))[0], 0.0) ** 1.5
-    assert features_of(force, 1000.0)["cut_off_10_dB"] * contact == pytest.approx(1.16, abs=0.005)
+    found = features_of(force, 1000.0)["cut_off_10_dB"] * contact
+    agrees("Hertz's force", "frequency of -10 dB, over 1/T", found, 1.16, absolute=0.005)
 
 
-def test_impulses() -> None:
+def test_impulses(agrees: Agrees) -> None:
     samples, number = 4096, 8
     train = np.zeros(samples)
     train[100 + 512 * np.arange(number)] = 1.0
@@ -149,7 +161,7 @@ def test_impulses() -> None:
         "standard_deviation": math.sqrt(spread),
     }
     for name, value in exact.items():
-        assert found[name] == pytest.approx(value, rel=1e-10), name
+        agrees("eight impulses", name.replace("_", " "), found[name], value, relative=1e-10)
 
 
 def test_one_impulse_has_all_frequencies() -> None:
@@ -167,7 +179,7 @@ def test_one_impulse_has_all_frequencies() -> None:
 
 
 @pytest.mark.parametrize("restitution", [0.5, 0.65, 0.8])
-def test_a_bouncing_ball(restitution: float) -> None:
+def test_a_bouncing_ball(agrees: Agrees, restitution: float) -> None:
     rate, first = 50e3, 0.15
     times = 0.02 + np.cumsum([0.0, first, first * restitution, first * restitution**2])
     time = np.arange(int(0.5 * rate)) / rate
@@ -179,7 +191,7 @@ def test_a_bouncing_ball(restitution: float) -> None:
     assert found["packets"] == 4
     # a smaller sine reaches the threshold later, within a quarter of its period
     assert found["bounce_interval"] == pytest.approx(first, abs=1e-4)
-    assert found["bounce_restitution"] == pytest.approx(restitution, abs=2e-4 / first)
+    agrees("a bouncing ball", "restitution", found["bounce_restitution"], restitution, absolute=2e-4 / first)
     assert found["peak_ratio"] == pytest.approx(restitution, rel=0.02)
 
 

@@ -5,10 +5,19 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from agreement import Against, Agrees
 from vibroimpact.studies.axes import Spaced
 from vibroimpact.studies.design import Asked
 from vibroimpact.studies.designs.saltelli import plan
 from vibroimpact.studies.sensitivity import sobol_indices
+
+AGAINST = Against(
+    "functions whose indices are known",
+    "closed form",
+    "calibration, identification and studies",
+    "Ishigami and Homma 1990; sums and products of uniform variables",
+)
+
 
 POINTS = 8192
 
@@ -32,12 +41,12 @@ def closed_form_of_ishigami() -> tuple[np.ndarray, np.ndarray]:
     return np.array([first, second, 0.0]) / whole, np.array([first + together, second, together]) / whole
 
 
-def test_ishigami() -> None:
+def test_ishigami(agrees: Agrees) -> None:
     found = sobol_indices(ishigami(drawn(3, -np.pi, np.pi)), 3)
     assert found is not None
     first, total = closed_form_of_ishigami()
-    assert found.first == pytest.approx(first, abs=0.01)
-    assert found.total == pytest.approx(total, abs=0.01)
+    agrees("Ishigami's function, 8192 points", "first indices", found.first, first, absolute=0.01)
+    agrees("Ishigami's function, 8192 points", "total indices", found.total, total, absolute=0.01)
     # the interval holds the truth, and is not so wide as to say nothing
     assert np.all(np.abs(found.first - first) <= found.first_error)
     assert np.all(np.abs(found.total - total) <= found.total_error)
@@ -45,22 +54,22 @@ def test_ishigami() -> None:
     assert found.total_error.max() < 0.05
 
 
-def test_sum_of_axes_has_the_indices_of_its_variances() -> None:
+def test_sum_of_axes_has_the_indices_of_its_variances(agrees: Agrees) -> None:
     x = drawn(4, 0.0, 1.0)
     weights = np.array([1.0, 2.0, 3.0, 0.0])
     found = sobol_indices(weights @ x, 4)
     assert found is not None
     expected = weights**2 / np.sum(weights**2)
-    assert found.first == pytest.approx(expected, abs=2e-3)
-    assert found.total == pytest.approx(expected, abs=2e-3)
+    agrees("a weighted sum", "first indices", found.first, expected, absolute=2e-3)
+    agrees("a weighted sum", "total indices", found.total, expected, absolute=2e-3)
 
 
-def test_product_of_two_axes_matters_only_together() -> None:
+def test_product_of_two_axes_matters_only_together(agrees: Agrees) -> None:
     x = drawn(2, -1.0, 1.0)
     found = sobol_indices(x[0] * x[1], 2)  # neither does anything by itself
     assert found is not None
-    assert found.first == pytest.approx([0.0, 0.0], abs=0.02)
-    assert found.total == pytest.approx([1.0, 1.0], abs=0.02)
+    agrees("a product", "first indices", found.first, [0.0, 0.0], absolute=0.02)
+    agrees("a product", "total indices", found.total, [1.0, 1.0], absolute=0.02)
 
 
 @pytest.mark.slow

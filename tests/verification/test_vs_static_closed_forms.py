@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
+from agreement import Against, Agrees
 from vibroimpact.materials import Material
 from vibroimpact.structures.lattice import box_mesh
 from vibroimpact.structures.mesh import Mesh
@@ -19,6 +20,14 @@ from vibroimpact.structures.supports.constraints import Constraints, HeldStructu
 from vibroimpact.structures.supports.edge import EDGES, Edge
 from vibroimpact.structures.supports.support import Support, held_by
 from vibroimpact.structures.surface import surface_motion
+
+AGAINST = Against(
+    "beams, bars, plates and constant strain",
+    "closed form",
+    "plates, spheres and modes",
+    "Timoshenko and Goodier; Timoshenko and Woinowsky-Krieger, table 37; Navier's series",
+)
+
 
 SOLIDS = ("tet4", "tet10", "hex8", "hex20", "hex27")
 STEEL = Material(7850.0, 210e9, 0.3)
@@ -56,7 +65,7 @@ def plate_under(places: np.ndarray, supports: tuple[Support, ...], structure: St
 
 @pytest.mark.parametrize(("kind", "counts"), [("hex20", (8, 1, 1)), ("hex27", (8, 1, 1)), ("tet10", (16, 2, 2))])
 @pytest.mark.parametrize("ratio", [0.0, 0.3])
-def test_tip_of_a_cantilever(kind: str, counts: tuple[int, int, int], ratio: float) -> None:
+def test_tip_of_a_cantilever(agrees: Agrees, kind: str, counts: tuple[int, int, int], ratio: float) -> None:
     """F L^3 / 3 E I + F L / (5/6 G A), within 0.5 %; the edge is so held that the end may contract, as it does in a beam."""
     length, width, height = 1.0, 0.05, 0.06
     structure = solid_structure(box_mesh((length, width, height), counts, kind), Material(7850.0, 210e9, ratio))
@@ -66,7 +75,7 @@ def test_tip_of_a_cantilever(kind: str, counts: tuple[int, int, int], ratio: flo
     found = response(held_by(structure, BEAM_END), load.ravel()).reshape(-1, 3)
     area, second = width * height, width * height**3 / 12
     exact = length**3 / (3 * 210e9 * second) + length / (5 / 6 * 210e9 / (2 + 2 * ratio) * area)
-    assert traction @ found[:, 2] == pytest.approx(exact, rel=5e-3)
+    agrees("tip of a cantilever, three elements", "deflection under 1 N", traction @ found[:, 2], exact, unit="m", relative=5e-3)
 
 
 def shares_of_the_end(mesh: Mesh) -> np.ndarray:
@@ -92,7 +101,7 @@ def test_a_bar_that_hangs(kind: str) -> None:
 
 
 @pytest.mark.parametrize("place", [(0.0, 0.0), (0.1, -0.07)])
-def test_point_load_on_a_simply_supported_plate(place: tuple[float, float]) -> None:
+def test_point_load_on_a_simply_supported_plate(agrees: Agrees, place: tuple[float, float]) -> None:
     """Navier's series, each term with Mindlin's shear; away from the load, where it converges, within 1e-4."""
     length, width, height = 0.52, 0.42, 0.008
     structure = plate_structure(plate_mesh((length, width), 0.05), STEEL, height)
@@ -106,15 +115,17 @@ def test_point_load_on_a_simply_supported_plate(place: tuple[float, float]) -> N
     def shape(at: tuple[float, float]) -> np.ndarray:
         return np.sin(m * np.pi * (at[0] / length + 0.5)) * np.sin(n * np.pi * (at[1] / width + 0.5))
 
-    assert found[1] == pytest.approx((flexibility * shape(place) * shape(elsewhere)).sum(), rel=1e-4)
+    exact = (flexibility * shape(place) * shape(elsewhere)).sum()
+    agrees("point load on a simply supported plate", "deflection away from it", found[1], exact, unit="m", relative=1e-4)
 
 
-def test_centre_of_a_clamped_square_plate() -> None:
+def test_centre_of_a_clamped_square_plate(agrees: Agrees) -> None:
     """0.00560 P a^2 / D (S. P. Timoshenko and S. Woinowsky-Krieger, Theory of Plates and Shells, table 37)."""
     height = 0.002
     structure = plate_structure(plate_mesh((1.0, 1.0), 0.1), STEEL, height)
     found = plate_under(np.array([[0.0, 0.0]]), tuple(Edge(edge, "clamped") for edge in EDGES), structure)
-    assert found[0] * 210e9 * height**3 / (12 * 0.91) == pytest.approx(0.00560, rel=2e-3)
+    part = found[0] * 210e9 * height**3 / (12 * 0.91)
+    agrees("centre of a clamped square plate", "deflection over P a²/D", part, 0.00560, relative=2e-3)
 
 
 def test_a_free_sphere_under_a_load_at_its_pole() -> None:
@@ -135,7 +146,7 @@ def test_a_free_sphere_under_a_load_at_its_pole() -> None:
 
 
 @pytest.mark.parametrize("kind", SOLIDS)
-def test_patch_test_of_solids(kind: str) -> None:
+def test_patch_test_of_solids(agrees: Agrees, kind: str) -> None:
     """Distorted elements carry any constant strain without a residual inside, with the energy of constant strain."""
     regular = box_mesh((1.0, 0.8, 0.6), (2, 2, 2), "hex8" if kind.startswith("hex") else "tet4")
     random = np.random.default_rng(3)
@@ -158,11 +169,11 @@ def test_patch_test_of_solids(kind: str) -> None:
     strain = (gradient + gradient.T) / 2
     mu, lame = 210e9 / 2.6, 210e9 * 0.3 / (1.3 * 0.4)
     energy = 0.48 * (lame * np.trace(strain) ** 2 / 2 + mu * (strain**2).sum())
-    assert field @ force.ravel() / 2 == pytest.approx(energy, rel=1e-11)
+    agrees("patch test, five elements", "energy of constant strain", field @ force.ravel() / 2, energy, unit="J", relative=1e-11)
 
 
 @pytest.mark.parametrize(("bent", "tolerance"), [(False, 1e-9), (True, 1e-5)])
-def test_patch_test_of_the_plate_element(bent: bool, tolerance: float) -> None:
+def test_patch_test_of_the_plate_element(agrees: Agrees, bent: bool, tolerance: float) -> None:
     """Constant stretch, bending with its parabolic deflection, and shear; elements bent around a disc hold parabolas only nearly."""
     height = 0.02
     mesh = plate_mesh((1.0, 0.8), 0.3, [Disc(0.1, 0.05, 0.12)] if bent else [])
@@ -188,4 +199,5 @@ def test_patch_test_of_the_plate_element(bent: bool, tolerance: float) -> None:
     }
     for name, (field, density) in fields.items():
         motion = np.stack(field, axis=1).ravel()
-        assert motion @ (structure.stiffness @ motion) / 2 == pytest.approx(area * density, rel=tolerance), name
+        energy, case = motion @ (structure.stiffness @ motion) / 2, "bent around a disc" if bent else "straight sides"
+        agrees(f"patch test of the plate element, {case}", f"energy of {name}", energy, area * density, unit="J", relative=tolerance)

@@ -7,11 +7,26 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from agreement import Against, Agrees
 from support import one_in
 from vibroimpact.structures.recipe import PlateOfPlates, PlateOfSolids, Recipe, Shape
 from vibroimpact.structures.static_compliance import computed_compliance
 from vibroimpact.structures.supports.edge import EDGES, Edge
 from vibroimpact.structures.supports.patch import Patch
+
+AGAINST = Against(
+    "a simply supported elastic layer, by its half waves",
+    "closed form",
+    "plates, spheres and modes",
+    "exact over the thickness, with the images of a half space; Navier's series (Timoshenko and Woinowsky-Krieger, table 23)",
+)
+ELEMENTS = Against(
+    "plate elements, beside bricks",
+    "consistency",
+    "plates, spheres and modes",
+    "two elements of this package",
+)
+
 
 SIDE, NU, MODULUS = 0.5, 0.3, 210e9
 SIMPLE = tuple(Edge(edge, "simply-supported") for edge in EDGES)
@@ -43,7 +58,7 @@ def exact(thickness: float, x: float = 0.0, y: float = 0.0) -> float:
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("thickness", "place"), [(0.002, (0.17, 0.03)), (0.05, (0.17, 0.03)), (0.05, (0.0, 0.0))])
-def test_the_thin_theory_is_kirchhoffs(thickness: float, place: tuple[float, float]) -> None:
+def test_the_thin_theory_is_kirchhoffs(agrees: Agrees, thickness: float, place: tuple[float, float]) -> None:
     """Navier's series, 0.011600 F a^2 / D in the middle (Timoshenko and Woinowsky-Krieger, table 23), however thick the plate is."""
     numbers = np.arange(1, 2000) * np.pi / SIDE
     sines = [np.sin(numbers * (at + SIDE / 2)) ** 2 for at in place]
@@ -51,7 +66,7 @@ def test_the_thin_theory_is_kirchhoffs(thickness: float, place: tuple[float, flo
     if place == (0.0, 0.0):
         assert navier / SIDE**2 == pytest.approx(0.0116008, rel=1e-5)
     found = computed_compliance(recipe(PlateOfPlates((SIDE, SIDE, thickness), SIDE / 20, "thin")), place)
-    assert found * rigidity(thickness) == pytest.approx(navier, rel=1e-3)
+    agrees("thin theory, however thick", "deflection of the point, times D", found * rigidity(thickness), navier, unit="m²", relative=1e-3)
 
 
 @pytest.mark.parametrize("place", [(0.0, 0.0), (0.17, 0.03)])
@@ -64,8 +79,10 @@ def test_the_thin_theory_is_kirchhoffs(thickness: float, place: tuple[float, flo
     ],
     ids=["thick", "thick of solids", "thin"],
 )
-def test_simply_supported(shape: PlateOfPlates | PlateOfSolids, tolerance: float, place: tuple[float, float]) -> None:
-    assert computed_compliance(recipe(shape), place) == pytest.approx(exact(shape.size[2], *place), rel=tolerance)
+def test_simply_supported(agrees: Agrees, shape: PlateOfPlates | PlateOfSolids, tolerance: float, place: tuple[float, float]) -> None:
+    case = f"{'bricks' if isinstance(shape, PlateOfSolids) else 'plate elements'}, 1/{SIDE / shape.size[2]:.0f} as thick as long"
+    found = computed_compliance(recipe(shape), place)
+    agrees(case, "structural compliance", found, exact(shape.size[2], *place), unit="m/N", relative=tolerance)
 
 
 def test_what_thin_theory_would_miss() -> None:
@@ -75,19 +92,19 @@ def test_what_thin_theory_would_miss() -> None:
 
 
 @pytest.mark.parametrize(("thickness", "solid", "layers", "of_shear"), one_in(2, [(0.01, 0.02, 2, 0.005), (0.05, 0.025, 3, 0.06)]))
-def test_clamped_plates_of_either_elements(thickness: float, solid: float, layers: int, of_shear: float) -> None:
+def test_clamped_plates_of_either_elements(agrees: Agrees, thickness: float, solid: float, layers: int, of_shear: float) -> None:
     """Within 1 %, which the bricks lack at the clamped edge; the thin theory lacks the shear that goes with the bending there."""
     plates = PlateOfPlates((SIDE, SIDE, thickness), SIDE / 8)
     solids = PlateOfSolids((SIDE, SIDE, thickness), solid, layers)
     thick, thin, bricks = (
         computed_compliance(recipe(shape, CLAMPED), (0.06, -0.04)) for shape in (plates, replace(plates, theory="thin"), solids)
     )
-    assert bricks == pytest.approx(thick, rel=0.01)
+    agrees("clamped, bricks beside plate elements", "structural compliance", bricks, thick, unit="m/N", against=ELEMENTS, relative=0.01)
     assert thin == pytest.approx(thick * (1 - of_shear), rel=0.01)
 
 
 @pytest.mark.slow
-def test_the_plate_of_the_paper() -> None:
+def test_the_plate_of_the_paper(agrees: Agrees) -> None:
     """On patches, in the middle: both elements agree, if bricks are refined at the rims (else they are 2 % stiffer)."""
     patches = tuple(Patch(x, y, 0.015) for x in (-0.22, 0.22) for y in (-0.17, 0.17))
     size = (0.52, 0.42, 0.008)
@@ -95,4 +112,5 @@ def test_the_plate_of_the_paper() -> None:
         computed_compliance(recipe(shape, patches), (0.0, 0.0))
         for shape in (PlateOfPlates(size, 0.07), PlateOfSolids(size, 0.026, splits=2))
     ]
-    assert found[1] == pytest.approx(found[0], rel=0.01)
+    case = "the paper's plate, bricks beside plate elements"
+    agrees(case, "structural compliance", found[1], found[0], unit="m/N", against=ELEMENTS, relative=0.01)

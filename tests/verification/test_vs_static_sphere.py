@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from agreement import Against, Agrees
 from oracles.axisymmetric_contact import static_approach
 from vibroimpact.materials import Material
 from vibroimpact.structures.modes import ElasticSystem
@@ -14,10 +15,17 @@ from vibroimpact.structures.structure import solid_structure
 from vibroimpact.structures.supports.support import held_by
 from vibroimpact.structures.surface import surface_motion
 
+AGAINST = Against(
+    "finite elements of a sphere in contact",
+    "own independent computation",
+    "Hertz and elastic contact",
+    "tests/oracles/axisymmetric_contact.py; and, under Hertz's pressure, elements of this package",
+)
+
 
 @pytest.mark.parametrize("poissons_ratio", [0.0, 0.28])
 @pytest.mark.slow
-def test_under_the_pressure_of_hertz(poissons_ratio: float) -> None:
+def test_under_the_pressure_of_hertz(agrees: Agrees, poissons_ratio: float) -> None:
     """Unit radius, modulus and force; the mesh is carried by its inertia. What remains is that elements are too stiff."""
     structure = solid_structure(sphere_mesh(1.0, 8, "hex27", 3.0), Material(1.0, 1.0, poissons_ratio))
     held = held_by(structure)
@@ -30,11 +38,13 @@ def test_under_the_pressure_of_hertz(poissons_ratio: float) -> None:
         motion, _ = surface_motion(structure.mesh, ratio * disc.reshape(-1, 2), "lower")
         load = share @ motion[2::3]
         found = load @ elastic.static(load) - 0.6 * (1 - poissons_ratio**2) / ratio
-        assert found == pytest.approx(float(finite_sphere_factor(poissons_ratio, ratio)), abs=0.006)
+        agrees(
+            "under Hertz's pressure", "factor of the finite size", float(finite_sphere_factor(poissons_ratio, ratio)), found, absolute=0.006
+        )
 
 
 @pytest.mark.parametrize(("poissons_ratio", "ratio"), [(0.28, 0.04), (0.28, 0.1), (0.28, 0.18), (0.0, 0.1), (0.45, 0.1)])
-def test_against_a_sphere_in_contact(poissons_ratio: float, ratio: float) -> None:
+def test_against_a_sphere_in_contact(agrees: Agrees, poissons_ratio: float, ratio: float) -> None:
     """At the approach of Hertz's force with the term the sphere has that force; Hertz alone is off by 3 to 20 %.
 
     What remains, which goes with the square of a / R, is that the contact is not Hertz's: neither its pressure nor its gap.
@@ -43,4 +53,4 @@ def test_against_a_sphere_in_contact(poissons_ratio: float, ratio: float) -> Non
     force = 4.0 / 3.0 * modulus / (1 - poissons_ratio**2) * ratio**3 * radius**2
     approach = ratio**2 * radius + float(sphere_term(poissons_ratio).factor(ratio)) * force / (modulus * radius)
     found = static_approach(radius, modulus, poissons_ratio, approach, 8.0)
-    assert found.force == pytest.approx(force, rel=5e-3)
+    agrees("in contact, a/R = 0.04 to 0.18", "force at the same approach", force, found.force, unit="N", relative=5e-3)

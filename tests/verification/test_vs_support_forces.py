@@ -8,7 +8,16 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
+from agreement import Against, Agrees
 from oracles.measuring_chain import RATE, Floats, SimplySupported, driven, rms, sampled
+
+AGAINST = Against(
+    "statics, momentum, and edges of Kirchhoff's plate",
+    "closed form",
+    "sensors and signals",
+    "lever rule; modes to 300 kHz at two million samples a second, tests/oracles/measuring_chain.py",
+)
+
 
 SIZE, DENSITY, MODULUS, POISSON, RATIO = (0.18, 0.15, 0.006), 7850.0, 210e9, 0.3, 1e-3
 SPOT = (-0.011, -0.0147)
@@ -56,8 +65,8 @@ def on_points(**one: Any) -> list[dict[str, Any]]:
 
 
 @pytest.mark.parametrize("supports", [on_points(type="point"), on_points(type="spring", stiffness=1e6)], ids=["points", "springs"])
-def test_lever_rule(supports: Any) -> None:
-    np.testing.assert_allclose(static(drop(supports, THREE))[:, 2], lever(SPOT), rtol=0.0, atol=1e-6)
+def test_lever_rule(agrees: Agrees, supports: Any) -> None:
+    agrees("three points, three springs", "shares of a static force", static(drop(supports, THREE))[:, 2], lever(SPOT), absolute=1e-6)
 
 
 PATCHES = {"type": "patches", "spacing": [0.14, 0.11], "radius": 0.01}
@@ -79,14 +88,14 @@ SOLID = {"modes": 6, "element": "solid", "mesh": {"element_size": 0.015, "layers
     ],
     ids=["points", "pads", "patches", "bars", "clamped", "solid on patches", "solid clamped"],
 )
-def test_momentum_of_modes(supports: Any, places: list[tuple[float, float]], plate: Any) -> None:
+def test_momentum_of_modes(agrees: Agrees, supports: Any, places: list[tuple[float, float]], plate: Any) -> None:
     """In each mode the supports together change the momentum of the plate, along all axes; at rest they carry the whole force."""
     response = drop(supports, places, plate)
     modes = response.problem.plate.modes
     assert modes is not None
     exact = -(modes.angular_frequencies[:, None] ** 2) * modes.participation
     found = sum(modes.points[f"{number}"] for number in range(len(places)))
-    np.testing.assert_allclose(found, exact, rtol=0.0, atol=1e-6 * np.abs(exact).max())
+    agrees("points, pads, patches, bars, clamped edges", "rate of momentum of modes", found, exact, of_the_largest=1e-6)
     np.testing.assert_allclose(static(response).sum(axis=0), [0.0, 0.0, 1.0], rtol=0.0, atol=1e-8)
 
 
@@ -120,13 +129,17 @@ def off(found: Floats, force: Floats) -> float:
 
 
 @pytest.mark.parametrize("number", range(4))
-def test_edges(response: vi.Response, forces: Floats, number: int) -> None:
-    assert off(response.signals()[f"{number}"].value, forces[number]) < 0.01
+def test_edges(agrees: Agrees, response: vi.Response, forces: Floats, number: int) -> None:
+    found = response.signals()[f"{number}"].value
+    exact = sampled(forces[number], 50e3, "sigma-delta")[: len(found)]
+    agrees("four edges, after an impact", "signal of the force", found, exact, unit="N", rms=0.01)
 
 
-def test_balance_of_momentum(response: vi.Response, forces: Floats) -> None:
+def test_balance_of_momentum(agrees: Agrees, response: vi.Response, forces: Floats) -> None:
     """The supports together give the contact force and the change of the plate's momentum."""
-    assert off(sum(signal.value for signal in response.signals().values()), forces.sum(axis=0)) < 0.01
+    found = sum(signal.value for signal in response.signals().values())
+    exact = sampled(forces.sum(axis=0), 50e3, "sigma-delta")[: len(found)]
+    agrees("the supports together", "signal of the force", found, exact, unit="N", rms=0.01)
 
 
 @pytest.mark.parametrize("frequency", [16e3, pytest.param(30e3, marks=pytest.mark.slow)])
@@ -135,7 +148,7 @@ def test_what_fewer_modes_change_is_told(forces: Floats, frequency: float) -> No
         assert 0.25 < signal.uncertainty / off(signal.value, forces[int(name)]) < 4.0
 
 
-def test_a_ball_that_lies_on_three_points() -> None:
+def test_a_ball_that_lies_on_three_points(agrees: Agrees) -> None:
     """After it has come to rest and the plate is still, the supports share its weight by the lever rule."""
     response = drop(
         on_points(type="point"),
@@ -147,4 +160,4 @@ def test_a_ball_that_lies_on_three_points() -> None:
     )
     weight = 4.0 / 3.0 * np.pi * 5e-3**3 * 7850.0 * 9.80665
     found = [signal.value[-1] for signal in response.signals().values()]
-    np.testing.assert_allclose(found, weight * lever(SPOT), rtol=0.0, atol=1e-4 * weight)
+    agrees("a ball that lies on three points", "forces over the weight", np.array(found) / weight, lever(SPOT), absolute=1e-4)

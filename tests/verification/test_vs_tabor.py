@@ -11,8 +11,29 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import vibroimpact as vi
+from agreement import Against, Agrees
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.meyer import Meyer
+
+AGAINST = Against(
+    "Tabor's rebound with Meyer's index, by SciPy's quadrature",
+    "own independent computation",
+    "elastic-plastic contact",
+    "Tabor 1948, Proc. R. Soc. A 192, 247; energies over the contact radius",
+)
+JOHNSON = Against(
+    "Johnson, rebound at constant pressure",
+    "closed form",
+    "elastic-plastic contact",
+    "Johnson, Contact Mechanics, 1985, eq. 11.47",
+)
+MEASURED = Against(
+    "Kharaz and Gorham: spheres on steel and aluminium",
+    "experiment",
+    "elastic-plastic contact",
+    "Kharaz and Gorham 2000, Philos. Mag. Lett. 80, 549",
+)
+
 
 MODULUS, RADIUS, STRENGTH, MASS = 7e10, 0.0025, 3e8, 2.6e-4
 AT_YIELD, FULL = 1.6 * 2.0 / 3.0 * STRENGTH, 2.8 * STRENGTH
@@ -52,25 +73,34 @@ YIELD_SPEED = np.sqrt(2.0 * loading_work(YIELD_RADIUS, 2.45) / MASS)
 
 
 @pytest.mark.parametrize("index", [2.0, 2.2, 2.45, 2.7, 3.0])
-def test_force_over_indentation(index: float) -> None:
+def test_force_over_indentation(agrees: Agrees, index: float) -> None:
     law = law_of(index)
     for a in YIELD_RADIUS * np.array([1.0, 1.3, 3.0, 8.0, 9.0, 30.0]):
         delta = indentation(a, index)
-        assert law.loading_force(np.array(delta)) == pytest.approx(force(a, index), rel=1e-12)
-        assert law.loading_work(np.array(delta)) == pytest.approx(loading_work(a, index), rel=1e-9)
+        agrees(
+            "five indices, to 30 times the radius of yield",
+            "force",
+            law.loading_force(np.array(delta)),
+            force(a, index),
+            unit="N",
+            relative=1e-12,
+        )
+        work = loading_work(a, index)
+        agrees("five indices, to 30 times the radius of yield", "work", law.loading_work(np.array(delta)), work, unit="J", relative=1e-9)
         assert law.contact_radius(np.array(delta)) == pytest.approx(a, rel=1e-12)
 
 
 @pytest.mark.parametrize("index", [2.0, 2.2, 2.45, 2.7, 3.0])
 @pytest.mark.parametrize("ratio", [1.5, 10.0, 80.0, 300.0])
-def test_restitution(index: float, ratio: float) -> None:
+def test_restitution(agrees: Agrees, index: float, ratio: float) -> None:
     speed = ratio * YIELD_SPEED
     energy = 0.5 * MASS * speed**2
     a = brentq(lambda a: loading_work(a, index) - energy, YIELD_RADIUS, 1e3 * YIELD_RADIUS, xtol=1e-20, rtol=1e-14)
     recovered = 0.3 * force(a, index) ** 2 / (MODULUS * a)  # Tabor's: Hertz's energy of the dent
     expected = np.sqrt(recovered / energy)
-    assert law_of(index).closed_form_restitution(MASS, speed) == pytest.approx(expected, rel=1e-8)
-    assert vi.integrated_restitution(law_of(index), MASS, speed) == pytest.approx(expected, rel=1e-6)
+    case, law = "five indices, 1.5 to 300 times the speed of yield", law_of(index)
+    agrees(f"{case}, closed form", "restitution", law.closed_form_restitution(MASS, speed), expected, relative=1e-8)
+    agrees(f"{case}, integrated", "restitution", vi.integrated_restitution(law, MASS, speed), expected, relative=1e-6)
 
 
 def test_elastic_up_to_yield() -> None:
@@ -82,22 +112,30 @@ def test_elastic_up_to_yield() -> None:
     assert law_of(3.0).closed_form_restitution(MASS, YIELD_SPEED * 0.999 * (FULL / AT_YIELD) ** 2.5) == pytest.approx(1.0, abs=1e-12)
 
 
-def test_the_power_of_the_speed() -> None:
+def test_the_power_of_the_speed(agrees: Agrees) -> None:
     """Johnson's closed form of a constant pressure (Contact Mechanics, 1985, eq. 11.47), and the power of Meyer's index."""
     energy = 0.5 * MASS * (1e9 * YIELD_SPEED) ** 2
     for index, pressure in ((2.0, AT_YIELD), (2.45, FULL)):
         expected = 0.3 * np.pi**1.25 * 4**0.75 * pressure / MODULUS * (energy / (pressure * RADIUS**3)) ** -0.25
-        assert law_of(index).closed_form_restitution(MASS, 1e9 * YIELD_SPEED) ** 2 == pytest.approx(expected, rel=1e-4)
+        found = law_of(index).closed_form_restitution(MASS, 1e9 * YIELD_SPEED) ** 2
+        agrees("far above yield", "square of the restitution", found, expected, against=JOHNSON, relative=1e-4)
     index = 2.02  # full plasticity is beyond
     slow, fast = (law_of(index).closed_form_restitution(MASS, ratio * YIELD_SPEED) for ratio in (1e8, 1e9))
     assert np.log10(fast / slow) == pytest.approx(-(3.0 - index) / (index + 2.0), abs=1e-4)
 
 
-def test_full_plasticity_at_a_hundred_times_the_speed_of_yield() -> None:
+def test_full_plasticity_at_a_hundred_times_the_speed_of_yield(agrees: Agrees) -> None:
     """As measured with the default index: between 1.1 and 2.8 times the yield strength lie two decades of speed."""
     law = Meyer(effective_modulus=MODULUS, effective_radius=RADIUS, yield_strength=STRENGTH)
     at_yield, at_full = (np.sqrt(2.0 * float(law.loading_work(np.asarray(level))) / MASS) for level in law.breakpoints)
-    assert at_full / at_yield == pytest.approx(100.0, rel=0.02)
+    agrees(
+        "`meyer`, index by default",
+        "speed of full plasticity over that of yield",
+        at_full / at_yield,
+        100.0,
+        against=MEASURED,
+        relative=0.02,
+    )
     assert float(law.loading_force(law.breakpoints[0])) / (np.pi * YIELD_RADIUS**2 * STRENGTH) == pytest.approx(1.1, abs=0.04)
     radius = float(law.contact_radius(np.asarray(law.breakpoints[1])))
     assert float(law.loading_force(law.breakpoints[1])) / (np.pi * radius**2 * STRENGTH) == pytest.approx(2.8, rel=1e-12)

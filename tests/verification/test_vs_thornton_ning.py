@@ -11,8 +11,23 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import vibroimpact as vi
+from agreement import Against, Agrees
 from vibroimpact.contact.laws.jkr import JKR
 from vibroimpact.contact.laws.krijt import Krijt
+
+AGAINST = Against(
+    "Johnson, Kendall and Roberts; Thornton and Ning: sticking spheres",
+    "published computation",
+    "adhesion",
+    "Johnson, Kendall and Roberts 1971; Thornton and Ning 1998, Powder Technol. 99, 154",
+)
+SCIPY = Against(
+    "SciPy's Radau on the contact radius",
+    "own independent computation",
+    "adhesion",
+    "a JKR contact with viscous loss, in the test itself",
+)
+
 
 MODULUS, RADIUS, ADHESION, MASS = 3e8, 2e-4, 0.3, 5e-8
 LAW = JKR(effective_modulus=MODULUS, effective_radius=RADIUS, work_of_adhesion=ADHESION)
@@ -25,11 +40,13 @@ def force(delta: np.ndarray) -> np.ndarray:
     return LAW.forces(delta, np.zeros_like(delta), np.ones_like(delta))[0]
 
 
-def test_force() -> None:
-    assert LAW.release_level == pytest.approx(-0.75 * (np.pi**2 * ADHESION**2 * RADIUS / MODULUS**2) ** (1 / 3), rel=1e-12)
-    assert force(np.zeros(1))[0] == pytest.approx(-8 / 9 * PULL_OFF, rel=1e-12)
-    assert force(np.array([LAW.release_level]))[0] == pytest.approx(-5 / 9 * PULL_OFF, rel=1e-6)
-    assert force(np.linspace(LAW.release_level, 0.0, 20001)).min() == pytest.approx(-PULL_OFF, rel=1e-7)
+def test_force(agrees: Agrees) -> None:
+    at_break = -0.75 * (np.pi**2 * ADHESION**2 * RADIUS / MODULUS**2) ** (1 / 3)
+    agrees("a sphere of 0.2 mm", "indentation at the break", LAW.release_level, at_break, unit="m", relative=1e-12)
+    agrees("a sphere of 0.2 mm", "force at first touch", force(np.zeros(1)), -8 / 9 * PULL_OFF, unit="N", relative=1e-12)
+    agrees("a sphere of 0.2 mm", "force at the break", force(np.array([LAW.release_level])), -5 / 9 * PULL_OFF, unit="N", relative=1e-6)
+    lowest = force(np.linspace(LAW.release_level, 0.0, 20001)).min()
+    agrees("a sphere of 0.2 mm", "pull-off force", lowest, -PULL_OFF, unit="N", relative=1e-7)
 
 
 def test_force_and_indentation_satisfy_the_published_pair() -> None:
@@ -40,11 +57,11 @@ def test_force_and_indentation_satisfy_the_published_pair() -> None:
     np.testing.assert_allclose(force(delta), expected, rtol=1e-9, atol=1e-9 * PULL_OFF)
 
 
-def test_work_to_break_and_restitution() -> None:
-    assert LAW.elastic_energy(LAW.release_level) == pytest.approx(7.0922 * UNIT, rel=1e-5)
+def test_work_to_break_and_restitution(agrees: Agrees) -> None:
+    agrees("a sphere of 0.2 mm", "work to break", LAW.elastic_energy(LAW.release_level), 7.0922 * UNIT, unit="J", relative=1e-5)
     speeds = STICKING_SPEED * np.array([0.5, 0.99, 1.01, 1.5, 10.0])
     expected = np.sqrt(np.maximum(1 - (STICKING_SPEED / speeds) ** 2, 0.0))
-    np.testing.assert_allclose(LAW.closed_form_restitution(MASS, speeds), expected, atol=2e-3)
+    agrees("0.5 to 10 times the sticking speed", "restitution", LAW.closed_form_restitution(MASS, speeds), expected, absolute=2e-3)
     np.testing.assert_allclose(vi.integrated_restitution(LAW, MASS, speeds), LAW.closed_form_restitution(MASS, speeds), atol=1e-8)
 
 
@@ -66,7 +83,7 @@ def test_a_slow_ball_sticks_and_the_status_says_so() -> None:
 
 
 @pytest.mark.parametrize("time", [1e-8, 1e-7, 1e-6])
-def test_viscous_loss_against_an_integration_in_the_contact_radius(time: float) -> None:
+def test_viscous_loss_against_an_integration_in_the_contact_radius(agrees: Agrees, time: float) -> None:
     law = Krijt(effective_modulus=MODULUS, effective_radius=RADIUS, work_of_adhesion=ADHESION, dissipation_time=time)
     speed = 4.0 * STICKING_SPEED
     start = (2 * np.pi * ADHESION * RADIUS**2 / MODULUS) ** (1 / 3)
@@ -86,4 +103,5 @@ def test_viscous_loss_against_an_integration_in_the_contact_radius(time: float) 
     broken.terminal, broken.direction = True, -1
     run = solve_ivp(rates, (0.0, 1.0), [start, speed], method="Radau", rtol=1e-9, atol=[1e-16, 1e-12], events=broken)
     # what is left between there and the break: nearly no way, so nearly no work
-    assert vi.integrated_restitution(law, MASS, speed) == pytest.approx(-run.y[1, -1] / speed, abs=2e-6)
+    found = vi.integrated_restitution(law, MASS, speed)
+    agrees("with viscous loss, three dampings", "restitution", found, -run.y[1, -1] / speed, against=SCIPY, absolute=2e-6)

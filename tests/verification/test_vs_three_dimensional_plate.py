@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
+from agreement import Against, Agrees
 from oracles.three_dimensional_plate import (
     ALUMINIUM,
     PMMA,
@@ -30,6 +31,26 @@ from oracles.three_dimensional_plate import (
 )
 from vibroimpact.cases.limits.plate_waves import plate_theory_error
 from vibroimpact.structures.plate_waves import bending_error, bending_factor, inertia_beyond_bending, mindlin_squares, stretching_error
+
+AGAINST = Against(
+    "elasticity in three dimensions, simply supported plates",
+    "own independent computation",
+    "impacts on vibrating bodies",
+    "a program of Fourier series, tests/oracles/three_dimensional_plate.py",
+)
+SRINIVAS = Against(
+    "Srinivas, Joga Rao and Rao, frequencies of thick plates",
+    "published computation",
+    "plates, spheres and modes",
+    "J. Sound Vib. 12, 187, 1970",
+)
+LAYER = Against(
+    "statics of an elastic layer",
+    "closed form",
+    "plates, spheres and modes",
+    "Sneddon, Fourier Transforms, 1951, section 46",
+)
+
 
 THICKNESS, PLACE, SPEED = 0.01, (0.013, 0.007), 1.0
 ASKED = 0.005
@@ -91,21 +112,22 @@ def test_the_oracle_solves_rayleigh_and_lambs_equations(ratio: float, even: bool
             assert max(abs(one.imag) for one in around) < 1e-9 * max(abs(one) for one in around)
 
 
-def test_the_oracle_has_the_frequencies_of_srinivas_and_rao() -> None:
+def test_the_oracle_has_the_frequencies_of_srinivas_and_rao(agrees: Agrees) -> None:
     """omega h sqrt(rho / G) of a simply supported plate, nu = 0.3 (S. Srinivas, C. V. Joga Rao, A. K. Rao, J. Sound Vib. 12:187, 1970)."""
     squares = np.array([0.02, 0.05, 0.08, 0.1, 0.13, 0.18, 0.2, 0.26, 0.32])  # of half waves in a thickness
     published = [0.0932, 0.2226, 0.3421, 0.4171, 0.5239, 0.6889, 0.7511, 0.9268, 1.0889]
     found = thickness_modes(np.pi * np.sqrt(squares), 1.0, Elastic(1.0, 2.6, 0.3), even=False)[0][:, 0]
-    np.testing.assert_allclose(found, published, atol=5.1e-5)
+    agrees("the oracle, nine squares of half waves", "ω h √(density/G)", found, published, against=SRINIVAS, absolute=5.1e-5)
 
 
 @pytest.mark.parametrize("given", [STEEL, PMMA])
-def test_the_modes_of_the_oracle_have_the_statics_of_a_layer(given: Elastic) -> None:
+def test_the_modes_of_the_oracle_have_the_statics_of_a_layer(agrees: Agrees, given: Elastic) -> None:
     k = np.array([0.5, 2.0, 8.0]) / THICKNESS
     families = (thickness_modes(k, THICKNESS, given, even, 30) for even in (False, True))
     modes = sum(((face / omega) ** 2).sum(axis=1) for omega, face in families)
     half_space = 2.0 * (1.0 - given.ratio**2) / (given.modulus * k)
-    np.testing.assert_allclose(modes, half_space * layer(k * THICKNESS), rtol=1e-6)
+    exact = half_space * layer(k * THICKNESS)
+    agrees("the oracle, statics of a layer", "compliance of waves", modes, exact, unit="m/N", against=LAYER, relative=1e-6)
 
 
 def test_the_oracle_has_converged() -> None:
@@ -119,7 +141,7 @@ def test_the_oracle_has_converged() -> None:
 
 
 @pytest.mark.parametrize("ratio", [0.0, 0.3, 0.45])
-def test_the_factor_of_the_face(ratio: float) -> None:
+def test_the_factor_of_the_face(agrees: Agrees, ratio: float) -> None:
     """The lowest antisymmetric wave of a layer over that of Mindlin's plate, and its beginning."""
     given = Elastic(1.0, 2.0 * (1.0 + ratio), ratio)
     k, factor = np.array([0.3, 1.0, 2.0, 3.0, 6.0]), 5.0 / (6.0 - ratio)
@@ -127,8 +149,9 @@ def test_the_factor_of_the_face(ratio: float) -> None:
     bend = k**2 / (6.0 * (1.0 - ratio))
     mixed = math.sqrt(12.0) * factor * k
     waves, shapes = np.linalg.eigh(np.array([[factor * k**2, mixed], [mixed, 12.0 * (bend + factor)]]).transpose(2, 0, 1))
-    np.testing.assert_allclose(bending_factor(k, ratio), np.abs(face[:, 0] / shapes[:, 0, 0]), rtol=1e-6)
-    np.testing.assert_allclose(bending_error(k, ratio), np.sqrt(waves[:, 0]) / omega[:, 0] - 1.0, atol=2e-6)
+    expected, error = np.abs(face[:, 0] / shapes[:, 0, 0]), np.sqrt(waves[:, 0]) / omega[:, 0] - 1.0
+    agrees("bending waves of a layer", "factor of the face", bending_factor(k, ratio), expected, relative=1e-6)
+    agrees("bending waves of a layer", "relative error of plate theory", bending_error(k, ratio), error, absolute=2e-6)
     mean_square = 2.0 * (1.0 / (6.0 * (1.0 - ratio) * factor) - 0.2)
     assert float(bending_factor(np.array(0.1), ratio)) == pytest.approx(1.0 - 0.25 * 0.1**2 * mean_square, abs=1e-5)
     of_package = vi.Material(1.0, given.modulus, ratio)
@@ -192,20 +215,21 @@ PERIODS = {0.3: 2.5, 0.5: 2.5, 1.0: 5.0, 2.0: 10.0}  # of the highest mode in He
     ],
     ids=["PMMA", "steel", "aluminium of bricks"],
 )
-def test_some_impacts(plate: Elastic, side: float, modes: int, more: dict[str, Any]) -> None:
+def test_some_impacts(agrees: Agrees, plate: Elastic, side: float, modes: int, more: dict[str, Any]) -> None:
     """A ball as thick as the plate; with the point shapes of plate theory 5 % of the restitution would be missing on PMMA."""
     found = deviations(program(side, plate, THICKNESS, modes=modes, **more), exact(side, plate, THICKNESS))
-    assert max(np.abs(found)) < ASKED
+    agrees("a ball as thick as the plate", "largest force, duration, restitution: relative difference", found, 0.0, absolute=ASKED)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("more", [{}, {"element": "solid"}], ids=["plates", "bricks"])
 @pytest.mark.parametrize("ratio", list(SIDES))
 @pytest.mark.parametrize("plate", [PMMA, ALUMINIUM, STEEL], ids=["PMMA", "aluminium", "steel"])
-def test_impacts(plate: Elastic, ratio: float, more: dict[str, Any]) -> None:
+def test_impacts(agrees: Agrees, plate: Elastic, ratio: float, more: dict[str, Any]) -> None:
     """With default meshes. A heavy ball is still there when waves come back from the edges, and is kicked."""
     radius = ratio * THICKNESS
     time = contact_time(plate, radius, STEEL, SPEED)
     response = program(SIDES[ratio], plate, radius, max_frequency=PERIODS[ratio] / time, **more)
     found = deviations(response, exact(SIDES[ratio], plate, radius, times=10.0 if ratio == 2.0 else 3.0))
-    assert max(np.abs(found)) < ASKED
+    case = f"R/h 0.3 to 2, {'bricks' if more else 'plate elements'}, default meshes"
+    agrees(case, "largest force, duration, restitution: relative difference", found, 0.0, absolute=ASKED)

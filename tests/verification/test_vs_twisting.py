@@ -9,10 +9,19 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import vibroimpact as vi
+from agreement import Against, Agrees
 from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.oblique.rolling import LyingSpheres
 from vibroimpact.dynamics.oblique.state import Sphere, State
 from vibroimpact.structures.modal_model import ModalBasis
+
+AGAINST = Against(
+    "Hertz's pressure by quadrature, and SciPy's DOP853",
+    "own independent computation",
+    "oblique impact and friction",
+    "moment and friction of a contact that slides and twists, in the test itself",
+)
+
 
 RADIUS, MODULUS, SHEAR = 2.5e-3, 62.95e9, 54.08e9  # the spheres of alumina of Kharaz, Gorham and Salman, on glass
 MASS = 4.0 / 3.0 * np.pi * RADIUS**3 * 4000.0
@@ -66,12 +75,13 @@ def spin_after(mu: float, speed: float, slip: float, spin: float) -> float:
 
 
 @pytest.mark.parametrize("ratio", [1e-6, 1e-3, 0.03, 0.3, 0.7, 0.9, 1.2, 2.0, 5.0, 50.0])
-def test_the_part_that_sliding_leaves(ratio: float) -> None:
+def test_the_part_that_sliding_leaves(agrees: Agrees, ratio: float) -> None:
     """By quadrature of Hertz's pressure, which is less exact where a point of the contact stands still."""
     law, force = friction(), np.array([100.0])
     spin = ratio / law.contact_radius(force)
     part = law.twisting_part(force, 0.092 * force, np.ones(1), spin)
-    assert FULL * part == pytest.approx(over_pressure(ratio)[1], rel=1e-9 if ratio < 0.8 else 2e-4)
+    case, within = "rim slower than 0.8 of the slip" if ratio < 0.8 else "faster", 1e-9 if ratio < 0.8 else 2e-4
+    agrees(f"sliding and twisting, {case}", "moment over μ F a", FULL * part, over_pressure(ratio)[1], relative=within)
 
 
 def test_the_limits_of_the_part() -> None:
@@ -96,13 +106,13 @@ def test_a_contact_that_sticks_has_an_upper_bound(ratio: float) -> None:
 
 @pytest.mark.parametrize("name", ["mdr", "mindlin"])
 @pytest.mark.parametrize(("speed", "slip", "spin"), [(2.68, 2.76, 100.0), (2.0, 2.0, 1.0), (2.0, 3.0, -2e4), (2.0, 1.4, 2e5)])
-def test_an_impact_that_slides(name: str, speed: float, slip: float, spin: float) -> None:
+def test_an_impact_that_slides(agrees: Agrees, name: str, speed: float, slip: float, spin: float) -> None:
     """What twisting takes from the spin, to 2e-3 of it: some hundredths of a percent of the spin, not the 17 % of full twisting."""
     response = impact(friction(name), speed, slip, spin)
     expected = abs(spin) - spin_after(0.092, speed, slip, abs(spin))
     found = response.impacts["spin_z_after_rad_s"][0]
     assert 0.0 < abs(found) < abs(spin)
-    assert spin - found == pytest.approx(np.sign(spin) * expected, rel=2e-3)
+    agrees("impacts that slide, rigid plate", "spin lost", spin - found, np.sign(spin) * expected, unit="rad/s", relative=2e-3)
     assert expected < 1.5e-3 * abs(spin)
     assert abs(response.energy["closure_relative"]) < 1e-12
     without = impact(friction(name), speed, slip, 0.0).impacts
@@ -118,27 +128,28 @@ def still() -> vi.Body:
 
 @pytest.mark.parametrize("plate", [vi.rigid_plate(), still()])
 @pytest.mark.parametrize("spin", [1e5, 1.0])
-def test_an_impact_that_twists_alone(plate: vi.Body, spin: float) -> None:
+def test_an_impact_that_twists_alone(agrees: Agrees, plate: vi.Body, spin: float) -> None:
     """Without slip all of the moment acts, and ends with the spin; the integral of F a by quadrature over Hertz's impact."""
     depth = (1.25 * MASS * 2.0**2 / STIFFNESS) ** 0.4
     part, weight = 0.25 * np.pi * (_NODES + 1.0), 0.25 * np.pi * _WEIGHTS
     deep = depth * np.sin(part) ** 0.8  # the speed is 2 m/s times the cosine; both halves of the impact are alike
     pressed = 2.0 * (weight * MASS * 2.0 * np.sin(part) * np.sqrt(RADIUS * deep)).sum()
     found = impact(friction(), 2.0, 0.0, spin, plate).impacts["spin_z_after_rad_s"][0]
-    assert found == pytest.approx(max(spin - FULL * 0.092 * pressed / INERTIA, 0.0), abs=1e-9 * spin)
+    exact = max(spin - FULL * 0.092 * pressed / INERTIA, 0.0)
+    agrees("impacts that twist alone", "spin after, over that before", found / spin, exact / spin, absolute=1e-9)
 
 
 @pytest.mark.parametrize("name", ["mdr", "mindlin"])
 @pytest.mark.parametrize("spin", [1.0, -2e4])
-def test_an_impact_that_slides_on_modes(name: str, spin: float) -> None:
+def test_an_impact_that_slides_on_modes(agrees: Agrees, name: str, spin: float) -> None:
     """On a plate that hardly moves, as on a rigid one, to 1e-4 of what twisting takes."""
     found = impact(friction(name), 2.0, 3.0, spin, still()).impacts["spin_z_after_rad_s"][0]
     expected = abs(spin) - spin_after(0.092, 2.0, 3.0, abs(spin))
-    assert spin - found == pytest.approx(np.sign(spin) * expected, rel=1e-4)
+    agrees("impacts that slide, on modes", "spin lost", spin - found, np.sign(spin) * expected, unit="rad/s", relative=1e-4)
 
 
 @pytest.mark.parametrize(("slip", "spin"), [(1.0, 30.0), (0.3, -200.0), (0.01, 300.0), (0.0, 5.0)])
-def test_a_sphere_that_lies_slides_and_spins(slip: float, spin: float) -> None:
+def test_a_sphere_that_lies_slides_and_spins(agrees: Agrees, slip: float, spin: float) -> None:
     """The slip falls by 7/2 mu g to nothing; the spin about the normal slowly until then, and then by all of the moment of twisting."""
     mu, gravity, until = 0.2, 9.81, 0.15
     law, one = friction(coefficient=mu, softer=1e3), np.ones(1)
@@ -158,6 +169,6 @@ def test_a_sphere_that_lies_slides_and_spins(slip: float, spin: float) -> None:
     state, _ = LyingSpheres(ball, start, law, gravity * one, until * one).at(np.zeros(401, dtype=int), times)
     left = np.abs(state.spin[2])
     assert left[0] == abs(spin)
-    assert left[-1] == pytest.approx(expected, abs=3e-6 * abs(spin))
+    agrees("a sphere that lies, slides and spins", "spin, over that before", left[-1] / abs(spin), expected / abs(spin), absolute=3e-6)
     assert (np.diff(left) <= 0.0).all()
     assert (np.diff(sum(ball.kinetic(state))) <= 0.0).all()

@@ -13,10 +13,19 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
-from oracles.measuring_chain import RATE, Floats, SimplySupported, driven, rms, sampled, seismic
+from agreement import Against, Agrees
+from oracles.measuring_chain import RATE, Floats, SimplySupported, driven, sampled, seismic
 from vibroimpact.dynamics.sensors.sensor import Accelerometer, Sensor
 
+AGAINST = Against(
+    "the same chain at two million samples a second, shaken",
+    "own independent computation",
+    "sensors and signals",
+    "tests/oracles/measuring_chain.py: Kirchhoff's modes in closed form, SciPy's filters",
+)
+
 pytestmark = pytest.mark.slow
+
 SIZE, DENSITY, MODULUS, POISSON, RATIO = (0.18, 0.15, 0.006), 7850.0, 210e9, 0.3, 0.05
 SPOT, PLACE, DURATION, SAMPLES = (-0.011, -0.0147), (0.023, 0.0301), 3e-3, 20e3
 BEFORE, AFTER = 0.04, 3e-3
@@ -75,30 +84,36 @@ def motion(response: vi.Response) -> dict[str, Floats]:
     return {name: (found[name][0] + relative[name][0] + supports[name].imag.sum(axis=1))[first:] for name in found}
 
 
-def off(response: vi.Response, sensor: Sensor, exact: Floats) -> float:
+def heard(response: vi.Response, sensor: Sensor, exact: Floats) -> tuple[Floats, Floats]:
+    """The signal of a sensor, and the exact one over the same time."""
     found = response.signals(sensor)["one"].value
-    return rms(found - exact[EARLIER : EARLIER + len(found)]) / rms(exact[EARLIER : EARLIER + len(found)])
+    return found, exact[EARLIER : EARLIER + len(found)]
 
 
 @pytest.mark.parametrize("quantity", ["acceleration", "velocity", "displacement"])
 @pytest.mark.parametrize("filtered", ["sigma-delta", "butterworth", "none"])
-def test_points(response: vi.Response, motion: dict[str, Floats], quantity: Any, filtered: str) -> None:
+def test_points(agrees: Agrees, response: vi.Response, motion: dict[str, Floats], quantity: Any, filtered: str) -> None:
     """Without a filter the modes left out matter for an acceleration, as much as is said."""
     sensor = Sensor("one", quantity, rate=SAMPLES, filter=filtered)
     doubt = response.signals(sensor)["one"].uncertainty if filtered == "none" else 0.0
-    assert off(response, sensor, sampled(motion[quantity], SAMPLES, filtered)) < max(0.005, doubt)
+    within = 0.005 if doubt < 0.005 else doubt
+    agrees(
+        f"filter {filtered}", f"signal of {quantity}", *heard(response, sensor, sampled(motion[quantity], SAMPLES, filtered)), rms=within
+    )
 
 
 @pytest.mark.parametrize("filtered", ["sigma-delta", "butterworth"])
 @pytest.mark.parametrize(
     "meter", [{"resonance": 30e3}, {"resonance": 8e3, "damping_ratio": 0.7}, {"resonance": 20e3, "range": 600.0, "damping_ratio": 0.1}]
 )
-def test_accelerometers(response: vi.Response, motion: dict[str, Floats], filtered: str, meter: dict[str, float]) -> None:
+def test_accelerometers(agrees: Agrees, response: vi.Response, motion: dict[str, Floats], filtered: str, meter: dict[str, float]) -> None:
     """The last is driven beyond its range by the supports alone, before the run too."""
     exact = seismic(motion["acceleration"], meter["resonance"], meter.get("damping_ratio", 0.02))
     end = meter.get("range", np.inf)
     sensor = Sensor("one", rate=SAMPLES, filter=filtered, instrument=Accelerometer(**meter))
-    assert off(response, sensor, sampled(np.clip(exact, -end, end), SAMPLES, filtered)) < 0.01
+    clipped = sampled(np.clip(exact, -end, end), SAMPLES, filtered)
+    case = f"accelerometers, {'overdriven' if np.isfinite(end) else 'within their range'}, {filtered}"
+    agrees(case, "signal", *heard(response, sensor, clipped), unit="m/s²", rms=0.01)
     signal, begin = response.signals(sensor)["one"], round(EARLIER * RATE / SAMPLES)
     within = np.abs(exact[begin : begin + round(DURATION * RATE)])
     if np.isfinite(end):

@@ -6,21 +6,31 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
+from agreement import Against, Agrees
 from vibroimpact.contact.laws.walton_braun import WaltonBraun
+
+AGAINST = Against(
+    "Walton and Braun's closed restitutions",
+    "closed form",
+    "elastic-plastic contact",
+    "Walton and Braun 1986, J. Rheol. 30, 949, doi 10.1122/1.549893",
+)
+
 
 STIFFNESS, MASS = 2e6, 0.09
 SPEEDS = np.array([0.01, 0.3, 5.0])
 
 
-def test_constant_restitution() -> None:
+def test_constant_restitution(agrees: Agrees) -> None:
     law = WaltonBraun(stiffness=STIFFNESS, restitution=0.6)
-    np.testing.assert_allclose(vi.integrated_restitution(law, MASS, SPEEDS), 0.6, rtol=1e-10)
+    agrees("constant", "restitution", vi.integrated_restitution(law, MASS, SPEEDS), 0.6, relative=1e-10)
 
 
-def test_restitution_that_falls_with_the_speed() -> None:
+def test_restitution_that_falls_with_the_speed(agrees: Agrees) -> None:
     law = WaltonBraun(stiffness=STIFFNESS, stiffening=800.0)
     frequency = np.sqrt(STIFFNESS / MASS)
-    np.testing.assert_allclose(vi.integrated_restitution(law, MASS, SPEEDS), np.sqrt(frequency / (800.0 * SPEEDS + frequency)), rtol=1e-10)
+    exact = np.sqrt(frequency / (800.0 * SPEEDS + frequency))
+    agrees("falls with the speed", "restitution", vi.integrated_restitution(law, MASS, SPEEDS), exact, relative=1e-10)
 
 
 def test_it_leaves_with_an_overlap_and_the_next_contact_begins_anew() -> None:
