@@ -8,6 +8,7 @@
 # make check     lint, formatting and types, as CI does
 # make bench     the benchmarks
 # make docs      write the pages of the contact laws, the table of features, and what a shell completes, again
+# make docs-site build the documentation site into site/, to be read without a network: open site/index.html
 # make reproduce reproduce the paper, and write the page of the documentation that shows it
 # make help      this list
 
@@ -18,7 +19,7 @@ OUTPUT := vibroimpact-demo
 VIBROIMPACT_CHROMIUM ?= /usr/bin/chromium
 CHROMIUM := $(VIBROIMPACT_CHROMIUM)
 
-.PHONY: help demo test test-slow test-page chromium test-peers test-lowest package check bench docs reproduce clean
+.PHONY: help demo test test-slow test-page chromium test-peers test-lowest package check bench docs docs-site reproduce clean
 
 demo: $(VENV)/installed
 	$(BIN)/vibroimpact demo --output $(OUTPUT) --force
@@ -74,6 +75,9 @@ docs: $(VENV)/installed
 	$(BIN)/python -m vibroimpact.cli.completion_words
 	$(BIN)/python -m vibroimpact.cli.feature_page docs
 
+docs-site: $(VENV)/installed-docs
+	OPENBLAS_NUM_THREADS=1 $(BIN)/sphinx-build --fresh-env --nitpicky --fail-on-warning --keep-going -d build/doctrees docs site
+
 reproduce: $(VENV)/installed
 	$(BIN)/vibroimpact reproduce -o vibroimpact-paper --force
 	$(BIN)/python -m vibroimpact.paper.report.docs_page vibroimpact-paper docs
@@ -101,4 +105,4 @@ help:
 	@sed -n 's/^# //p' Makefile
 
 clean:
-	rm -rf $(VENV) $(VENV)-lowest build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) $(VENV)-lowest build dist site docs/gallery docs/reference .pytest_cache .mypy_cache .ruff_cache .hypothesis

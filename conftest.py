@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import cache
 from pathlib import Path
 
 import pytest
+from _pytest.doctest import DoctestItem
 
 
 @pytest.fixture(autouse=True, scope="session")
@@ -17,3 +19,42 @@ def own_store(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("VIBROIMPACT_STORE", str(folder))
         yield folder
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Mark examples of docstrings that train classifiers as slow."""
+    for item in items:
+        if isinstance(item, DoctestItem) and _says(item, 'recognise("falls"', '"recognised"'):
+            item.add_marker("slow")
+
+
+@pytest.fixture(scope="session")
+def recognise_once() -> Callable[..., object]:
+    """Recognise a data set, which takes half a minute, only once."""
+    from vibroimpact.recognition.recognise import recognise
+
+    return cache(recognise)
+
+
+@pytest.fixture(autouse=True)
+def folders_of_examples(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let examples of docstrings find the data set `falls`, and `recognised`, what was recognised of it, where they name them."""
+    item = request.node
+    if not isinstance(item, DoctestItem) or not _says(item, '"falls"', '"recognised"'):
+        return
+    import vibroimpact.recognition.recognise as recognition
+    from knocks import write_knocks
+    from vibroimpact.recognition.folder import save_recognition
+
+    folder = tmp_path_factory.mktemp("recognition")
+    monkeypatch.chdir(folder)
+    write_knocks(folder / "falls", rocks=16, falls=6)
+    once = request.getfixturevalue("recognise_once")
+    monkeypatch.setattr(recognition, "recognise", once)
+    if _says(item, '"recognised"'):
+        save_recognition(once("falls", folds=2, seeds=1), folder / "recognised")
+
+
+def _says(item: DoctestItem, *words: str) -> bool:
+    return any(word in example.source for example in item.dtest.examples for word in words)

@@ -60,8 +60,8 @@ against DOP853 with a relative tolerance of 1e-13.
 {one}
 
 vibroimpact has the energy ledger, the located peaks and the table of impacts in that time; the others have motion alone. LAMMPS and
-EXUDYN are made for many bodies: what is measured is what five impacts cost in them, less what the program takes to start. The contact force of the EXUDYN model is a function in Python, as its users write it; a compiled
-one would be faster.
+EXUDYN are made for many bodies: what is measured is what five impacts cost in them, less what the program takes to start. The contact
+force of the EXUDYN model is a function in Python, as its users write it; a compiled one would be faster.
 
 ## {drops:,} drops, one impact
 

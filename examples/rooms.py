@@ -33,6 +33,7 @@ FLOORS = {  # top to bottom: what a floor is, its colour, its rooms and what the
         "#c3b9dd",
         {
             "identification": "force, place, size\nand speed from records",
+            "correlation": "tests laid over\nsimulations",
             "bounds": "what no classifier\ncan tell",
             "recognition": "classifiers that can't\nfool themselves",
         },

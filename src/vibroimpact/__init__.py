@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from vibroimpact.bodies.rigid import rigid_sphere as rigid_sphere
     from vibroimpact.bounds.bound import Bound as Bound
     from vibroimpact.bounds.bound import bound_of as bound_of
+    from vibroimpact.bounds.charts import bound_charts as bound_charts
     from vibroimpact.bounds.folder import save_bound as save_bound
     from vibroimpact.bounds.observations import Channel as Channel
     from vibroimpact.calibration.bounce_record import impacts_in_bounces as impacts_in_bounces
@@ -54,6 +55,7 @@ if TYPE_CHECKING:
     from vibroimpact.cases.reader import shipped_cases as shipped_cases
     from vibroimpact.cases.template import case_template as case_template
     from vibroimpact.charts.files import save_charts as save_charts
+    from vibroimpact.charts.matplotlib import matplotlib_figure as matplotlib_figure
     from vibroimpact.charts.notebook import plotly_figure as plotly_figure
     from vibroimpact.comparison.charts import comparison_charts as comparison_charts
     from vibroimpact.comparison.comparison import Comparison as Comparison
@@ -66,7 +68,13 @@ if TYPE_CHECKING:
     from vibroimpact.contact.registry import find_contact_law as find_contact_law
     from vibroimpact.contact.registry import find_friction_law as find_friction_law
     from vibroimpact.contact.registry import friction_laws as friction_laws
+    from vibroimpact.correlation.charts import correlation_charts as correlation_charts
+    from vibroimpact.correlation.correlate import Correlation as Correlation
+    from vibroimpact.correlation.correlate import correlate as correlate
+    from vibroimpact.correlation.folder import save_correlation as save_correlation
+    from vibroimpact.correlation.mode_pairs import ModePair as ModePair
     from vibroimpact.dynamics.air import Air as Air
+    from vibroimpact.dynamics.liquid import Liquid as Liquid
     from vibroimpact.dynamics.local_element import identify_local_element as identify_local_element
     from vibroimpact.dynamics.local_element import local_element_deviations as local_element_deviations
     from vibroimpact.dynamics.oblique.statement import Oblique as Oblique
@@ -100,6 +108,7 @@ if TYPE_CHECKING:
     from vibroimpact.exporting.export_format import export_formats as export_formats
     from vibroimpact.exporting.export_result import export_result as export_result
     from vibroimpact.figures import save_figures as save_figures
+    from vibroimpact.identification.charts import identification_charts as identification_charts
     from vibroimpact.identification.folder import save_identification as save_identification
     from vibroimpact.identification.identify import Identification as Identification
     from vibroimpact.identification.identify import identify as identify
@@ -118,8 +127,10 @@ if TYPE_CHECKING:
     from vibroimpact.recognition.apply import Recognised as Recognised
     from vibroimpact.recognition.apply import apply_recogniser as apply_recogniser
     from vibroimpact.recognition.apply import save_recognised as save_recognised
+    from vibroimpact.recognition.charts import recognition_charts as recognition_charts
     from vibroimpact.recognition.folder import save_recognition as save_recognition
     from vibroimpact.recognition.labelled_signals import LabelledSignals as LabelledSignals
+    from vibroimpact.recognition.labelled_signals import SensorSignals as SensorSignals
     from vibroimpact.recognition.read_dataset import read_labelled_signals as read_labelled_signals
     from vibroimpact.recognition.recognise import Recognition as Recognition
     from vibroimpact.recognition.recognise import recognise as recognise
@@ -129,13 +140,17 @@ if TYPE_CHECKING:
     from vibroimpact.results.folder import read_result as read_result
     from vibroimpact.results.result import Result as Result
     from vibroimpact.results.result import result_of as result_of
+    from vibroimpact.runs.charts import run_charts as run_charts
     from vibroimpact.runs.notebook import plot_result as plot_result
     from vibroimpact.runs.notebook import result_html as result_html
     from vibroimpact.runs.save import save_result as save_result
     from vibroimpact.signals.bounces.find import Bounces as Bounces
     from vibroimpact.signals.bounces.find import find_bounces as find_bounces
+    from vibroimpact.signals.decay.find import DecayMode as DecayMode
+    from vibroimpact.signals.decay.find import modes_in_decay as modes_in_decay
     from vibroimpact.signals.feature_table import FeatureTable as FeatureTable
     from vibroimpact.signals.feature_table import feature_table as feature_table
+    from vibroimpact.signals.frac import frac as frac
     from vibroimpact.signals.one_record import one_record as one_record
     from vibroimpact.signals.onset import from_onset as from_onset
     from vibroimpact.signals.onset import onset_time as onset_time
@@ -150,6 +165,7 @@ if TYPE_CHECKING:
     from vibroimpact.signals.registry import find_feature as find_feature
     from vibroimpact.structures.mesh import Mesh as Mesh
     from vibroimpact.structures.modal_model import ModalBasis as ModalBasis
+    from vibroimpact.studies.report.charts import study_charts as study_charts
     from vibroimpact.studies.report.notebook import plot_study as plot_study
     from vibroimpact.studies.report.notebook import study_html as study_html
     from vibroimpact.studies.run_sweep import run_sweep as run_sweep
@@ -177,17 +193,22 @@ _HOME = {
     "ComputationError": "errors",
     "ContactLaw": "contact.law",
     "Converter": "dynamics.sensors.electronics",
+    "Correlation": "correlation.correlate",
+    "DecayMode": "signals.decay.find",
     "FeatureTable": "signals.feature_table",
     "ForceSensor": "dynamics.sensors.instruments.force_sensor",
     "FrictionCalibration": "calibration.friction.calibrate",
+    "FrictionLaw": "contact.friction.law",
     "Geophone": "dynamics.sensors.instruments.geophone",
     "Identification": "identification.identify",
     "InputError": "errors",
+    "Liquid": "dynamics.liquid",
     "Material": "materials",
     "LabelledSignals": "recognition.labelled_signals",
     "Mesh": "structures.mesh",
     "Microphone": "dynamics.sensors.instruments.microphone",
     "ModalBasis": "structures.modal_model",
+    "ModePair": "correlation.mode_pairs",
     "MovingBody": "dynamics.system",
     "Oblique": "dynamics.oblique.statement",
     "ObliqueImpacts": "calibration.friction.measured",
@@ -207,6 +228,7 @@ _HOME = {
     "Response": "dynamics.response",
     "Result": "results.result",
     "Sensor": "dynamics.sensors.sensor",
+    "SensorSignals": "recognition.labelled_signals",
     "Signal": "dynamics.sensors.recording",
     "SpeedFunction": "calibration.speed_function",
     "StrainGauge": "dynamics.sensors.instruments.strain_gauge",
@@ -218,6 +240,7 @@ _HOME = {
     "achieved_restitution": "dynamics.restitution",
     "apply_recogniser": "recognition.apply",
     "bounce_charts": "calibration.bounces.charts",
+    "bound_charts": "bounds.charts",
     "bound_of": "bounds.bound",
     "calibrate": "calibration.calibrate",
     "calibrate_case": "calibration.calibrate_case",
@@ -231,6 +254,8 @@ _HOME = {
     "compute_modes": "cases.elastic.modes",
     "contact_laws": "contact.registry",
     "convert_units": "units.reading",
+    "correlate": "correlation.correlate",
+    "correlation_charts": "correlation.charts",
     "export_formats": "exporting.export_format",
     "export_result": "exporting.export_result",
     "feature_table": "signals.feature_table",
@@ -241,8 +266,10 @@ _HOME = {
     "find_friction_law": "contact.registry",
     "find_material": "materials",
     "find_packets": "signals.packets",
+    "frac": "signals.frac",
     "friction_laws": "contact.registry",
     "from_onset": "signals.onset",
+    "identification_charts": "identification.charts",
     "identify": "identification.identify",
     "identify_force": "identification.identify",
     "identify_local_element": "dynamics.local_element",
@@ -259,8 +286,10 @@ _HOME = {
     "load_sweep": "studies.sweep",
     "local_element_deviations": "dynamics.local_element",
     "material_library": "materials",
+    "matplotlib_figure": "charts.matplotlib",
     "modal_damping": "calibration.tunables",
     "mode_charts": "modes.charts",
+    "modes_in_decay": "signals.decay.find",
     "one_record": "signals.one_record",
     "onset_time": "signals.onset",
     "packet_records": "signals.packets",
@@ -277,6 +306,7 @@ _HOME = {
     "read_sweep": "studies.sweep",
     "rebounds_of": "calibration.bounces.rebounds",
     "recognise": "recognition.recognise",
+    "recognition_charts": "recognition.charts",
     "record_table": "signals.record_table",
     "remake_report": "remake",
     "reproduce_paper": "paper.report.folder",
@@ -284,11 +314,13 @@ _HOME = {
     "result_of": "results.result",
     "rigid_plate": "bodies.rigid",
     "rigid_sphere": "bodies.rigid",
+    "run_charts": "runs.charts",
     "run_sweep": "studies.run_sweep",
     "save_bound": "bounds.folder",
     "save_calibration": "calibration.folder",
     "save_charts": "charts.files",
     "save_comparison": "comparison.folder",
+    "save_correlation": "correlation.folder",
     "save_figures": "figures",
     "save_identification": "identification.folder",
     "save_modes": "modes.folder",
@@ -299,6 +331,7 @@ _HOME = {
     "shipped_cases": "cases.reader",
     "simulate": "dynamics.simulate",
     "simulate_system": "dynamics.simulate_system",
+    "study_charts": "studies.report.charts",
     "study_html": "studies.report.notebook",
     "tabulate": "dynamics.tabulate",
     "to_si": "units.reading",

@@ -31,6 +31,15 @@ class VibroimpactError(Exception):
     ----------
     lines : tuple of str
         One line per fault: printable, of at most `LONGEST_LINE` characters; at most `MOST_LINES` lines, and one that counts the rest.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> try:
+    ...     vi.load_case("no-such-case.toml")
+    ... except vi.VibroimpactError as error:
+    ...     len(error.lines)
+    1
     """
 
     def __init__(self, *faults: str) -> None:
@@ -50,6 +59,15 @@ class InputError(VibroimpactError, ValueError):
         The fault, and what is allowed.
     key : str, optional
         The dotted key of the invalid value.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> try:
+    ...     vi.to_si("2 mm", "kg")
+    ... except vi.InputError as error:
+    ...     print(error)
+    "2 mm" is a length; what is wanted is a mass (a number in kg, or a string such as "90 g")
     """
 
     def __init__(self, message: str, key: str = "") -> None:
@@ -74,7 +92,14 @@ class InputError(VibroimpactError, ValueError):
 
 
 class ComputationError(VibroimpactError, RuntimeError):
-    """A failed computation of a valid problem, or one whose energy balance does not close."""
+    """A failed computation of a valid problem, or one whose energy balance does not close.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> issubclass(vi.ComputationError, vi.VibroimpactError), issubclass(vi.ComputationError, vi.InputError)
+    (True, False)
+    """
 
 
 def lines_of(faults: Iterable[str]) -> tuple[str, ...]:

@@ -41,10 +41,10 @@ class Material:
         Poisson's ratio [-], in (-1, 0.5).
     yield_strength : float, optional
         Yield strength of a ductile material in uniaxial compression or tension [Pa], > 0.
-    compressive_strength, tensile_strength : float, optional
-        Strength of a brittle material in uniaxial compression and tension [Pa], > 0.
     loss_factor : float, optional
         Loss factor of vibration [-], >= 0.
+    compressive_strength, tensile_strength : float, optional
+        Strength of a brittle material in uniaxial compression and tension [Pa], > 0.
     name, description, note : str
         Name in the library, description, and a note on the reliability of the values.
     sources : mapping of str to str

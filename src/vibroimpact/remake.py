@@ -21,6 +21,15 @@ def remake_report(directory: str | PathLike[str]) -> Path:
     ------
     InputError
         If it is not a result folder, its data are damaged, or it can't be written to.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> import vibroimpact as vi
+    >>> with TemporaryDirectory() as folder:
+    ...     place = vi.save_result(vi.simulate(vi.load_case("paper:type1-theory")), f"{folder}/theory")
+    ...     vi.remake_report(place).name
+    'theory'
     """
     # imported here, since a run does not need them
     from vibroimpact.studies.report.page import write_study_report

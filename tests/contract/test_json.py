@@ -263,6 +263,9 @@ def test_exports_name_their_files(printed: Printed) -> None:
     document = printed("export", "theory", "--to", "csv")
     assert document["format"] == "csv"
     assert sorted(map(Path, document["files"])) == sorted(Path("theory-csv").iterdir())
+    assert "adams_dialog" not in document
+    printed("calibrate", "paper:calibration", "-o", "out")
+    assert len(printed("export", "out", "--to", "adams")["adams_dialog"]) == 5
 
 
 def test_the_installation_is_tested(printed: Printed) -> None:

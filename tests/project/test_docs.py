@@ -23,7 +23,45 @@ from vibroimpact.cli import main
 from vibroimpact.dynamics.columns import IMPACT_COLUMNS
 
 ROOT = Path(__file__).parents[2]
-PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").glob("*.md")])
+DOCS = ROOT / "docs"
+PAGES = [ROOT / "README.md", *sorted([*DOCS.glob("*.md"), *DOCS.glob("guides/*.md")])]
+GUIDES = [DOCS / "first-steps.md", *sorted(DOCS.glob("guides/*.md"))]
+LAW_PAGES = sorted(DOCS.glob("laws/*.md"))
+
+# what blocks of the pages are: these are run or read by the tests below, a text is what is printed, and "sh" has its own list
+LANGUAGES = {"console", "python", "toml", "text", "sh", "math"}
+DIRECTIVES = {"{toctree}", "{eval-rst}", "{include}"}
+NOT_RUN = {
+    "make demo": "installs, and CI runs each part",
+    "make test": "CI runs it",
+    "vibroimpact run paper:type1-theory -o theory --json | jq '.impacts[0].max_force_N'": "tests/contract/test_json.py reads it",
+    "vibroimpact --install-completion": "changes the settings of a shell; tests/unit/test_completion.py tries it",
+    "vibroimpact --show-completion": "tests/unit/test_completion.py tries it",
+    "vibroimpact dataset signals:coal-gangue -o falls": "minutes; tests/unit/test_populations.py runs smaller ones",
+    "vibroimpact recognise falls -o recognised": "tests/unit/test_recognition.py runs it",
+    "vibroimpact recognise falls -o new-plates --group plate": "tests/unit/test_recognition.py runs it",
+    "vibroimpact recognise today --model recognised -o counted": "tests/unit/test_recognition.py runs it",
+    "vibroimpact identify coal.toml records.csv -o found": "tests/unit/test_identification.py runs it",
+    "vibroimpact correlate plate.toml taps.csv --hammer force -o compared": "tests/unit/test_correlation.py runs it",
+    "python3 -m venv .venv": "installs",
+    "source .venv/bin/activate": "changes the shell",
+    "python -m pip install .": "installs",
+    "vibroimpact serve mine.toml": "runs until it is ended; tests/page tries it",
+    "vibroimpact dataset signals:coal-gangue -o all-falls": "minutes",
+    "vibroimpact recognise all-falls -o recognised": "of what the last one makes",
+    "vibroimpact recognise all-falls -o new-plates --group plate": "of the same",
+    "vibroimpact dataset signals:river-plate -o grains": "minutes",
+    "vibroimpact bound grains -o told": "of what the last one makes",
+    "vibroimpact recognise grains -o recognised --group rock": "of the same",
+    "vibroimpact reproduce -o paper-whole": "minutes; tests/published has the page",
+    'pip install "vibroimpact[app]"': "installs",
+    "vibroimpact serve": "runs until it is ended; tests/page tries it",
+}
+"""Commands of the pages that no test here runs, and why."""
+
+
+def name_of(page: Path) -> str:
+    return page.relative_to(ROOT).as_posix()
 
 
 def blocks(page: Path, language: str) -> list[str]:
@@ -60,7 +98,7 @@ def write_records(folder: Path) -> None:
     [
         pytest.param(PAGES[:1], is_quick, id="README, quick"),
         pytest.param(PAGES[:1], lambda _: True, id="README", marks=pytest.mark.slow),
-        pytest.param(PAGES[1:], lambda _: True, id="docs", marks=pytest.mark.slow),
+        pytest.param([*PAGES[1:], *LAW_PAGES], lambda _: True, id="docs", marks=pytest.mark.slow),
     ],
 )
 def test_documented_commands_run(
@@ -70,7 +108,7 @@ def test_documented_commands_run(
     assert len(commands(pages)) >= 8
     asked = [command for command in commands(pages) if chosen(command)]
     assert asked
-    for block in blocks(ROOT / "docs" / "case-file.md", "toml"):
+    for block in [*blocks(DOCS / "case-file.md", "toml"), *(block for guide in GUIDES for block in blocks(guide, "toml"))]:
         name = re.match(r"# (\S+\.toml)\n", block)  # a block may say what its file is called
         (tmp_path / (name[1] if name else "case.toml")).write_text(block)
     write_records(tmp_path)
@@ -101,10 +139,13 @@ def test_readme_shows_what_the_demo_prints(variable: vi.Response) -> None:
         assert line in printed or " closure " in line  # which is rounding, and not the same everywhere
 
 
+# of the pages on elastic bodies the other one computes modes too, and fewer
+LONG_PAGES = {"coal-from-rock.md", "elastic-drops.md", "measured-and-computed.md", "river-geophone.md"}
+
+
 @pytest.mark.parametrize(
     "page",
-    # of the pages on elastic bodies the other one computes modes too, and fewer
-    [pytest.param(page, id=page.name, marks=pytest.mark.slow if page.name == "elastic-drops.md" else ()) for page in PAGES],
+    [pytest.param(page, id=name_of(page), marks=pytest.mark.slow if page.name in LONG_PAGES else ()) for page in PAGES],
 )
 def test_documented_python_runs(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
@@ -115,7 +156,7 @@ def test_documented_python_runs(page: Path, tmp_path: Path, monkeypatch: pytest.
     assert "__builtins__" in names or not blocks(page, "python")
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+@pytest.mark.parametrize("page", PAGES, ids=name_of)
 def test_documented_cases_are_valid(page: Path) -> None:
     import tomllib
 
@@ -123,14 +164,39 @@ def test_documented_cases_are_valid(page: Path) -> None:
         assert vi.read_case(tomllib.loads(block)).sphere.radius > 0
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+@pytest.mark.parametrize("page", [*PAGES, *LAW_PAGES], ids=name_of)
+def test_every_block_is_run_or_has_a_reason(page: Path) -> None:
+    text = page.read_text(encoding="utf-8")
+    fences = re.findall(r"^\s*(?:```|~~~)[ \t]*([^\s`]*)", text, flags=re.M)
+    opened = [fence for fence in fences if fence]
+    assert len(fences) == 2 * len(opened), "a block without a language, or one that is not closed"
+    assert set(opened) <= LANGUAGES | DIRECTIVES
+    for language in ("console", "python", "toml"):  # what the tests find is all there is
+        assert opened.count(language) == len(blocks(page, language))
+    asked = [line.removeprefix("$ ") for block in blocks(page, "console") for line in block.splitlines() if line.startswith("$ ")]
+    run = {command.split("  #")[0].strip() for command in asked} - set(NOT_RUN)
+    assert run - {command for command in run if command.startswith("vibroimpact serve")} == set(commands([page]))
+    typed = {line.split("  #")[0].strip() for block in blocks(page, "sh") for line in block.splitlines() if line.strip()}
+    assert typed <= set(NOT_RUN)
+
+
+@pytest.mark.parametrize("page", [*PAGES, *LAW_PAGES], ids=name_of)
 def test_links_lead_somewhere(page: Path) -> None:
     for target in re.findall(r"\]\(([^)#]+)[^)]*\)", page.read_text(encoding="utf-8")):
         assert target.startswith("https://") or (page.parent / target).exists(), target
 
 
 # modes of a plate, studies, many pictures, pages in a browser
-LONG_EXAMPLES = {"a_nanometre", "ball_on_table", "charts_of_studies", "how_it_works", "pictures_of_pages", "tolerances"}
+LONG_EXAMPLES = {
+    "a_nanometre",
+    "ball_on_table",
+    "charts_of_studies",
+    "how_it_works",
+    "pictures_of_guides",
+    "pictures_of_pages",
+    "ringing_plate",
+    "tolerances",
+}
 
 
 @pytest.mark.parametrize(

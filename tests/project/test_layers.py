@@ -35,7 +35,7 @@ LAYERS = [
     {"modes"},
     {"runs"},
     {"comparison", "calibration", "studies", "laws", "identification"},
-    {"bounds"},
+    {"bounds", "correlation"},
     {"recognition"},
     {"exporting", "paper"},
     {"remake", "figures"},

@@ -12,6 +12,7 @@ import pytest
 
 import vibroimpact as vi
 from vibroimpact.bounds.bound import Bound, bound_of
+from vibroimpact.bounds.falls import falls_of_sweep
 from vibroimpact.bounds.folder import save_bound
 from vibroimpact.bounds.observations import Channel
 
@@ -51,6 +52,13 @@ def test_the_bound_of_a_computed_data_set(tmp_path: Path) -> None:
     of_study, of_sweep = bound_of(computed), bound_of(stated)
     assert of_study.errors == of_sweep.errors
     np.testing.assert_array_equal(of_study.falls.mass, of_sweep.falls.mass)
+
+
+def test_how_sensors_are_mounted_does_not_matter_to_a_bound() -> None:
+    table = vi.load_sweep("signals:coal-gangue", 100).whole_table
+    over = {**table["sweep"]["over"], "sensors.a1.position.x": {"from": 0.27, "to": 0.29}}
+    mounted = vi.read_sweep({**table, "sweep": {**table["sweep"], "over": over}})
+    np.testing.assert_array_equal(falls_of_sweep(mounted).duration, falls_of_sweep(vi.read_sweep(table)).duration)
 
 
 def test_the_folder(bound: Bound, tmp_path: Path) -> None:

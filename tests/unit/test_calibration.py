@@ -13,6 +13,7 @@ from support import plain_case
 from vibroimpact.calibration.calibrate_case import ToCalibrate
 from vibroimpact.calibration.charts import calibration_charts
 from vibroimpact.calibration.differences import differences
+from vibroimpact.calibration.reported import report_of
 from vibroimpact.charts.marks import Band, Line, Points
 from vibroimpact.exporting.load_drop import load_drop
 
@@ -214,3 +215,19 @@ def test_the_curve_is_exact(theory: vi.Response) -> None:
     wanted = vi.simulate(vi.read_case(plain_case(**{**one, "contact": law}))).impacts["separation_speed_m_s"]
     assert adams == pytest.approx(wanted, rel=1e-9)
     assert np.all(np.diff(speeds) > 0.0)
+
+
+def test_the_dialog_of_adams_has_its_units(damping: vi.Calibration) -> None:
+    """Stiffness, exponent, damping and penetration in newtons, millimetres and seconds, as the exported force has them."""
+    case = vi.load_case("paper:calibration")
+    stiffness = float(case.to_problem().laws[0].stiffness)
+    headers, rows = report_of(case, damping).dialog or ([], [])
+    assert headers[1:] == [("Stiffness", "N/mm^n"), ("Force Exponent", ""), ("Damping", "N s/mm"), ("Penetration Depth", "mm")]
+    for row, value in zip(rows, damping.values, strict=True):
+        shown = [float(cell) for cell in row[1:]]
+        assert shown == pytest.approx([vi.convert_units(stiffness, "N/m^1.5", "N/mm^1.5"), 1.5, value / 1000.0, 0.1], rel=1e-5)
+
+
+def test_the_dialog_is_that_of_adams_alone() -> None:
+    what = to_calibrate({"target": {"restitution": 0.7}}, contact={"law": "tsuji"}, run={"impacts": 2})
+    assert report_of(what.case, vi.calibrate_case(what)).dialog is None

@@ -29,7 +29,7 @@ from vibroimpact.dynamics.restitution import achieved_restitution
 from vibroimpact.errors import InputError
 from vibroimpact.exporting.contact_parameters import clipped_dashpot
 from vibroimpact.exporting.drop import Drop
-from vibroimpact.exporting.formats import exudyn, lammps, mujoco, yade
+from vibroimpact.exporting.formats import adams_solver, exudyn, lammps, mujoco, yade
 
 FORMATS = [lammps.FORMAT, yade.FORMAT, mujoco.FORMAT, exudyn.FORMAT]
 TSUJI = Tsuji(stiffness=STIFFNESS, restitution=0.7, effective_mass=MASS)
@@ -287,3 +287,14 @@ class TestExudyn:
     def test_refusal_names_the_laws(self) -> None:
         with pytest.raises(InputError, match=r"thornton can't be written for EXUDYN; adams-impact, anagnostopoulos, .*calibrate"):
             exudyn.FORMAT.write(told(contact_laws()["thornton"].example(PAIR)))
+
+
+def test_the_dialog_of_adams_is_the_exported_force() -> None:
+    drop = told_case("paper:type1-constant")
+    (row,) = adams_solver.FORMAT.dialog(drop)
+    text = "".join(content.decode() for name, content in adams_solver.FORMAT.write(drop).items() if name.endswith(".adm"))
+    terms = text.split("IMPACT(DZ(11, 1, 1), VZ(11, 1, 1, 1), 25.0, ")[1].split(")")[0]  # wrapped: a line begins with a comma
+    written = [term for term in terms.replace("\n", "").split(",") if term.strip()]
+    assert [float(number) for number in written] == pytest.approx(list(row.values()), rel=1e-14)
+    assert len(adams_solver.FORMAT.dialog(told_case("paper:type1-variable"))) == 5
+    assert not adams_solver.FORMAT.dialog(told_case("paper:type1-theory"))

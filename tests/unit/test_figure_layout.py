@@ -16,6 +16,7 @@ from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.frame import frames_of
 from vibroimpact.charts.marks import Line, Spans
 from vibroimpact.charts.matplotlib import matplotlib_figure
+from vibroimpact.charts.palette import LOOKS, SERIES
 from vibroimpact.charts.print_style import print_style
 from vibroimpact.results.deflection import Deflection
 from vibroimpact.results.result import Result, result_of
@@ -171,3 +172,22 @@ def test_a_support_at_rest_has_no_lines_from_rounding() -> None:
         assert held.sum() > inner.sum() > 20
         assert np.all(values[inner] == 0.0)
         assert np.all(values[~held & (np.abs(np.meshgrid(x, y)[0]) < 0.25) & (np.abs(np.meshgrid(x, y)[1]) < 0.2)] < 0.0)
+
+
+def test_a_chart_is_drawn_into_a_given_figure(theory: vi.Response) -> None:
+    """A figure that a window of pyplot shows becomes the one that files have."""
+    (chart,) = (chart for chart in run_charts(result_of(theory)) if chart.name == "force")
+    given, new = Figure(), matplotlib_figure(chart)
+    assert matplotlib_figure(chart, given) is given
+    assert titles(given) == titles(new)
+    np.testing.assert_array_equal(given.get_size_inches(), new.get_size_inches())
+
+
+def test_figures_of_ones_own_may_have_the_style_of_print() -> None:
+    import matplotlib.pyplot as plt
+
+    with print_style():
+        look = dict(plt.rcParams)
+    with plt.style.context("vibroimpact.charts.print"):
+        assert {name for name in look if plt.rcParams[name] != look[name]} <= {"backend", "backend_fallback"}
+        assert plt.rcParams["axes.prop_cycle"].by_key()["color"] == [LOOKS[f"series {number}"].light for number in range(SERIES)]

@@ -82,6 +82,12 @@ def test_a_parameter_for_each_speed() -> None:
     np.testing.assert_allclose(vi.integrated_restitution(law, 0.09, speeds), 0.7, atol=1e-10)
 
 
+@pytest.mark.parametrize("tolerance", [1e-1, 1e-14, np.nan])
+def test_tolerances_out_of_range_are_refused(tolerance: float) -> None:
+    with pytest.raises(vi.InputError, match="tolerance must lie between 1e-13 and 1e-6"):
+        vi.integrated_restitution(AdamsImpact(stiffness=1e6, damping_max=0.1), 1e-3, 1.0, tolerance=tolerance)
+
+
 def test_a_pull_between_two_nodes_is_cut() -> None:
     law = AdamsImpact(stiffness=1129e3, damping_max=np.linspace(0.15, 0.19, 2000))
     exact = vi.integrated_restitution(law, 5.57e-4, 5.06, tolerance=1e-13)

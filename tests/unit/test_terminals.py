@@ -157,7 +157,17 @@ def shown(what: RenderableType, width: int, encoding: str = "utf-8") -> list[str
 def test_every_command_is_here(commands: Printed) -> None:
     from vibroimpact.cli.shared import app
 
-    silent = {"demo", "identify", "report", "figures", "new", "serve", "schema", "reproduce"}  # as run; facts; one line each; JSON; below
+    silent = {
+        "demo",
+        "identify",
+        "correlate",
+        "report",
+        "figures",
+        "new",
+        "serve",
+        "schema",
+        "reproduce",
+    }  # as run; facts; one line each; JSON; below
     there = {re.split("[, ]", name)[0] for name in NAMES} | silent
     assert {one.callback.__name__ for one in app.registered_commands if one.callback} <= there
     assert set(NAMES) == commands.keys()

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from identifying import THICKNESS, an_impact, drawn, plate, records_of
+from identifying import DELAY, THICKNESS, an_impact, drawn, plate, records_of
 from vibroimpact.identification.identify import identify_on
 
 FROM_RECORDS = ("recovered_max_force_N", "recovered_impulse_N_s")
-FITTED = ("place_x_m", "place_y_m", "radius_m", "speed_m_s", "max_force_N", "impulse_N_s")
+FITTED = ("place_x_m", "place_y_m", "radius_m", "speed_m_s", "first_touch_s", "max_force_N", "impulse_N_s")
 
 
 @pytest.mark.slow
@@ -22,7 +22,7 @@ def test_400_impacts() -> None:
     for number, (radius, speed, place) in enumerate(drawn(400, seed=7)):
         impact = an_impact(radius, speed, place)
         told = identify_on(plate(), records_of(impact, 40.0, seed=1000 + number)).estimates
-        truth = dict(zip((*FITTED, *FROM_RECORDS), (*place, radius, speed, *2 * (impact.peak, impact.impulse)), strict=True))
+        truth = dict(zip((*FITTED, *FROM_RECORDS), (*place, radius, speed, DELAY, *2 * (impact.peak, impact.impulse)), strict=True))
         held.append([told[name].interval[0] <= value <= told[name].interval[1] for name, value in truth.items()])
         assert told["recovered_max_force_N"].value == pytest.approx(impact.peak, rel=0.05)
         assert told["recovered_impulse_N_s"].value == pytest.approx(impact.impulse, rel=0.02)
@@ -30,6 +30,6 @@ def test_400_impacts() -> None:
     part = dict(zip((*FITTED, *FROM_RECORDS), np.mean(held, axis=0), strict=True))
     assert part["recovered_max_force_N"] >= 0.93
     assert 0.93 <= part["recovered_impulse_N_s"] <= 0.97
-    assert min(part[name] for name in FITTED) > 0.88
-    if any(not 0.93 <= part[name] <= 0.97 for name in FITTED):
-        pytest.xfail("what the modes left out lack is not all in the intervals of the fitted contact: 91 to 93 % hold the truth")
+    assert min(part[name] for name in FITTED) > 0.90
+    if missed := [f"{name} {100.0 * part[name]:.1f} %" for name in FITTED if not 0.93 <= part[name] <= 0.97]:
+        pytest.xfail(f"intervals that hold other than 93 to 97 %: {', '.join(missed)}")

@@ -28,9 +28,13 @@ GEOPHONES = [GEOPHONE, replace(GEOPHONE, natural_frequency=340.0, damping_ratio=
 
 @pytest.fixture(scope="module", params=one_in(3, [0.001, 0.01, 1.3]))
 def response(request: pytest.FixtureRequest) -> vi.Response:
-    """A few impacts, of a contact of 0.5 ms, so that the samples that SciPy's filters get tell it to 1e-7."""
+    """A few impacts, of a contact of 0.5 ms, so that the samples that SciPy's filters get tell it to 1e-7.
+
+    Filters hear the contact force, and the samples are those of the velocity: the two differ by what the tolerance lets the run be off.
+    """
     law = Hertz(stiffness=1e-2 * STIFFNESS)
-    return vi.simulate(drop_on(law, random_modes(4, 12, 60.0, 8e3, 1.2, request.param), speed=0.5, impacts=None, duration=0.095))
+    plate = random_modes(4, 12, 60.0, 8e3, 1.2, request.param)
+    return vi.simulate(drop_on(law, plate, speed=0.5, impacts=None, duration=0.095, tolerance=1e-11))
 
 
 def filtered(value: np.ndarray, rate: float, *systems: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
@@ -67,7 +71,7 @@ def test_geophone(response: vi.Response, geophone: Geophone, kind: str) -> None:
     found = response.signals(Sensor("a", "voltage", rate=RATE, filter=kind, instrument=geophone))["a"].value
     heard = slice(0, -HALF_LENGTH) if kind == "sigma-delta" else slice(None)
     error = np.abs(found - exact[::FINER][: len(found)])[heard].max() / np.abs(exact).max()
-    assert error < (1e-6 if kind == "none" else 2e-5)
+    assert error < 1e-6
 
 
 @pytest.mark.parametrize("frequency", [3.0, 10.0, 40.0, 2e3])

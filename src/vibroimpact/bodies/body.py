@@ -28,6 +28,15 @@ class Body:
         Elastic modes; without them the body is rigid.
     rigid : ModalBasis, optional
         Rigid motions, as modes of frequency zero, of a plate that supports leave free, or of a sphere in its place.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> ball = vi.Body(mass=0.09, contact_offset=0.025)
+    >>> table = vi.Body(mass=float("inf"), contact_offset=0.0)
+    >>> law = vi.find_contact_law("newton")(restitution=0.5)
+    >>> vi.tabulate(vi.Problem(sphere=ball, plate=table, laws=(law,), height=1.0)).impacts["rebound_height_m"].shape
+    (5,)
     """
 
     mass: Array

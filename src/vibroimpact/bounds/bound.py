@@ -48,6 +48,13 @@ class Bound:
         over that before.
     map : array, shape (bandwidths, ratios)
         The Bayes error from one impact over `BANDWIDTHS` and `SIGNAL_TO_NOISE`: the upper bounds.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> bound = vi.bound_of(vi.load_sweep("signals:coal-gangue", samples=100))
+    >>> float(bound.majority), bound.map.shape, list(bound.errors)[:3]
+    (0.36, (6, 6), ['impulse', 'contact time', 'one impact'])
     """
 
     name: str

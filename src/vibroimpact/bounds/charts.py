@@ -14,7 +14,24 @@ _MOST_POINTS = 1500
 
 
 def bound_charts(bound: Bound) -> list[Chart]:
-    """Return the charts of a bound: `errors`, `impacts` and `sensors`."""
+    """Return the charts of a bound.
+
+    Parameters
+    ----------
+    bound : Bound
+        The bound.
+
+    Returns
+    -------
+    list of Chart
+        `errors` by what is measured, `impacts`, each fall a point, and `sensors`, the error over band and noise.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> [chart.name for chart in bound_charts(vi.bound_of(vi.load_sweep("signals:coal-gangue", samples=256)))]
+    ['errors', 'impacts', 'sensors']
+    """
     return [_errors(bound), _impacts(bound), _sensors(bound)]
 
 

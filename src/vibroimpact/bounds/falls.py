@@ -93,7 +93,7 @@ def falls_of_sweep(sweep: Sweep) -> Falls:
     sphere = {key: value for key, value in sweep.table["sphere"].items() if key in ("radius", "material")}
     table = {**sweep.table, "plate": plate, "sphere": sphere, "run": {"impacts": 1}}
     table.pop("sensors", None)
-    columns = {key: values for key, values in sweep.plan.columns.items() if not key.startswith("plate.")}
+    columns = {key: values for key, values in sweep.plan.columns.items() if not key.startswith(("plate.", "sensors."))}
     result = compute_points(table, (), 0, columns)
     failed = np.array(sorted(result.failures), dtype=int)
     found = [np.asarray(result.arrays[name], dtype=float).copy() for name in _COLUMNS]

@@ -34,6 +34,15 @@ def save_bound(bound: Bound, directory: str | PathLike[str], *, force: bool = Fa
     ------
     InputError
         If the folder exists and may not be replaced, or it can't be written to.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> import vibroimpact as vi
+    >>> bound = vi.bound_of(vi.load_sweep("signals:coal-gangue", samples=100))
+    >>> with TemporaryDirectory() as folder:
+    ...     sorted(file.name for file in vi.save_bound(bound, f"{folder}/told").iterdir())
+    ['bound.csv', 'map.csv', 'report.html', 'summary.json']
     """
     with new_folder(directory, force=force) as folder:
         rows = bound_rows(bound)

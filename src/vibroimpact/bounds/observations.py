@@ -36,6 +36,12 @@ class Channel:
     height, size, interval : float
         Relative standard deviations of the approach speed where the height is known (0.02), of the radius where the rock is seen (0.05),
         and of the time between bounces (0.002).
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> vi.Channel(bandwidth=25e3, signal_to_noise=60.0)
+    Channel(bandwidth=25000.0, signal_to_noise=60.0, gain=0.02, place=0.3, height=0.02, size=0.05, interval=0.002)
     """
 
     bandwidth: float = 10e3

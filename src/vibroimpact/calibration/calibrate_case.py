@@ -75,6 +75,14 @@ def read_calibration(table: Mapping[str, Any]) -> ToCalibrate:
     ------
     InputError
         If it is not a valid case, or defines no target.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> case = vi.load_case("paper:type1-constant").to_problem().source
+    >>> what = vi.read_calibration({**case, "calibrate": {"target": {"restitution": 0.7}}})
+    >>> what.case.contact.law, what.case.calibrate.target
+    ('adams-impact', RestitutionTarget(restitution=0.7, approach_speed=None, standard_deviation=None))
     """
     # the contact law of the case is the target by default, and the law to be tuned takes its place
     whole = dict(table)
@@ -162,6 +170,14 @@ def calibrated_case(case: Case, found: Calibration | FrictionCalibration) -> Cas
         The calibrated case.
     found : Calibration or FrictionCalibration
         Result of its calibration.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> what = vi.load_calibration("paper:type1-theory")
+    >>> case = vi.calibrated_case(what.case, vi.calibrate_case(what))
+    >>> len(case.to_problem().laws), round(case.to_problem().laws[0].damping_max, 3)
+    (5, 179.79)
     """
     table: dict[str, Any] = {key: value for key, value in resolved_case(case).items() if key != "calibrate"}
     if isinstance(found, FrictionCalibration):

@@ -59,6 +59,13 @@ class Calibration:
         The measured record and its simulation with the values found; empty if no record was given.
     doubts : tuple of str
         Warnings about the validity of the result, as sentences.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> found = vi.calibrate(vi.load_case("paper:type1-constant"), vi.load_case("paper:type1-theory"))
+    >>> found.parameter, found.unit, found.values.round(1).tolist()
+    ('damping_max', 'N s/m', [179.8, 172.7, 166.4, 160.9, 156.7])
     """
 
     problem: Problem = field(repr=False)

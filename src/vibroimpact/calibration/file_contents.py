@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from vibroimpact._version import __version__
+from vibroimpact.calibration.adams_dialog import calibrated_dialog
 from vibroimpact.calibration.calibration import Calibration
 from vibroimpact.calibration.differences import COMPARED, WAYS, differences, largest_misfit, reference
 from vibroimpact.calibration.matchable import MATCHABLE
@@ -56,6 +57,7 @@ def calibration_table(case: Case, found: Calibration) -> dict[str, Any]:
         "confidence": found.confidence,
         "bootstrap": found.bootstrap,
         "matched": matched_rows(found),
+        "adams_dialog": calibrated_dialog(found),
         "curve": curve,
         "differences": {column: {way: _plain(values) for way, values in ways.items()} for column, ways in differences(found).items()},
         "other_parameters": dict(found.others),

@@ -10,6 +10,7 @@ from pathlib import Path
 import tomli_w
 
 from vibroimpact._version import __version__
+from vibroimpact.calibration.adams_dialog import DIALOG_NOTE, DIALOG_TITLE
 from vibroimpact.calibration.calibration import Calibration
 from vibroimpact.calibration.file_contents import CALIBRATION, columns_of
 from vibroimpact.calibration.friction.calibrate import FrictionCalibration
@@ -58,6 +59,16 @@ def save_calibration(
     ------
     InputError
         If the folder exists already, or can't be written.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> import vibroimpact as vi
+    >>> what = vi.load_calibration("paper:type1-theory")
+    >>> with TemporaryDirectory() as folder:
+    ...     place = vi.save_calibration(what.case, vi.calibrate_case(what), f"{folder}/calibrated")
+    ...     vi.load_case(place / "case.toml").contact.law
+    'adams-impact'
     """
     told = report_of(case, found)
     with new_folder(directory, force=force) as folder:
@@ -80,6 +91,9 @@ def save_calibration(
             fit=told.fit,
             given=told.given,
             values=told.values,
+            dialog=told.dialog,
+            dialog_title=DIALOG_TITLE,
+            dialog_note=DIALOG_NOTE,
             differences=told.differences,
             ways=told.ways,
             doubts=told.doubts,

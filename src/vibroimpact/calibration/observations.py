@@ -55,6 +55,14 @@ class Observations:
         The record in which they were found.
     notes : tuple of str
         How they were evaluated, as sentences.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import vibroimpact as vi
+    >>> exact = vi.Observations(speeds=np.array([8.8, 6.8]), wanted={"restitution": np.array([0.77, 0.78])})
+    >>> exact.measured, exact.which.tolist()
+    (False, [0, 1])
     """
 
     speeds: Floats

@@ -12,6 +12,13 @@ from vibroimpact.charts.chart import Chart
 Cells = tuple[list[tuple[str, str]], list[list[str]]]
 """A table as text: headers with units, and rows."""
 
+_MOST_ROWS = 50
+
+
+def shortened(rows: list[list[str]]) -> list[list[str]]:
+    """Return the first rows of a table, and an ellipsis if there are more."""
+    return rows if len(rows) <= _MOST_ROWS else [*rows[: _MOST_ROWS - 1], ["…", *[""] * (len(rows[0]) - 1)]]
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CalibrationReport:
@@ -31,6 +38,8 @@ class CalibrationReport:
         Sentences on how well it is known, and on what the case gives.
     values : Cells
         The matched impacts.
+    dialog : Cells, optional
+        What Adams' dialog of a contact takes; None for laws other than IMPACT.
     differences : mapping of str to Cells
         Remaining differences, by their titles.
     ways : str
@@ -54,6 +63,7 @@ class CalibrationReport:
     fit: Sequence[str]
     given: Sequence[str]
     values: Cells
+    dialog: Cells | None = None
     differences: Mapping[str, Cells]
     ways: str
     charts: Sequence[Chart]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from vibroimpact.calibration.adams_dialog import calibrated_dialog, dialog_cells
 from vibroimpact.calibration.calibrate_case import calibrated_case
 from vibroimpact.calibration.calibration import Calibration
 from vibroimpact.calibration.charts import calibration_charts
@@ -56,6 +57,7 @@ def report_of(case: Case, found: Calibration | FrictionCalibration) -> Calibrati
             tables={"matched": friction_rows(found)},
             calibrated=calibrated_case(case, found),
         )
+    dialog = calibrated_dialog(found)
     return CalibrationReport(
         law=case.contact.law,
         parameter=found.parameter,
@@ -64,6 +66,7 @@ def report_of(case: Case, found: Calibration | FrictionCalibration) -> Calibrati
         fit=fit_sentences(found),
         given=given_sentences(found),
         values=values_table(found),
+        dialog=dialog_cells(dialog, found.observations.labels) if dialog else None,
         differences=differences_tables(found),
         ways=ways_words(found),
         charts=calibration_charts(found),

@@ -8,12 +8,11 @@ from numpy.typing import ArrayLike
 from vibroimpact.calibration.calibration import Calibration
 from vibroimpact.calibration.differences import COMPARED, WAYS, differences, largest_misfit
 from vibroimpact.calibration.matchable import MATCHABLE, REBOUNDS
-from vibroimpact.calibration.report import Cells
+from vibroimpact.calibration.report import Cells, shortened
 from vibroimpact.calibration.tunables import law_parameter
 from vibroimpact.runs.tables import formatted_column
 from vibroimpact.units.display import column_texts, digits, fixed, largest, text
 
-_MOST_ROWS = 50
 _MET = 1e-3  # relative deviation up to which the target is met
 _POWERS = ("", " v", " v²", " v³")
 _MEANING = {
@@ -44,7 +43,7 @@ def values_table(found: Calibration) -> Cells:
             headers.append(("as given, off by", "%"))
             columns.append(_off(found.as_given[name] / seen.wanted[name] - 1.0))
     rows = [list(row) for row in zip(*columns, strict=True)]
-    return headers, rows if len(rows) <= _MOST_ROWS else [*rows[: _MOST_ROWS - 1], ["…", *[""] * (len(headers) - 1)]]
+    return headers, shortened(rows)
 
 
 def differences_tables(found: Calibration) -> dict[str, Cells]:
@@ -60,7 +59,7 @@ def differences_tables(found: Calibration) -> dict[str, Cells]:
         number = len(next(iter(ways.values())))
         cells = np.reshape(_off(np.concatenate([ways[way] for way in WAYS])), (len(WAYS), number))
         rows = [[str(impact + 1), *cells[:, impact].tolist()] for impact in range(number)]
-        tables[COMPARED[name]] = ([("Impact", ""), *((way, "%") for way in WAYS)], rows[:_MOST_ROWS])
+        tables[COMPARED[name]] = ([("Impact", ""), *((way, "%") for way in WAYS)], shortened(rows))
     return tables if len(found.impacts[1]) > 1 else {}
 
 

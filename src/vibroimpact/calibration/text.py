@@ -6,6 +6,7 @@ from rich.columns import Columns
 from rich.console import Group, RenderableType
 from rich.text import Text
 
+from vibroimpact.calibration.adams_dialog import DIALOG_NOTE, DIALOG_TITLE
 from vibroimpact.calibration.report import CalibrationReport, Cells
 from vibroimpact.cases.case import Case
 from vibroimpact.report.terminal_table import TerminalColumn, TerminalTable, numbers
@@ -22,6 +23,9 @@ def calibration_summary(case: Case, told: CalibrationReport) -> RenderableType:
         Text(told.function, style="bold"),
         *(Text(f" {sentence}") for sentence in told.fit),
     ]
+    if told.dialog:
+        parts += [Text(), Text(DIALOG_TITLE, style="bold"), cells_table(told.dialog)]
+        parts += [Text(f" {DIALOG_NOTE}", style="dim")] if len(told.dialog[1]) > 1 else []
     if told.given:
         parts += [Text(), *(Text(sentence) for sentence in told.given)]
     if told.differences:

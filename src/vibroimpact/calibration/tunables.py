@@ -78,6 +78,16 @@ def modal_damping(problem: Problem, body: Literal["sphere", "plate"]) -> Tunable
     ------
     InputError
         If the body is rigid.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> problem = vi.read_case({
+    ...     "sphere": {"radius": "25 mm", "material": "rock-paper", "model": "elastic", "modes": 5, "damping": 0.02},
+    ...     "plate": {"material": "rigid"}, "drop": {"speed": 1.0}, "contact": {"law": "hertz"},
+    ... }).to_problem()
+    >>> vi.modal_damping(problem, "sphere").given.tolist()
+    [0.02]
     """
     modes = getattr(problem, body).modes
     if modes is None:

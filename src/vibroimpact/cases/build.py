@@ -49,6 +49,7 @@ def check_case(case: CaseTable) -> None:
             words = f"and {law.name} loses none on a dent that it has made"
             raise InputError(f'"all" needs a law that loses energy, {words}; {remedy}, or drop.same_spot = false', "run.impacts")
     _check_oblique(case, law)
+    _check_liquid(case, law)
     if case.drop.air is not None:
         check_thin(case.drop.air.density, case.sphere.material.density, "drop.air.density")
     _check_motion(case)
@@ -101,6 +102,27 @@ def _check_oblique(case: CaseTable, law: ContactLaw) -> None:
     if isinstance(friction, CompliantFriction) and not isinstance(law, CompliantLaw):
         words = f"{law.name} gives no normal force, which {friction.name} follows"
         raise InputError(f'{words}; take another contact law, or friction by the impulse: "coulomb" or "rigid"', "contact.friction.law")
+
+
+def _check_liquid(case: CaseTable, law: ContactLaw) -> None:
+    """Check that what is known of impacts in a liquid holds for a case.
+
+    Raises
+    ------
+    InputError
+        If the law takes no restitution, or the sphere falls on another one or through air.
+    """
+    if case.contact.local.liquid is None:
+        return
+    if law.free_parameter != "restitution":
+        words = f"{law.name} takes no restitution, of which a liquid leaves a part"
+        raise InputError(f'{words}; take a law that does, such as "tsuji" or "flores", or leave this out', "contact.liquid")
+    if case.plate.radius is not None:
+        raise InputError(
+            "what a liquid leaves of the restitution is known for a sphere that meets a plate; leave this out", "contact.liquid"
+        )
+    if case.drop.air is not None:
+        raise InputError("the sphere meets the plate in a liquid, and can't fall through air to it; leave one of them out", "drop.air")
 
 
 def _check_motion(case: CaseTable) -> None:

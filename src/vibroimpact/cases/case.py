@@ -15,6 +15,15 @@ class Case(CaseTable):
     """A case: the file, validated, in SI.
 
     Read one with `load_case` or `read_case`; `to_problem` states it for the simulation.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> case = vi.load_case("paper:type1-theory")
+    >>> case.sphere.radius, case.drop.height, case.contact.law
+    (0.025, 4.0, 'lankarani-nikravesh')
+    >>> case.to_problem().gravity
+    9.8
     """
 
     def to_problem(self, progress: Callable[[float], None] | None = None, tell: Callable[[str], None] | None = None) -> Problem:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from vibroimpact.cases.fields.section import derived
 from vibroimpact.cases.pair import contact_pair
-from vibroimpact.cases.rigid import contact_laws_of, deforms, elastic_names, impact_limit, touch_speed
+from vibroimpact.cases.rigid import contact_laws_of, deforms, elastic_names, impact_limit, in_liquid, touch_speed
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.static import static_indentation
 from vibroimpact.dynamics.history_grid import MOST_POINTS
@@ -125,7 +125,8 @@ def _seconds(case: Case, kept: float) -> float:
 @derived
 def _restitution(case: Case) -> float:
     """Return the restitution of the last law at the speed of the first impact."""
-    return float(achieved_restitution(contact_laws_of(case)[-1], float(contact_pair(case).effective_mass), touch_speed(case)))
+    law = in_liquid(case, contact_laws_of(case)[-1])
+    return float(achieved_restitution(law, float(contact_pair(case).effective_mass), touch_speed(case)))
 
 
 def _impact_costs(case: Case) -> Iterator[Cost]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from vibroimpact.cases.conditions import DropSummary
 from vibroimpact.cases.pair import contact_pair
-from vibroimpact.cases.rigid import contact_laws_of, touch_speed
+from vibroimpact.cases.rigid import contact_laws_of, in_liquid, touch_speed
 from vibroimpact.contact.law import CompliantLaw, ContactLaw
 from vibroimpact.contact.power_law import HERTZ_TIME
 from vibroimpact.dynamics.encounter import encounter_of
@@ -72,6 +72,19 @@ def expected_restitution(law: ContactLaw, mass: float, speed: float) -> Expected
         return ExpectedRestitution(asked, achieved, float(getattr(law_achieving(law, asked, mass, speed), "restitution", asked)))
     except InputError as error:
         return ExpectedRestitution(asked, achieved, refusal=error.message)
+
+
+def first_restitution(case: Case) -> ExpectedRestitution:
+    """Return the restitution that the law of a case achieves at the first touch; in a liquid the parameter is still that in air."""
+    law = contact_laws_of(case)[0]
+    wet = in_liquid(case, law)
+    found = expected_restitution(wet, float(contact_pair(case).effective_mass), touch_speed(case))
+    if wet is law or math.isnan(found.to_ask):
+        return found
+    to_ask = found.to_ask * float(vars(law)["restitution"]) / found.asked
+    if to_ask > 1.0:
+        return found._replace(to_ask=math.nan, refusal=f"no restitution up to 1 in air would achieve {found.asked:.5g}")
+    return found._replace(to_ask=to_ask)
 
 
 def _deflection(case: Case, speed: float) -> float:

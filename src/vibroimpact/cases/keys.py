@@ -7,14 +7,14 @@ from collections.abc import Iterator, Mapping
 from dataclasses import fields
 from typing import Any, get_args, get_origin
 
-from pydantic.fields import FieldInfo
-
 from vibroimpact.cases.fields.air import AirTable
+from vibroimpact.cases.fields.liquid import LiquidTable
 from vibroimpact.cases.fields.local import LocalSection
 from vibroimpact.cases.fields.material import InlineMaterial, material_table
 from vibroimpact.cases.fields.motion import MotionTable
-from vibroimpact.cases.fields.quantities import Quantity
+from vibroimpact.cases.fields.quantities import Quantity, quantity_among, quantity_of
 from vibroimpact.cases.schema import SECTIONS
+from vibroimpact.cases.sensor_keys import holds_sensor_keys, named_sensor, sensor_keys, split_key
 from vibroimpact.contact.law import unit_of
 from vibroimpact.contact.registry import find_contact_law, friction_laws
 from vibroimpact.errors import InputError, did_you_mean
@@ -22,7 +22,13 @@ from vibroimpact.materials import find_material
 from vibroimpact.ranges import Range
 from vibroimpact.shown import shown
 
-_PLACES = {"position": ("x", "y"), "velocity": ("x", "y", "z"), "spin": ("x", "y", "z"), "size": ("length", "width", "thickness")}
+_PLACES = {
+    "position": ("x", "y"),
+    "velocity": ("x", "y", "z"),
+    "spin": ("x", "y", "z"),
+    "size": ("length", "width", "thickness"),
+    "direction": ("x", "y", "z"),
+}
 """Names of the numbers of a list, such as x in "drop.position.x"."""
 
 _AT_REST = {"position": 2, "velocity": 3, "spin": 3}
@@ -59,13 +65,16 @@ def find_quantity(table: Mapping[str, Any], key: str) -> Quantity | None:
     InputError
         If there is no such key, or it can't be swept.
     """
-    known = quantity_keys(table)
+    if key.startswith("sensors."):
+        known = dict(sensor_keys({"sensors": [named_sensor(table.get("sensors"), split_key(table, key)[1])]}))
+    else:
+        known = quantity_keys(table)
     if key in known:
         return known[key]
     body, _, rest = key.partition(".")
     if body in ("sphere", "plate") and rest.partition(".")[0] in _OPEN:
         return None
-    words = f'unknown key; it must be a key of [sphere], [plate], [drop], [contact] or [run], such as "{_like(key, known)}"'
+    words = f'unknown key; it must be a key of [sphere], [plate], [drop], [contact], [run] or of a sensor, such as "{_like(key, known)}"'
     raise InputError(f"{words}.{did_you_mean(key, known)}")
 
 
@@ -82,7 +91,7 @@ def holds_keys(key: str) -> bool:
     (True, False)
     """
     section, _, field = key.partition(".")
-    return section in (*SECTIONS, "contact") and field in ("", "material", "motion", "air", *_PLACES)
+    return holds_sensor_keys(key) or (section in (*SECTIONS, "contact") and field in ("", "material", "motion", "air", "liquid", *_PLACES))
 
 
 def with_values(table: Mapping[str, Any], values: Mapping[str, Any], done: str = "swept") -> dict[str, Any]:
@@ -109,22 +118,23 @@ def with_values(table: Mapping[str, Any], values: Mapping[str, Any], done: str =
     """
     found = copy.deepcopy(dict(table))
     for key, value in sorted(values.items(), key=lambda item: item[0].count(".")):  # a material before its properties
-        *way, last = key.split(".")
-        inside: Any = found
-        for number, part in enumerate(way):
+        *way, last = split_key(found, key)
+        named = 2 if way[1:] and way[0] == "sensors" else 0  # parts of the key that are the way to a sensor
+        inside: Any = named_sensor(found.get("sensors"), way[1]) if named else found
+        for number, part in enumerate(way[named:], named):
             holder = inside
             if not isinstance(inside, dict):
                 raise InputError(f"{shown(inside)} is not a table, so that it has no {part}", ".".join(way[:number]))
             missing: Any = [0.0] * _AT_REST[part] if part in _AT_REST and way[number:] == [part] else {}
             inside = inside.setdefault(part, missing)
-            if part == "air" and isinstance(inside, bool):
+            if part in ("air", "liquid") and isinstance(inside, bool):
                 inside = holder[part] = {}
             if isinstance(inside, str) and part == "material":
-                named = material_table(find_material(inside))
-                if isinstance(named, str):
+                written = material_table(find_material(inside))
+                if isinstance(written, str):
                     raise InputError(f"{shown(inside)} has no numbers that could be {done}", ".".join(way))
                 inside = holder[part] = {
-                    name: number for name, number in named.items() if name != "name"
+                    name: number for name, number in written.items() if name != "name"
                 }  # a different material now, without the name
         if not inside and last in _PLACES.get(way[-1], ()):
             raise InputError(f"it is missing, so that it has no {last} that could be {done}; give all of it", ".".join(way))
@@ -137,6 +147,8 @@ def with_values(table: Mapping[str, Any], values: Mapping[str, Any], done: str =
             raise InputError(f"there is no {last}; it takes {', '.join(names)}.{did_you_mean(last, names)}", ".".join(way))
         elif isinstance(inside, dict):
             inside[last] = value
+        elif names:
+            raise InputError(f"{shown(inside)} has no {last} that could be {done}; give a list of {', '.join(names)}", ".".join(way))
         else:
             raise InputError(f"{shown(inside)} is not a table, so that it has no {last}", ".".join(way))
     return found
@@ -149,7 +161,7 @@ def _keys(table: Mapping[str, Any]) -> Iterator[tuple[str, Quantity | None]]:
             key = f"{name}.{field}"
             parts = _parts(info.annotation) if field in _PLACES else ()
             yield key, None if parts else _DAMPING if field == "damping" else quantity_of(info)
-            yield from ((f"{key}.{place}", _quantity((part,))) for place, part in zip(_PLACES.get(field, ()), parts, strict=True))
+            yield from ((f"{key}.{place}", quantity_among((part,))) for place, part in zip(_PLACES.get(field, ()), parts, strict=True))
             if field == "motion":
                 for number, inner in MotionTable.model_fields.items():
                     yield f"{key}.{number}", None if number == "direction" else quantity_of(inner)
@@ -158,7 +170,7 @@ def _keys(table: Mapping[str, Any]) -> Iterator[tuple[str, Quantity | None]]:
             if field == "material":
                 for number, inner in InlineMaterial.model_fields.items():
                     if number != "name":
-                        yield f"{key}.{number}", _quantity((inner.annotation, *inner.metadata))
+                        yield f"{key}.{number}", quantity_among((inner.annotation, *inner.metadata))
     yield "contact", None
     yield "contact.law", None
     contact = table.get("contact")
@@ -174,22 +186,7 @@ def _keys(table: Mapping[str, Any]) -> Iterator[tuple[str, Quantity | None]]:
                 yield f"contact.friction.{item.name}", Quantity(metadata["unit"], metadata["meaning"], metadata["range"])
     for field, info in LocalSection.model_fields.items():
         yield f"contact.{field}", quantity_of(info)
-
-
-def quantity_of(info: FieldInfo) -> Quantity | None:
-    """Return the quantity of a field of a section; None if it is not one."""
-    return _quantity((info.annotation, *info.metadata))
-
-
-def _quantity(annotations: tuple[Any, ...]) -> Quantity | None:
-    """Return the first quantity among annotations or nested in them."""
-    for annotation in annotations:
-        found = (
-            annotation if isinstance(annotation, Quantity) else _quantity((*get_args(annotation), *getattr(annotation, "__metadata__", ())))
-        )
-        if found is not None:
-            return found
-    return None
+    yield from ((f"contact.liquid.{part}", quantity_of(inner)) for part, inner in LiquidTable.model_fields.items())
 
 
 def _parts(annotation: Any) -> tuple[Any, ...]:

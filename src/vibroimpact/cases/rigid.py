@@ -50,6 +50,12 @@ def contact_laws_of(case: CaseTable) -> tuple[ContactLaw, ...]:
         raise InputError(error.message, f"contact.{error.key}".rstrip(".")) from None
 
 
+def in_liquid(case: CaseTable, law: ContactLaw) -> ContactLaw:
+    """Return a contact law of a case with the restitution that a liquid, if there is one, leaves it at the speed of the first touch."""
+    table = case.contact.local.liquid
+    return law if table is None else table.liquid().around(law, touch_speed(case), case.sphere.radius, case.sphere.material.density)
+
+
 def impact_limit(case: CaseTable) -> int | None:
     """Return the number of impacts after which a run stops; None if it continues to rest or to a time."""
     if case.run.impacts is None:
@@ -85,6 +91,7 @@ def rigid_problem(case: CaseTable) -> Problem:
         oblique=oblique_of(case),
         motion=motion_of(case),
         air=None if case.drop.air is None else case.drop.air.air(),
+        liquid=None if case.contact.local.liquid is None else case.contact.local.liquid.liquid(),
         sensors=tuple(sensor.sensor() for sensor in case.sensors),
         impacts=impact_limit(case),
         duration=run_duration(case),

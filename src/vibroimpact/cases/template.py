@@ -15,8 +15,8 @@ from pydantic.fields import FieldInfo
 from vibroimpact.cases.changed_text import changed_text
 from vibroimpact.cases.fields.json_schema import JsonSchema
 from vibroimpact.cases.fields.local import LocalSection
+from vibroimpact.cases.fields.quantities import quantity_of
 from vibroimpact.cases.fields.section import Section
-from vibroimpact.cases.keys import quantity_of
 from vibroimpact.cases.reader import case_text, load_case, prefix_errors
 from vibroimpact.cases.schema import SECTIONS, SensorSection
 from vibroimpact.contact.law import default_origin, unit_of

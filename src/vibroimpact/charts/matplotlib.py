@@ -59,11 +59,24 @@ _NUMBERS, _LETTER = 0.52, 0.06
 """Width that a panel leaves to the numbers at its side, and of a letter of the title of a view [in]."""
 
 
-def matplotlib_figure(chart: Chart) -> Figure:
+def matplotlib_figure(chart: Chart, figure: Figure | None = None) -> Figure:
     """Return a chart as a figure of matplotlib, of a width of 8 inches.
 
     A chart of one panel has its first five views in a row below; one of several rows has its first view beside each of them,
     one of two rows its first three.
+
+    Parameters
+    ----------
+    chart : Chart
+        The chart.
+    figure : matplotlib.figure.Figure, optional
+        The empty figure into which it is drawn, and whose size it changes, such as `plt.figure()`, which a window shows; by default a
+        new one that pyplot does not know.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure.
 
     Examples
     --------
@@ -75,7 +88,7 @@ def matplotlib_figure(chart: Chart) -> Figure:
     ('Force [kN]', [0.005, 7.0])
     """
     with print_style():
-        return _Print(chart).figure()
+        return _Print(chart).figure(Figure() if figure is None else figure)
 
 
 class _Print:
@@ -87,13 +100,14 @@ class _Print:
         self.drawn: dict[tuple[Axis, str], list[Axes]] = {}
         self.unlabelled = panels_without_label(chart, self.frames)
 
-    def figure(self) -> Figure:
-        """Return the figure."""
+    def figure(self, figure: Figure) -> Figure:
+        """Draw into a figure, and return it."""
         chart, rows = self.chart, self.chart.rows
         views = [panel.x.views for panel in chart.panels if panel.x.views]
         below = views[0][:_MOST_ENLARGED] if views and len(rows) == 1 else ()
         heights = [self._height(row) for row in rows]
-        figure = Figure(figsize=(WIDTH, sum(heights) + (_ENLARGED_ROW if below else 0.0) + 0.55), layout="constrained")
+        figure.set_size_inches(WIDTH, sum(heights) + (_ENLARGED_ROW if below else 0.0) + 0.55)
+        figure.set_layout_engine("constrained")
         parts: Any = figure.subfigures(2, 1, height_ratios=[sum(heights), _ENLARGED_ROW]) if below else [figure]
         self._rows(parts[0], heights, 0 if len(rows) == 1 else _MOST_BESIDE if len(rows) == 2 and self._aligned() else 1)
         if below:

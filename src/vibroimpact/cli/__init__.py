@@ -19,6 +19,7 @@ from vibroimpact.cli import features as features  # isort: skip
 from vibroimpact.cli import bound as bound  # isort: skip
 from vibroimpact.cli import recognise as recognise  # isort: skip
 from vibroimpact.cli import identify as identify  # isort: skip
+from vibroimpact.cli import correlate as correlate  # isort: skip
 from vibroimpact.cli import export as export  # isort: skip
 from vibroimpact.cli import reproduction as reproduction  # isort: skip
 from vibroimpact.cli import reference as reference  # isort: skip

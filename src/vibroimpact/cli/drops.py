@@ -108,7 +108,7 @@ def _run(name: str, output: Path | None, changes: dict[str, Any], drop: int | No
     from vibroimpact.runs.page import write_report
     from vibroimpact.runs.save import write_data
     from vibroimpact.runs.text import result_summary
-    from vibroimpact.studies.sweep import load_drop
+    from vibroimpact.studies.one_drop import load_drop
 
     case = load_case(name, changes) if drop is None else load_drop(name, drop, changes)
     target = Path(stem(name) if drop is None else f"{stem(name)}-drop-{drop}") if output is None else output

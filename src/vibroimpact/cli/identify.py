@@ -16,12 +16,12 @@ from vibroimpact.cli.shared import (
     app,
     console,
     exit_on_interrupt,
+    pair_in,
     say,
     settings_of,
     show,
     stem,
 )
-from vibroimpact.errors import InputError
 
 
 @app.command()
@@ -67,7 +67,7 @@ def identify(
     found = load_case(case, settings_of(changes))
     target = Path(f"{stem(case)}-identified") if output is None else output
     check_free(target, force=force)
-    where = None if place is None else _place_in(place)
+    where = None if place is None else pair_in("--place", place, "m", "x and y", "60 mm, 40 mm")
     length = to_si(window, "s")
     heard = [record for path in records for record in read_records(path)]
     with exit_on_interrupt():
@@ -80,20 +80,3 @@ def identify(
         as_json=as_json,
     )
     say(f"wrote {folder / 'report.html'}", err=as_json)
-
-
-def _place_in(text: str) -> tuple[float, float]:
-    """Return x and y in a text, in metres.
-
-    Examples
-    --------
-    >>> _place_in("60 mm, 40 mm")
-    (0.06, 0.04)
-    """
-    from vibroimpact.units.reading import to_si
-
-    parts = [part.strip() for part in text.split(",")]
-    if len(parts) != 2 or not all(parts):
-        raise InputError(f'--place "{text}": give x and y, separated by a comma, such as "60 mm, 40 mm"')
-    x, y = (to_si(part, "m") for part in parts)
-    return x, y

@@ -145,6 +145,23 @@ def names_in(text: str) -> list[str]:
     return [name.strip() for name in text.split(",") if name.strip()]
 
 
+def pair_in(option: str, text: str, unit: str, what: str, example: str) -> tuple[float, float]:
+    """Return two quantities in the text of an option, in SI.
+
+    Examples
+    --------
+    >>> pair_in("--place", "60 mm, 40 mm", "m", "x and y", "60 mm, 40 mm")
+    (0.06, 0.04)
+    """
+    from vibroimpact.units.reading import to_si
+
+    parts = names_in(text)
+    if len(parts) != 2 or text.count(",") != 1:
+        raise InputError(f'{option} "{text}": give {what}, separated by a comma, such as "{example}"')
+    first, second = (to_si(part, unit) for part in parts)
+    return first, second
+
+
 def note(text: str) -> None:
     """Print a note on standard error, apart from the output of the command."""
     say(f"vibroimpact: {text}", err=True)

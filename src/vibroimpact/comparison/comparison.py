@@ -39,6 +39,13 @@ class Comparison:
         Approach speeds [m/s].
     restitutions : dict of str to array, shape (S,)
         Restitution that each law of the first impact achieves at these speeds, without gravity.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> comparison = vi.compare_laws(vi.load_case("paper:type1-theory"), ["tsuji", "flores"])
+    >>> comparison.speeds.shape, {name: one.shape for name, one in comparison.restitutions.items()}
+    ((61,), {'tsuji': (61,), 'flores': (61,)})
     """
 
     name: str

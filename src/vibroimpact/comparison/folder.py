@@ -45,6 +45,15 @@ def save_comparison(comparison: Comparison, directory: str | PathLike[str], *, f
     ------
     InputError
         If the folder exists and may not be replaced, or it can't be written to.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> import vibroimpact as vi
+    >>> comparison = vi.compare_laws(vi.load_case("paper:type1-theory"), ["tsuji", "flores"])
+    >>> with TemporaryDirectory() as folder:
+    ...     sorted(file.name for file in vi.save_comparison(comparison, f"{folder}/compared").iterdir())
+    ['cases', 'comparison.csv', 'report.html', 'summary.json']
     """
     with new_folder(directory, force=force) as folder:
         rows = [{"law": name, **row} for name, one in comparison.results.items() for row in impact_rows(one.impacts)]

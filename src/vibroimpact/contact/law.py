@@ -22,7 +22,15 @@ from vibroimpact.contact.parameters import Parameters
 
 @dataclass(frozen=True, kw_only=True)
 class ContactLaw(Parameters):
-    """Base of all contact laws."""
+    """Base of all contact laws.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> law = vi.find_contact_law("hertz")(stiffness=1e9)
+    >>> isinstance(law, vi.ContactLaw), law.name, law.exponent
+    (True, 'hertz', 1.5)
+    """
 
     @property
     def free_parameter(self) -> str | None:

@@ -12,7 +12,9 @@ from vibroimpact.arrays import Array
 
 @dataclass(frozen=True)
 class QuasiStatic:
-    r"""Quasi-static compliance in series with a contact law, with the indentation
+    r"""Quasi-static compliance in series with a contact law.
+
+    Its indentation is
 
     .. math:: s(F) = C F + c(a/R) \frac{F}{E R},\qquad c = c_0 + c_1 \ln x + c_2 x + c_3 x^2,\qquad x = a/R = (F/F_R)^{1/3}
 

@@ -90,6 +90,13 @@ def find_contact_law(name: str) -> type[ContactLaw]:
     ------
     InputError
         If there is none; the message names the closest.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> law = vi.find_contact_law("flores")(stiffness=5e8, restitution=0.7)
+    >>> law.name, law.restitution
+    ('flores', 0.7)
     """
     if not isinstance(name, str):
         raise InputError(f"a contact law is found by its name, a text, not {name!r}")

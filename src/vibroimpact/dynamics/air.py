@@ -2,13 +2,12 @@ r"""Air, and its drag on a sphere."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
-from functools import cached_property
-from typing import Any, Self
+from dataclasses import dataclass
 
 import numpy as np
 
-from vibroimpact.arrays import Array, Bools, Drops
+from vibroimpact.arrays import Array
+from vibroimpact.dynamics.fluid import Fluid
 from vibroimpact.errors import InputError
 
 AIR_DENSITY, AIR_VISCOSITY = 1.2, 1.81e-5
@@ -38,7 +37,7 @@ def drag_coefficient(reynolds: Array) -> Array:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Air:
+class Air(Fluid):
     """Air at rest; each value is a number, or an array with one a drop.
 
     Parameters
@@ -61,34 +60,11 @@ class Air:
     0.478
     """
 
+    word = "air"
+
     density: Array = AIR_DENSITY
     viscosity: Array = AIR_VISCOSITY
     drag_coefficient: Array | None = None
-
-    def __post_init__(self) -> None:
-        for name, value in self._given():
-            found = np.asarray(value)
-            if not (found.dtype.kind in "iuf" and np.all(np.isfinite(found) & (found > 0.0))):
-                raise InputError(f"{name} of air must be a finite number greater than 0 in SI, not {value!r}")
-
-    def _given(self) -> list[tuple[str, Any]]:
-        return [(item.name, value) for item in fields(self) if (value := getattr(self, item.name)) is not None]
-
-    @property
-    def values(self) -> list[Array]:
-        """All values that may be arrays."""
-        return [value for _, value in self._given()]
-
-    @cached_property
-    def shape(self) -> tuple[int, ...]:
-        """() for one drop, (B,) for a batch."""
-        return np.broadcast_shapes(*(np.shape(value) for value in self.values))
-
-    def take(self, drops: int | slice | Drops | Bools) -> Self:
-        """Return the air of one drop of a batch, or of some."""
-        if self.shape == ():
-            return self
-        return type(self)(**{name: value if np.ndim(value) == 0 else np.asarray(value)[drops] for name, value in self._given()})
 
     def drag(self, speed: Array, radius: Array, density: Array) -> Array:
         r"""Return by how much air slows a sphere down [m/s^2], :math:`\tfrac38 (\rho_a / \rho) C_d v^2 / R`.

@@ -6,7 +6,15 @@ from enum import Enum
 
 
 class Outcome(Enum):
-    """Reason why the run of a drop ended; the value is the name of the rule."""
+    """Reason why the run of a drop ended; the value is the name of the rule.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> response = vi.simulate(vi.load_case("paper:type1-theory"))
+    >>> response.outcomes[0], response.outcomes[0].at_rest
+    (<Outcome.IMPACTS: 'number of impacts'>, False)
+    """
 
     IMPACTS = "number of impacts"
     DURATION = "duration"

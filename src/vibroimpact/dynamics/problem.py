@@ -17,10 +17,12 @@ from vibroimpact.contact.friction.law import CompliantFriction
 from vibroimpact.contact.law import ContactLaw, InstantaneousLaw
 from vibroimpact.contact.quasi_static import QuasiStatic
 from vibroimpact.dynamics.air import Air, check_thin, density_of
+from vibroimpact.dynamics.liquid import Liquid
 from vibroimpact.dynamics.oblique.statement import Oblique
 from vibroimpact.dynamics.sensors.sensor import Sensor
 from vibroimpact.dynamics.shaken.statement import PlateMotion
 from vibroimpact.dynamics.shaken.steady import steady_phasors
+from vibroimpact.dynamics.tolerance import check_tolerance
 from vibroimpact.errors import InputError
 from vibroimpact.resolved_case import ResolvedCase
 
@@ -61,6 +63,9 @@ class Problem:
         separation speeds relative to it. By default the supports are at rest.
     air : Air, optional
         What the sphere falls through: its drag slows it down in flight. By default nothing.
+    liquid : Liquid, optional
+        What sphere and plate touch in: its film takes from the restitution of the law, which is that in air. Flights are without it. By
+        default nothing.
     impacts : int, optional
         Stop after so many impacts, at the top of the last rebound. None: go on to rest.
     duration : float, optional
@@ -121,6 +126,7 @@ class Problem:
     oblique: Oblique | None = None
     motion: PlateMotion | None = None
     air: Air | None = None
+    liquid: Liquid | None = None
     impacts: int | None = 5
     duration: float | None = None
     rest_speed: Array | None = None
@@ -171,8 +177,7 @@ class Problem:
             raise InputError(f"impacts must be a whole number from 1 to {MOST_IMPACTS}")
         if self.duration is not None and not 0 < self.duration < np.inf:
             raise InputError("duration must be greater than 0 s and finite")
-        if not 1e-13 <= self.tolerance <= 1e-6:
-            raise InputError("tolerance must lie between 1e-13 and 1e-6")
+        check_tolerance(self.tolerance)
         if self.local_element is not None and not all(0.0 < value < np.inf for value in self.local_element):
             raise InputError("stiffness and damping of the local element must be greater than 0 and finite")
         if self.plate.rigid is not None and np.any(np.asarray(self.gravity) > 0):
@@ -191,6 +196,8 @@ class Problem:
             raise InputError(f"{words}; take another contact law, or friction by the impulse, as of coulomb or rigid")
         if self.air is not None:
             self._check_air(self.air)
+        if self.liquid is not None:
+            self._check_liquid(self.liquid)
         try:
             _ = self.shape
         except ValueError:
@@ -245,6 +252,15 @@ class Problem:
             raise InputError("a sphere that flies through air needs a radius: its contact_offset, greater than 0 m")
         check_thin(air.density, density_of(self.sphere.mass, self.sphere.contact_offset))
 
+    def _check_liquid(self, liquid: Liquid) -> None:
+        """Raise InputError unless it is known what a liquid leaves of the restitution."""
+        if not isinstance(liquid, Liquid):
+            raise InputError(f"liquid must be a Liquid, not {liquid!r}")
+        if not np.all(np.asarray(self.sphere.contact_offset) > 0.0):
+            raise InputError("a sphere that touches in a liquid needs a radius: its contact_offset, greater than 0 m")
+        if self.laws[0].free_parameter != "restitution":
+            raise InputError(f"{self.laws[0].name} takes no restitution, of which a liquid leaves a part; take another law")
+
     @property
     def vibrates(self) -> bool:
         """Whether anything but the contact of the law deforms, or anything but the sphere moves."""
@@ -273,7 +289,7 @@ class Problem:
         values = [self.sphere.mass, self.sphere.contact_offset, self.height, self.velocity, self.speed, self.gravity, self.rest_speed]
         values += [getattr(law, item.name) for law in self.laws for item in fields(law)]
         values += [] if self.oblique is None else self.oblique.values
-        values += [] if self.air is None else self.air.values
+        values += [value for fluid in (self.air, self.liquid) if fluid is not None for value in fluid.values]
         return np.broadcast_shapes(*(np.shape(value) for value in values if value is not None))
 
     def law_of(self, impact: int) -> ContactLaw:
@@ -301,6 +317,7 @@ class Problem:
             rest_speed=one(self.rest_speed),
             oblique=None if self.oblique is None else self.oblique.take(drop),
             air=None if self.air is None else self.air.take(drop),
+            liquid=None if self.liquid is None else self.liquid.take(drop),
         )
 
     def on_plate(self, plate: Body, quasi_static: QuasiStatic) -> Problem:

@@ -71,8 +71,16 @@ class Response:
 
     See Also
     --------
-    simulate : makes one.
-    tabulate : makes one without histories.
+    simulate, tabulate : make one, the latter without histories.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> response = vi.simulate(vi.load_case("paper:type1-theory"))
+    >>> response.impacts["restitution_achieved"].round(4).tolist()
+    [0.7748, 0.7748, 0.7747, 0.7747, 0.7746]
+    >>> response.at([0.0])["position_m"].tolist()
+    [4.0]
     """
 
     problem: Problem
@@ -160,13 +168,6 @@ class Response:
         ------
         InputError
             If a time lies outside the run, there is no such column, or the response is of several drops or without histories.
-
-        Examples
-        --------
-        >>> import vibroimpact as vi
-        >>> response = vi.simulate(vi.load_case("paper:type1-theory"))
-        >>> response.at([0.0])["position_m"].tolist()
-        [4.0]
         """
         times = np.asarray(times, dtype=float)
         flat = times.ravel()

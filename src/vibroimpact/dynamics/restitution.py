@@ -16,6 +16,7 @@ from vibroimpact.contact.roots import solve_monotonic
 from vibroimpact.dynamics.contact import CAPTURED, FAILED
 from vibroimpact.dynamics.encounter import Encounter, encounter_of
 from vibroimpact.dynamics.phase_plane.contact_solver import contact_solver
+from vibroimpact.dynamics.tolerance import check_tolerance
 from vibroimpact.errors import ComputationError, InputError
 from vibroimpact.ranges import Range
 
@@ -37,7 +38,7 @@ def achieved_restitution(law: ContactLaw, mass: Array, speed: Array, *, toleranc
     speed : float or array
         Approach speed [m/s], > 0.
     tolerance : float, default 1e-9
-        Relative error allowed where it is integrated.
+        Relative error allowed where it is integrated, from 1e-13 to 1e-6.
 
     Returns
     -------
@@ -48,7 +49,7 @@ def achieved_restitution(law: ContactLaw, mass: Array, speed: Array, *, toleranc
     Raises
     ------
     InputError
-        If mass or speed is not positive and finite, or the shapes do not agree.
+        If mass or speed is not positive and finite, the shapes do not agree, or the tolerance is out of range.
     ComputationError
         If the contact can't be integrated.
 
@@ -93,6 +94,7 @@ def integrated_restitution(law: ContactLaw, mass: Array, speed: Array, *, tolera
     >>> float(abs(integrated_restitution(law, 0.09, 3.0) - achieved_restitution(law, 0.09, 3.0))) < 1e-9
     True
     """
+    check_tolerance(tolerance)
     found = _by_integration(law, mass, speed, tolerance)
     if np.isnan(found).any():
         raise ComputationError(

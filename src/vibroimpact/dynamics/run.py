@@ -114,6 +114,11 @@ class Run:
             law = law.changed(self.memories)
         return law if len(drops) == self.size else law.take(drops)
 
+    def law_in_liquid(self, drops: Drops, speed: Floats) -> ContactLaw:
+        """Return the law of the next impact of drops, with what a liquid leaves of its restitution at an approach speed [m/s]."""
+        law, liquid, radius = self.law(drops), self.problem.liquid, self.radius[drops]
+        return law if liquid is None else liquid.take(drops).around(law, speed, radius, density_of(self.mass[drops], radius))
+
     # one flight and one contact --------------------------------------------------------------------
 
     def flights(self, drops: Drops) -> Flight:
@@ -170,7 +175,7 @@ class Run:
 
     def collide(self, leg: Leg, touch: Floats, speed: Floats) -> Coroutine[Leg]:
         """Solve the contact of drops, write the row of the impact table, and return the leg with the contact."""
-        drops, law = leg.contact_drops, self.law(leg.contact_drops)
+        drops, law = leg.contact_drops, self.law_in_liquid(leg.contact_drops, speed)
         row = self.rows.add()
         row["impact"][drops], row["time_s"][drops], row["approach_speed_m_s"][drops] = len(self.rows), touch, speed
         row["restitution_asked"][drops] = _nominal_restitution(law)

@@ -37,6 +37,15 @@ class BodyMotion:
         Of the body since the start [rad], [rad/s].
     modal : array, shape (..., modes)
         Its modal coordinates [kg^1/2 m]; times the shape of a mode they are displacements.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> balls = {"hit": vi.MovingBody(mass=0.1), "hitting": vi.MovingBody(mass=0.1, velocity=(0, 0, -1.0))}
+    >>> contact = vi.PointContact(above="hitting", below="hit", law=vi.find_contact_law("hertz")(stiffness=1e9))
+    >>> motion = vi.simulate_system(vi.System(bodies=balls, contacts={"contact": contact}), duration=1e-3).at([0.0, 1e-3])["hitting"]
+    >>> motion.velocity[:, 2].round(9).tolist(), motion.displacement.shape
+    ([-1.0, 0.0], (2, 3))
     """
 
     displacement: Floats
@@ -68,6 +77,15 @@ class SystemResponse:
     See Also
     --------
     simulate_system : makes one.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> balls = {"hit": vi.MovingBody(mass=0.1), "hitting": vi.MovingBody(mass=0.1, velocity=(0, 0, -1.0))}
+    >>> contact = vi.PointContact(above="hitting", below="hit", law=vi.find_contact_law("hertz")(stiffness=1e9))
+    >>> response = vi.simulate_system(vi.System(bodies=balls, contacts={"contact": contact}), duration=1e-3)
+    >>> response.impacts["impulse_N_s"].round(9).tolist(), response.energy["closure_relative"] < 1e-9
+    ([0.1], True)
     """
 
     system: System

@@ -17,6 +17,7 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.quasi_static import QuasiStatic
+from vibroimpact.dynamics.tolerance import check_tolerance
 from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State
 from vibroimpact.errors import InputError, did_you_mean
 
@@ -43,6 +44,14 @@ class MovingBody:
         Of the centre [m/s], and about it [rad/s], at the start.
     modes : ModalBasis, optional
         Vibration modes. Its `points` give the mode shapes at each contact, by the name of the contact.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> beam = vi.MovingBody(mass=0.942, inertia=(2e-4, 7.07e-3, 7.26e-3))
+    >>> wall = vi.MovingBody(mass=float("inf"))
+    >>> beam.mass, wall.mass
+    (0.942, inf)
     """
 
     mass: float
@@ -103,6 +112,14 @@ class PointContact:
         Quasi-static compliance in series with the law.
     same_spot : bool, default True
         Whether each impact of this contact falls where the last one did; otherwise it meets undeformed surfaces.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> law = vi.find_contact_law("hertz")(stiffness=1e9)
+    >>> contact = vi.PointContact(above="ball", below="beam", law=law, point=(0.12, 0, 0), gap=1e-3)
+    >>> contact.normal, contact.gap
+    (array([0., 0., 1.]), 0.001)
     """
 
     above: str
@@ -179,8 +196,7 @@ class System:
                 raise InputError(f'{name} must be a mapping of names to {kind.__name__}, as {{"name": vi.{kind.__name__}(...)}}', name)
         if not self.contacts:
             raise InputError("the system has no contact: nothing can happen between its bodies", "contacts")
-        if not 1e-13 <= _number("tolerance", self.tolerance) <= 1e-6:
-            raise InputError("tolerance must lie between 1e-13 and 1e-6")
+        check_tolerance(_number("tolerance", self.tolerance))
         for name, contact in self.contacts.items():
             key = f"contacts.{name}"
             for body in (contact.above, contact.below):

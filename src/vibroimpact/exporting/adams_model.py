@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from textwrap import wrap
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
+from vibroimpact.calibration.adams_dialog import dialog_rows
 from vibroimpact.exporting.adams_contact import AdamsContact, adams_contact
 from vibroimpact.exporting.adams_motion import AdamsMotion, adams_friction, adams_motion
 from vibroimpact.exporting.contact_parameters import first_contact, laws_of_impacts, shared_notes
@@ -124,6 +125,11 @@ def adams_model(drop: Drop) -> AdamsModel:
 def adams_notes(drop: Drop) -> list[str]:
     """Return the limitations of the model."""
     return [*shared_notes(drop), *friction_notes(drop, "Adams", adams_friction(drop))]
+
+
+def adams_dialog(drop: Drop) -> list[dict[str, Any]]:
+    """Return the fields of the dialog of a contact for each impact; none if the law is not IMPACT."""
+    return dialog_rows(laws_of_impacts(drop))
 
 
 def remarks(model: AdamsModel) -> list[str]:

@@ -16,5 +16,6 @@ def formats_document() -> dict[str, Any]:
 
 
 def export_document(drop: Drop, format: ExportFormat, files: Sequence[Path]) -> dict[str, Any]:
-    """Return the files written, the limitations of the format for this drop, and what its writer was tested against."""
-    return {"format": format.name, "files": [str(file) for file in files], "notes": format.notes(drop), "tested": format.tested}
+    """Return the files written, the limitations of the format for this drop, what it was tested against, and what a dialog takes."""
+    told = {"format": format.name, "files": [str(file) for file in files], "notes": format.notes(drop), "tested": format.tested}
+    return told | ({"adams_dialog": dialog} if (dialog := format.dialog(drop)) else {})

@@ -43,6 +43,8 @@ class Drop:
         Motion of the plate's supports, above whose mean position heights are told; at rest by default.
     in_air : bool, default False
         Does air slow the sphere down in flight?
+    in_liquid : bool, default False
+        Does a liquid take from the restitution of the laws?
     laws : tuple of ContactLaw
         The contact law of the first impact, the second, ...; the last one holds for all further impacts.
     function : tuple of str and SpeedFunction, optional
@@ -85,6 +87,7 @@ class Drop:
     oblique: Oblique | None = None
     motion: PlateMotion | None = None
     in_air: bool = False
+    in_liquid: bool = False
     laws: tuple[ContactLaw, ...]
     function: tuple[str, SpeedFunction] | None = None
     elastic: tuple[str, ...] = ()

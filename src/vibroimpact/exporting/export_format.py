@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
+from typing import Any
 
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.files.plain_names import identifier
@@ -29,6 +30,8 @@ class ExportFormat:
         Takes a `Drop`, returns the bytes of each file by its name. Raises InputError if the format can't hold the drop.
     notes : callable
         Takes a `Drop`, returns the limitations of the format for it, one sentence each.
+    dialog : callable
+        Takes a `Drop`, returns the fields of the dialog of a contact in Adams View for each impact (`dialog_rows`); none by default.
     prepare : callable
         Takes a `Drop`, returns the one that is passed to `write` and `notes`: `as_rigid` for programs that simulate the motion of rigid
         bodies; by default the drop unchanged.
@@ -40,6 +43,7 @@ class ExportFormat:
     tested: str
     write: Callable[[Drop], Mapping[str, bytes]]
     notes: Callable[[Drop], list[str]] = lambda drop: []
+    dialog: Callable[[Drop], list[dict[str, Any]]] = lambda drop: []
     prepare: Callable[[Drop], Drop] = lambda drop: drop
 
 

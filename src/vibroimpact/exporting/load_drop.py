@@ -80,6 +80,7 @@ def drop_of_result(result: Result, case: Case, function: tuple[str, SpeedFunctio
         oblique=oblique_of(case),
         motion=motion_of(case),
         in_air=case.drop.air is not None,
+        in_liquid=case.contact.local.liquid is not None,
         laws=contact_laws_of(case),
         function=function,
         elastic=tuple(elastic_names(case)),

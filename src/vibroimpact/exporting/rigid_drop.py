@@ -29,12 +29,14 @@ def as_rigid(drop: Drop) -> Drop:
     Raises
     ------
     InputError
-        If the sphere flies through air, or the plate is moved.
+        If the sphere flies through air or touches in a liquid, or the plate is moved.
     """
     if drop.motion is not None:
         raise InputError("programs get a plate at rest; formats of data hold a drop on one that moves", "plate.motion")
     if drop.in_air:
         raise InputError("programs get drops in a vacuum; formats of data hold one in air", "drop.air")
+    if drop.in_liquid:
+        raise InputError("programs get contacts without a liquid; formats of data hold one in it", "contact.liquid")
     if drop.rigid is None:
         return drop
     response = simulate(drop.rigid) if drop.function is None else _by_function(drop.rigid, *drop.function)

@@ -7,15 +7,38 @@ import numpy as np
 from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.marks import Band, Line, Map, Points
-from vibroimpact.identification.estimate import Estimate
 from vibroimpact.identification.identify import Identification
 from vibroimpact.shown import shortened, visible
+from vibroimpact.signals.estimate import Estimate
 
 _HEIGHT = 3.2
 
 
 def identification_charts(found: Identification) -> list[Chart]:
-    """Return the charts `records`, `force` and, if the place was sought, `place`."""
+    """Return the charts of an identification.
+
+    Parameters
+    ----------
+    found : Identification
+        What was identified.
+
+    Returns
+    -------
+    list of Chart
+        `records` with their fit, `force` with its band and, if the place was sought, `place`.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> plate = {"size": [0.3, 0.3, 0.02], "material": "steel", "model": "elastic", "modes": 20, "supports": "clamped", "damping": 0.01}
+    >>> case = vi.read_case({
+    ...     "sphere": {"radius": 0.02, "material": "rock-paper"}, "plate": plate, "drop": {"speed": 2.0, "position": [0.02, 0.01]},
+    ...     "contact": {"law": "hertz"}, "run": {"impacts": 1}, "sensors": [{"name": "a", "position": [0.1, 0.03], "rate": 20e3}],
+    ... })
+    >>> records = [vi.Record("a", vi.simulate(case).signals()["a"].value, 20e3, "m/s2")]
+    >>> [chart.name for chart in identification_charts(vi.identify(case, records, place=(0.02, 0.01)))]
+    ['records', 'force']
+    """
     return [_records_chart(found), _force_chart(found), *([_place_chart(found)] if found.search.misfit.size > 1 else [])]
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from vibroimpact._version import __version__
-from vibroimpact.identification.estimate import Estimate
 from vibroimpact.identification.identify import Identification
+from vibroimpact.signals.estimate import Estimate
 from vibroimpact.units.display import digits, multiple
 
 HEADERS = ("Quantity", "Value", "95 % from", "to", "Unit")

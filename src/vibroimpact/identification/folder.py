@@ -15,11 +15,11 @@ from vibroimpact.cases.build import resolved_case
 from vibroimpact.charts.figures_folder import write_figures
 from vibroimpact.identification.charts import identification_charts
 from vibroimpact.identification.document import HEADERS, identification_rows, summary_of_identification
-from vibroimpact.identification.estimate import Estimate
 from vibroimpact.identification.identify import Identification
 from vibroimpact.report.page import render_page
 from vibroimpact.results.csv_files import write_csv
 from vibroimpact.results.folder import SUMMARY, new_folder
+from vibroimpact.signals.estimate import Estimate
 
 _COLUMNS = ["time_s", "force_N", "force_low_N", "force_high_N"]
 
@@ -42,6 +42,22 @@ def save_identification(found: Identification, directory: str | PathLike[str], *
     ------
     InputError
         If the folder exists and may not be replaced, or it can't be written to.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> import vibroimpact as vi
+    >>> plate = {"size": [0.3, 0.3, 0.02], "material": "steel", "model": "elastic", "modes": 20, "supports": "clamped", "damping": 0.01}
+    >>> case = vi.read_case({
+    ...     "sphere": {"radius": 0.02, "material": "rock-paper"}, "plate": plate, "drop": {"speed": 2.0, "position": [0.02, 0.01]},
+    ...     "contact": {"law": "hertz"}, "run": {"impacts": 1},
+    ...     "sensors": [{"name": "a", "position": [0.1, 0.03], "rate": 20e3}, {"name": "b", "position": [-0.05, 0.08], "rate": 20e3}],
+    ... })
+    >>> found = vi.identify(case, [vi.Record(name, one.value, 20e3, "m/s2") for name, one in vi.simulate(case).signals().items()])
+    >>> with TemporaryDirectory() as folder:
+    ...     place = vi.save_identification(found, f"{folder}/identified")
+    ...     round(vi.load_case(place / "case.toml").sphere.radius, 3)
+    0.02
     """
     with new_folder(directory, force=force) as folder:
         recovered = found.force.found

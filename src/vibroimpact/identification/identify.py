@@ -12,12 +12,12 @@ from vibroimpact.bodies.rigid import rigid_sphere
 from vibroimpact.cases.schema import CaseTable
 from vibroimpact.errors import InputError
 from vibroimpact.identification.doubts import doubts_about
-from vibroimpact.identification.estimate import Estimate
 from vibroimpact.identification.force import Force, force_behind
 from vibroimpact.identification.measured import Measured, measured_of
 from vibroimpact.identification.plate import Place, Plate, plate_of
 from vibroimpact.identification.pulses import Search, search_place
 from vibroimpact.identification.sphere import SphereFit, fit_sphere
+from vibroimpact.signals.estimate import Estimate
 from vibroimpact.signals.record import Record
 
 WINDOW = 5e-3
@@ -50,6 +50,20 @@ class Identification:
         `recovered_impulse_N_s` from the records alone. A place that was given has no deviation.
     doubts : tuple of str
         What could not be told, and why.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> plate = {"size": [0.3, 0.3, 0.02], "material": "steel", "model": "elastic", "modes": 20, "supports": "clamped", "damping": 0.01}
+    >>> case = vi.read_case({
+    ...     "sphere": {"radius": 0.02, "material": "rock-paper"}, "plate": plate, "drop": {"speed": 2.0, "position": [0.02, 0.01]},
+    ...     "contact": {"law": "hertz"}, "run": {"impacts": 1},
+    ...     "sensors": [{"name": "a", "position": [0.1, 0.03], "rate": 20e3}, {"name": "b", "position": [-0.05, 0.08], "rate": 20e3}],
+    ... })
+    >>> records = [vi.Record(name, one.value, 20e3, "m/s2") for name, one in vi.simulate(case).signals().items()]
+    >>> found = vi.identify(case, records)
+    >>> round(found.estimates["radius_m"].value, 3), found.estimates["radius_m"].interval[0] < 0.02
+    (0.02, True)
     """
 
     plate: Plate
@@ -174,6 +188,20 @@ def identify_force(case: CaseTable, records: Sequence[Record], place: Place, *, 
     ------
     InputError
         As `identify`.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> plate = {"size": [0.3, 0.3, 0.02], "material": "steel", "model": "elastic", "modes": 20, "supports": "clamped", "damping": 0.01}
+    >>> case = vi.read_case({
+    ...     "sphere": {"radius": 0.02, "material": "rock-paper"}, "plate": plate, "drop": {"speed": 2.0, "position": [0.02, 0.01]},
+    ...     "contact": {"law": "hertz"}, "run": {"impacts": 1}, "sensors": [{"name": "a", "position": [0.1, 0.03], "rate": 20e3}],
+    ... })
+    >>> response = vi.simulate(case)
+    >>> force = vi.identify_force(case, [vi.Record("a", response.signals()["a"].value, 20e3, "m/s2")], (0.02, 0.01))
+    >>> speeds = response.impacts["approach_speed_m_s"] + response.impacts["separation_speed_m_s"]
+    >>> round(float(force.impulse[0] / (response.problem.sphere.mass * speeds[0])), 2)
+    1.0
     """
     plate = prepared_plate(case, window)
     measured, search = _started(plate, records, place)

@@ -81,8 +81,34 @@ def measured_of(sensors: Sequence[Sensor], records: Sequence[Record], window: fl
         If there is no sensor of that name, its unit or rate is another, two records have one name, they were not sampled at the same
         instants, or one is too short, not finite or constant.
     """
+    used = sensors_of(sensors, records)
+    rate = used[0].rate
+    whole, start = on_common_time(records)
+    end = start + whole.shape[1] / rate
+    onset = min(onset_time(record) for record in records)
+    first = max(0, round((onset - start) * rate) - HALF_LENGTH - 1)
+    last = min(round((onset + window - start) * rate), round((end - start) * rate))
+    if last - round((onset - start) * rate) < _LEAST:
+        words = f"the records have {max(0, last - round((onset - start) * rate))} samples in common from first touch on, to at most"
+        raise InputError(f"{words} {1e3 * window:g} ms; {_LEAST} are needed, which are {1e3 * _LEAST / rate:.3g} ms at {rate:g} Hz")
+    value = whole[:, first:last]
+    quiet = first >= _QUIET
+    noise = np.std(whole[:, :first], axis=1) if quiet else np.zeros(len(whole))
+    rms = np.sqrt(np.mean(value**2, axis=1))
+    quiet = bool(quiet and np.all(noise > 1e-9 * rms))
+    return Measured(used, value, rate, start + first / rate, onset - start - first / rate, noise if quiet else _UNKNOWN * rms, quiet)
+
+
+def sensors_of(sensors: Sequence[Sensor], records: Sequence[Record]) -> tuple[Sensor, ...]:
+    """Return the sensor that each record is named after.
+
+    Raises
+    ------
+    InputError
+        If there is no record, no sensor of that name, its unit or rate is another, or two records have one name.
+    """
     known = {sensor.name: sensor for sensor in sensors}
-    chosen: dict[str, Record] = {}
+    chosen: dict[str, Sensor] = {}
     for record in records:
         if record.name not in known:
             there = ", ".join(f'"{name}"' for name in known)
@@ -90,34 +116,35 @@ def measured_of(sensors: Sequence[Sensor], records: Sequence[Record], window: fl
         if record.name in chosen:
             raise InputError(f"there are two records {shown(record.name)}; give those of one fall")
         _check(record, known[record.name])
-        chosen[record.name] = record
+        chosen[record.name] = known[record.name]
     if not chosen:
         raise InputError("there is no record; give the files with those of the sensors")
-    found, used = list(chosen.values()), tuple(known[name] for name in chosen)
-    rate = used[0].rate
-    start = max(record.start for record in found)
-    end = min(record.start + len(record.value) / rate for record in found)
-    offsets = [(start - record.start) * rate for record in found]
+    return tuple(chosen.values())
+
+
+def on_common_time(records: Sequence[Record]) -> tuple[Floats, float]:
+    """Return the samples of records in the time that they have in common, (S, samples), and its begin [s].
+
+    Raises
+    ------
+    InputError
+        If they were not sampled at the same instants.
+    """
+    rate = records[0].rate
+    start = max(record.start for record in records)
+    end = min(record.start + len(record.value) / rate for record in records)
+    offsets = [(start - record.start) * rate for record in records]
     if any(abs(offset - round(offset)) > _SAME * max(1.0, offset) for offset in offsets):
         raise InputError("the records were not sampled at the same instants; give those of one acquisition")
-    onset = min(onset_time(record) for record in found)
-    first = max(0, round((onset - start) * rate) - HALF_LENGTH - 1)
-    last = min(round((onset + window - start) * rate), round((end - start) * rate))
-    if last - round((onset - start) * rate) < _LEAST:
-        words = f"the records have {max(0, last - round((onset - start) * rate))} samples in common from first touch on, to at most"
-        raise InputError(f"{words} {1e3 * window:g} ms; {_LEAST} are needed, which are {1e3 * _LEAST / rate:.3g} ms at {rate:g} Hz")
-    whole = [record.value[round(offset) :] for record, offset in zip(found, offsets, strict=True)]
-    value = np.stack([one[first:last] for one in whole])
-    quiet = first >= _QUIET
-    noise = np.std([one[:first] for one in whole], axis=1) if quiet else np.zeros(len(whole))
-    rms = np.sqrt(np.mean(value**2, axis=1))
-    quiet = bool(quiet and np.all(noise > 1e-9 * rms))
-    return Measured(used, value, rate, start + first / rate, onset - start - first / rate, noise if quiet else _UNKNOWN * rms, quiet)
+    samples = max(0, round((end - start) * rate))
+    whole = [record.value[round(offset) :] for record, offset in zip(records, offsets, strict=True)]
+    samples = min(samples, *(len(one) for one in whole))
+    return np.stack([one[:samples] for one in whole]), start
 
 
 def _check(record: Record, sensor: Sensor) -> None:
     """Raise InputError unless a record can be that of a sensor."""
-    if record.unit != sensor.unit and (record.unit, sensor.unit) != _STRAIN:
+    if record.unit.replace("^", "") != sensor.unit and (record.unit, sensor.unit) != _STRAIN:
         raise InputError(f"the record {shown(record.name)} is in {record.unit}, and the sensor of that name reads {sensor.unit}")
     if abs(record.rate / sensor.rate - 1.0) > _SAME:
         words = f"the record {shown(record.name)} has {record.rate:g} samples per second, and the sensor of that name {sensor.rate:g}"

@@ -27,6 +27,8 @@ _PER_WAVE = 6.0
 """Places of the grid per shortest wavelength of the modes."""
 _DETUNED = 1e-5
 """Relative step of a frequency in derivatives."""
+_LEFT_OUT = 16
+"""Number of modes that stand for those left out: so dense that they do not swing back during a contact."""
 _MARGIN = 1.5
 """Least distance of a place from the edge, in thicknesses."""
 
@@ -118,26 +120,49 @@ def compliances_of(problem: Problem, names: Sequence[str]) -> Floats:
     return np.array([residuals[name] @ directions[name] if name in residuals else 0.0 for name in names])
 
 
-def with_half_the_modes(problem: Problem) -> Problem:
-    """Return a problem whose plate keeps the lower half of its modes; the others follow quasi-statically."""
+def with_modes_left_out(problem: Problem) -> Problem:
+    r"""Return a problem whose plate has an estimate of the modes left out at the contact: a few that stand for all of them.
+
+    Where the modes above the last, at :math:`\omega_c`, are as dense as in the octave below it and move the contact as much, their
+    receptance at :math:`\omega` is :math:`\int_{\omega_c}^\infty C \omega_c\,d\varpi/(\varpi^2 - \omega^2)`, with their static compliance
+    C. By the rule of Gauss and Legendre in :math:`\xi = \omega_c/\varpi`, with nodes :math:`\xi_k` and weights :math:`w_k`, it is that of
+    modes at :math:`\omega_c/\xi_k` of compliances :math:`C w_k`. Statically nothing changes, since all compliance is there already.
+    """
     modes = problem.plate.modes
     assert modes is not None  # `plate_of` has seen to it
-    kept = len(modes.frequencies) // 2
-    left_out = float(((modes.contact[kept:] / modes.angular_frequencies[kept:]) ** 2).sum())
-    fewer = replace(
+    last = float(modes.angular_frequencies[-1])
+    octave = modes.angular_frequencies > 0.5 * last
+    compliance = float((modes.contact[octave] ** 2).sum()) / (0.5 * last) / last
+    nodes, weights = (both[: _LEFT_OUT - 1 : -1] for both in np.polynomial.legendre.leggauss(2 * _LEFT_OUT))
+    above = replace(
         modes,
-        frequencies=modes.frequencies[:kept],
-        damping_ratios=modes.damping_ratios[:kept],
-        contact=modes.contact[:kept],
-        participation=modes.participation[:kept],
+        frequencies=np.append(modes.frequencies, modes.frequencies[-1] / nodes),
+        damping_ratios=np.append(modes.damping_ratios, np.full(_LEFT_OUT, modes.damping_ratios[-1])),
+        contact=np.append(modes.contact, last / nodes * np.sqrt(compliance * weights)),
+        participation=np.concatenate([modes.participation, np.zeros((_LEFT_OUT, 3))]),
         points={},
-        rotation=None if modes.rotation is None else modes.rotation[:kept],
+        rotation=None,
         frequency_errors=None,
         residuals={},
-        along=None if modes.along is None else modes.along[:kept],
+        along=None,
     )
-    series = replace(problem.quasi_static, linear=problem.quasi_static.linear + left_out)
-    return replace(problem, plate=replace(problem.plate, modes=fewer), quasi_static=series, sensors=())
+    return replace(with_compliance(problem, -compliance), plate=replace(problem.plate, modes=above), sensors=())
+
+
+def with_compliance(problem: Problem, more: float) -> Problem:
+    """Return a problem with more static compliance at its contact [m/N]."""
+    return replace(problem, quasi_static=replace(problem.quasi_static, linear=problem.quasi_static.linear + more))
+
+
+def compliance_error(problem: Problem, frequency_errors: Floats) -> float:
+    """Return the standard deviation of the static compliance of the plate at the contact [m/N].
+
+    What makes the frequencies too high makes the plate too stiff: the errors of all its modes have one sign.
+    """
+    modes = problem.plate.modes
+    assert modes is not None  # `plate_of` has seen to it
+    of_modes = frequency_errors[-len(modes.frequencies) :]
+    return float((2.0 * of_modes * (modes.contact / modes.angular_frequencies) ** 2).sum())
 
 
 def plate_of(case: CaseTable, window: float, frequency_error: float = 0.0, progress: Callable[[float], None] | None = None) -> Plate:

@@ -1,18 +1,20 @@
 r"""Size, speed and place of a sphere from records: the contact of the case is computed, and fitted to them.
 
-The modes that the case keeps end somewhere, and their frequencies have errors. These are unknowns of the fit with a prior of zero mean,
-so that the intervals contain them:
+The modes that the case keeps end somewhere, and its mesh has errors. These are unknowns of the fit with a prior, so that the intervals
+contain them:
 
-* the contact force is :math:`F + c\,\Delta F`, with the change :math:`\Delta F` from half of the modes to all, and c of deviation one: if
-  each doubling changes half of what the last one did, all further ones together change as much as the last;
-* the static response of the modes left out to each sensor is multiplied by :math:`1 + d_s`, of deviation one, as it grows towards their
-  frequencies;
-* each frequency is multiplied by :math:`1 + \epsilon_i`, of its own estimated error.
+* the contact force is :math:`F + c\,\Delta F`, with the change :math:`\Delta F` by an estimate of all modes left out, and c of mean one
+  and deviation one;
+* the static compliance of the plate at the contact has an error of zero mean, of the size that the errors of the frequencies tell;
+* the static response of the modes left out to each sensor is multiplied by :math:`1 + d_s`, of zero mean and deviation one, as it grows
+  towards their frequencies;
+* each frequency is multiplied by :math:`1 + \epsilon_i`, of zero mean and of its own estimated error.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -23,7 +25,7 @@ from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.sensors.place_responses import sampled_responses
 from vibroimpact.identification.contact import ContactForce, contact_forces
 from vibroimpact.identification.measured import Measured
-from vibroimpact.identification.plate import Place, Plate, compliances_of, shapes_of, with_half_the_modes
+from vibroimpact.identification.plate import Place, Plate, compliance_error, compliances_of, shapes_of, with_compliance, with_modes_left_out
 from vibroimpact.identification.pulses import Candidate
 from vibroimpact.signals.inverse.gauss_newton import gauss_newton
 from vibroimpact.signals.inverse.hertz_pulse import sphere_of_pulse
@@ -34,6 +36,8 @@ _RESTITUTION = 0.6
 """Restitution that the start is made with."""
 _FITTED = 5
 """Number of parameters that are asked for; unknowns with a prior follow them."""
+_OF_FORCE = [2, 3, 5, 6]
+"""Those that the contact force depends on: radius, speed, c and the error of the compliance."""
 
 
 @dataclass(frozen=True)
@@ -71,8 +75,8 @@ class _Explained(NamedTuple):
     """What a sphere makes of the records.
 
     `left`: its signals less the records, (S, samples). `slopes`: derivatives of `left` in all parameters and unknowns (S, samples, p).
-    `force`: its contact force. `force_slopes`: derivatives of the facts of the force in radius, speed and c, (3, 3). `problem`: with the
-    contact at its place.
+    `force`: its contact force. `force_slopes`: derivatives of the facts of the force in radius, speed and its two unknowns, (3, 4).
+    `problem`: with the contact at its place.
     """
 
     left: Floats
@@ -100,36 +104,47 @@ def fit_sphere(plate: Plate, measured: Measured, start: Candidate, place: Place 
     pulse = (start.impulse, start.duration, case.sphere.material.density, contact_pair(case).effective_modulus)
     radius, speed = sphere_of_pulse(*pulse, _RESTITUTION)
     parameters = np.array([*(start.place if place is None else place), np.log(radius), np.log(speed), start.touch])
-    prior = np.concatenate([np.ones(1 + len(measured.sensors)), plate.frequency_errors])
+    prior = np.append(np.ones(2 + len(measured.sensors)), plate.frequency_errors)
+    expected, own = np.eye(len(prior))[0], np.append(np.ones(_FITTED), prior)  # unknowns are in their deviations
     most = np.array([*(0.06 * np.array(plate.half)), 0.3, 0.3, 1.0 / measured.rate, *np.full(len(prior), np.inf)])
     by_prior = np.concatenate([np.zeros((len(prior), _FITTED)), np.eye(len(prior))], axis=1)
-    free = np.concatenate([np.full(2, place is None), np.ones(3), prior])  # unknowns are in their deviations
+    free = np.concatenate([np.full(2, place is None), np.ones(3), prior])
+
+    @lru_cache(maxsize=2)
+    def explained(given: bytes) -> _Explained:
+        return _explained(plate, measured, np.frombuffer(given) * own)
 
     def weighted(given: Floats, noise: Floats) -> tuple[Floats, Floats]:
-        found = _explained(plate, measured, given * np.append(np.ones(_FITTED), prior))
+        found = explained(given.tobytes())
         slopes = found.slopes * free / noise[:, None, None]
-        residual = np.append(found.left / noise[:, None], given[_FITTED:])
+        residual = np.append(found.left / noise[:, None], given[_FITTED:] - expected)
         return residual, np.concatenate([slopes.reshape(-1, len(free)), by_prior])
 
-    noise = measured.noise
-    fit = gauss_newton(lambda given: weighted(given, noise), np.append(parameters, np.zeros(len(prior))), most)
-    # what the first fit leaves tells better than a short quiet part how the records are to be weighed
-    left = fit.residual[: measured.value.size].reshape(measured.value.shape)
-    noise = noise * np.sqrt(np.mean(left**2, axis=1))
+    fit = gauss_newton(lambda given: weighted(given, measured.noise), np.append(parameters, expected), most)
+    noise = _noise_of(explained(fit.parameters.tobytes()).left, weighted(fit.parameters, measured.noise)[1], fit.covariance)
     fit = gauss_newton(lambda given: weighted(given, noise), fit.parameters, most)
-    found = _explained(plate, measured, fit.parameters * np.append(np.ones(_FITTED), prior))
-    scale = float(fit.residual @ fit.residual) / (measured.value.size - _FITTED)  # what the prior adds counts as data
-    covariance, half = scale * fit.covariance, np.array(plate.half)
-    told = np.ix_([2, 3, _FITTED], [2, 3, _FITTED])  # radius, speed and c
+    found, half = explained(fit.parameters.tobytes()), np.array(plate.half)
     return SphereFit(
         np.append(np.clip(fit.parameters[:2], -half, half), fit.parameters[2:_FITTED]),
-        covariance[:_FITTED, :_FITTED],
+        fit.covariance[:_FITTED, :_FITTED],
         found.force,
-        found.force_slopes @ covariance[told] @ found.force_slopes.T,
+        found.force_slopes @ fit.covariance[np.ix_(_OF_FORCE, _OF_FORCE)] @ found.force_slopes.T,
         -found.left,
         found.problem,
         fit.converged,
     )
+
+
+def _noise_of(left: Floats, slopes: Floats, covariance: Floats) -> Floats:
+    """Return the noise of each record from what a fit leaves of it (S, samples), which tells it better than a short quiet part does.
+
+    What is left has less energy than the noise by what the fit follows of it: as many samples as unknowns that the record tells, which is
+    the trace of its part of the projection (MacKay, as for the force).
+    """
+    sensors, samples = left.shape
+    of_records = slopes[: left.size].reshape(sensors, samples, -1)
+    followed = ((of_records @ covariance) * of_records).sum(axis=(1, 2))
+    return np.asarray(np.sqrt((left**2).sum(axis=1) / (samples - followed)))
 
 
 def _explained(plate: Plate, measured: Measured, parameters: Floats) -> _Explained:
@@ -143,7 +158,8 @@ def _explained(plate: Plate, measured: Measured, parameters: Floats) -> _Explain
     nudged = plate.deflections(place + _NUDGE * np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]))
     radii, speeds = np.exp(radius + _RATIO * np.array([0, 1, 0])), np.exp(speed + _RATIO * np.array([0, 0, 1]))
     force, *others = contact_forces(case, there, radii, speeds)
-    (coarse,) = contact_forces(case, with_half_the_modes(there), radii[:1], speeds[:1])
+    (whole,) = contact_forces(case, with_modes_left_out(there), radii[:1], speeds[:1])
+    (softer,) = contact_forces(case, with_compliance(there, compliance_error(there, plate.frequency_errors)), radii[:1], speeds[:1])
 
     def signals(at: Floats, of: ContactForce = force, later: float = 0.0) -> Floats:
         return sampled_responses(at, measured.rate, touch + later + of.time, of.impulse, samples)
@@ -154,7 +170,7 @@ def _explained(plate: Plate, measured: Measured, parameters: Floats) -> _Explain
     none = np.zeros(len(names))
     errors = np.concatenate(
         [
-            (bare - signals(answers, coarse))[None],
+            np.stack([signals(answers, whole) - bare, signals(answers, softer) - bare]),
             np.eye(len(names))[:, :, None] * static,
             detuned.reshape(len(shapes), len(names), samples),
         ]
@@ -164,11 +180,11 @@ def _explained(plate: Plate, measured: Measured, parameters: Floats) -> _Explain
         *((signals(answers, one) - bare) / _RATIO for one in others),
         (signals(answers, later=later) - bare) / later,
     ]
-    of_force = [*((one.facts - force.facts) / _RATIO for one in others), force.facts - coarse.facts]
+    of_force = [*((one.facts - force.facts) / _RATIO for one in others), whole.facts - force.facts, softer.facts - force.facts]
     return _Explained(
         bare + np.tensordot(unknown, errors, 1) - measured.value,
         np.moveaxis(np.concatenate([np.stack(slopes), errors]), 0, -1),
-        replace(force, facts=force.facts + unknown[0] * of_force[2]),
+        replace(force, facts=force.facts + unknown[0] * of_force[2] + unknown[1] * of_force[3]),
         np.stack(of_force, axis=1),
         there,
     )

@@ -54,6 +54,19 @@ def save_modes(
     ------
     InputError
         If the folder exists and may not be replaced, or it can't be written to.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> import vibroimpact as vi
+    >>> case = vi.read_case({
+    ...     "sphere": {"radius": "25 mm", "material": "rock-paper", "model": "elastic", "modes": 5},
+    ...     "plate": {"material": "rigid"}, "drop": {"speed": 1.0}, "contact": {"law": "hertz"},
+    ... })
+    >>> with TemporaryDirectory() as folder:
+    ...     place = vi.save_modes(case, vi.compute_modes(case), f"{folder}/modes")
+    ...     sorted(file.name for file in place.iterdir())
+    ['case.toml', 'modes.csv', 'report.html', 'sphere.bdf', 'sphere.inp', 'sphere.vtu', 'summary.json']
     """
     with new_folder(directory, force=force) as folder:
         (folder / "case.toml").write_text(tomli_w.dumps(resolved_case(case)), encoding="utf-8")

@@ -44,6 +44,13 @@ class Recognised:
         Balanced accuracy, where the classes of the signals are known.
     doubts : tuple of str
         What is doubtful, such as another version.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> found = vi.apply_recogniser("recognised", "falls")
+    >>> found.class_names, found.probabilities.shape, found.accuracy > 0.5
+    (('coal', 'gangue'), (96, 2), True)
     """
 
     name: str
@@ -75,6 +82,13 @@ def apply_recogniser(model: Recogniser | str | PathLike[str], dataset: str | Pat
     ------
     InputError
         If either can't be read, or the signals are not of the sensors and rates that the model was trained on.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> found = vi.apply_recogniser("recognised", "falls")
+    >>> found.class_names, round(sum(one.value for one in found.fractions.values()), 6)
+    (('coal', 'gangue'), 1.0)
     """
     recogniser = model if isinstance(model, Recogniser) else load_recogniser(model)
     signals = dataset if isinstance(dataset, LabelledSignals) else read_labelled_signals(dataset)
@@ -138,6 +152,15 @@ def save_recognised(found: Recognised, directory: str | PathLike[str], *, force:
     ------
     InputError
         If the folder exists and may not be replaced, or it can't be written to.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> import vibroimpact as vi
+    >>> with TemporaryDirectory() as folder:
+    ...     place = vi.save_recognised(vi.apply_recogniser("recognised", "falls"), f"{folder}/counted")
+    ...     sorted(file.name for file in place.iterdir())
+    ['predictions.csv', 'summary.json']
     """
     columns = [f"probability_{one_line(name)}" for name in found.class_names]
     guessed = [found.class_names[one] for one in found.probabilities.argmax(axis=1)]

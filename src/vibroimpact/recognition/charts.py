@@ -29,6 +29,12 @@ def recognition_charts(found: Recognition) -> list[Chart]:
     -------
     list of Chart
         `scores`, `confusion`, `unseen` where ranges could be left out, `robustness`, `reliability`, `importance` and `fraction`.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> [chart.name for chart in recognition_charts(vi.recognise("falls", folds=2, seeds=1))][:2]
+    ['scores', 'confusion']
     """
     unseen = [_unseen_chart(found)] if found.unseen else []
     fraction = [_fraction_chart(found)] if found.streams else []

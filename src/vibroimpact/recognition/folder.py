@@ -45,6 +45,13 @@ def save_recognition(found: Recognition, directory: str | PathLike[str], *, forc
     ------
     InputError
         If the folder exists and may not be replaced, or it can't be written to.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> place = vi.save_recognition(vi.recognise("falls", folds=2, seeds=1), "found")
+    >>> vi.load_recogniser(place).class_names
+    ('coal', 'gangue')
     """
     with new_folder(directory, force=force) as folder:
         for name, rows_of in TABLES.items():

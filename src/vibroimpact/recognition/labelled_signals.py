@@ -26,6 +26,11 @@ class SensorSignals:
         Sampling rate [Hz].
     unit : str
         Unit of the samples.
+
+    Examples
+    --------
+    >>> SensorSignals(np.zeros((2, 4), np.float32), 25.6e3, "m/s2").values.shape
+    (2, 4)
     """
 
     values: NDArray[np.float32]
@@ -59,6 +64,13 @@ class LabelledSignals:
         Number of signals in the file, of which these are a part.
     check_sum : str, optional
         SHA-256 of the file.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> signals = vi.read_labelled_signals("falls")
+    >>> len(signals), signals.class_names, signals.sensors["a1"].rate
+    (96, ('coal', 'gangue'), 20000.0)
     """
 
     name: str

@@ -55,6 +55,13 @@ def read_labelled_signals(dataset: str | PathLike[str], *, most: int | None = No
     ------
     InputError
         If it is not a data set, or it is damaged.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> signals = vi.read_labelled_signals("falls", most=40)
+    >>> signals.total, len(signals), sorted(signals.groups)
+    (96, 36, ['fall', 'plate', 'rock'])
     """
     path = Path(dataset)
     if path.is_dir():

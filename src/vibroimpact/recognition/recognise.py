@@ -74,6 +74,13 @@ class Recognition:
         What is doubtful, such as a leak.
     recogniser : Recogniser
         The best, trained on all signals, as it is saved.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> found = vi.recognise("falls", folds=2, seeds=1)
+    >>> sum(found.counts), found.confusion[found.best].shape
+    (96, (2, 2))
     """
 
     name: str
@@ -151,6 +158,14 @@ def recognise(
     See Also
     --------
     vibroimpact.load_recogniser : loads a saved model, to apply it to other signals.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> found = vi.recognise("falls", folds=2, seeds=1)
+    >>> score = found.scores[found.best].balanced_accuracy
+    >>> bool(score.value > found.scores["majority"].balanced_accuracy.value)
+    True
     """
     with needs_extra():
         import onnxruntime as onnxruntime

@@ -40,6 +40,13 @@ class Recogniser:
         What it is: classifier, classes, features, sensors, versions, the data that it was trained on, and what it confuses.
     graph : bytes
         Its ONNX graph: features in, probabilities out.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> model = vi.load_recogniser("recognised")
+    >>> model.class_names, model.probabilities(vi.read_labelled_signals("falls")).shape
+    (('coal', 'gangue'), (96, 2))
     """
 
     card: Mapping[str, Any]
@@ -162,6 +169,12 @@ def load_recogniser(directory: str | PathLike[str]) -> Recogniser:
     ------
     InputError
         If it is no model, of a format that this version does not know, or damaged.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> vi.load_recogniser("recognised").class_names
+    ('coal', 'gangue')
     """
     folder = Path(directory)
     folder = folder / FOLDER if (folder / FOLDER).is_dir() else folder

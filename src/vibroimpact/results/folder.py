@@ -142,6 +142,15 @@ def read_result(directory: str | PathLike[str]) -> Result:
     See Also
     --------
     vibroimpact.save_result : writes one.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> import vibroimpact as vi
+    >>> with TemporaryDirectory() as folder:
+    ...     place = vi.save_result(vi.simulate(vi.load_case("paper:type1-theory")), f"{folder}/theory")
+    ...     vi.read_result(place).impacts["rebound_height_m"].round(4).tolist()
+    [2.4111, 1.4572, 0.8846, 0.5409, 0.3346]
     """
     folder = Path(directory)
     recover(folder)  # an interrupted replacement may have left the folder under its temporary name

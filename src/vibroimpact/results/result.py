@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Result:
-    """Result of one drop.
+    """Result of one drop; its last five fields are empty where nothing but the contact deforms.
 
     Parameters
     ----------
@@ -59,7 +59,14 @@ class Result:
     deflection : Deflection, optional
         Deflection of the plate's upper side at selected times.
 
-    The last five are empty where nothing but the contact deforms.
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> result = vi.result_of(vi.simulate(vi.load_case("paper:type1-theory")))
+    >>> result.status
+    'Stopped after 5 impacts, at the top of the last rebound, at 5.11709 s.'
+    >>> len(result.doubts), result.plot("energy").layout.title.text
+    (3, 'Energy')
     """
 
     case: ResolvedCase
@@ -138,6 +145,13 @@ def result_of(response: Response) -> Result:
     ------
     InputError
         If the response is of several drops, or keeps no history.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> result = vi.result_of(vi.simulate(vi.load_case("paper:type1-theory")))
+    >>> len(result.impacts["time_s"]), round(float(result.history["force_N"].max()), 1)
+    (5, 10238.4)
     """
     history = fine_history(response)
     signals = response.signals() if response.problem.sensors else {}

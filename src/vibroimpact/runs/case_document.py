@@ -9,7 +9,7 @@ from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.costs import describe_costs
 from vibroimpact.cases.doubts import doubts
-from vibroimpact.cases.expected import expected_of, expected_restitution
+from vibroimpact.cases.expected import expected_of, first_restitution
 from vibroimpact.cases.pair import contact_pair
 from vibroimpact.cases.rigid import contact_laws_of, elastic_names, mass_of_sphere, touch_speed
 
@@ -28,7 +28,7 @@ def case_document(case: Case, aside: Container[str] = ()) -> dict[str, Any]:
     """
     law, pair, speed, expected = contact_laws_of(case)[0], contact_pair(case), touch_speed(case), expected_of(case)
     resolved = resolved_case(case)
-    restitution = expected_restitution(law, pair.effective_mass, speed)
+    restitution = first_restitution(case)
     return {
         "name": case.name,
         "mass_kg": mass_of_sphere(case),

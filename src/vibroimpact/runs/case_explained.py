@@ -13,16 +13,18 @@ from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.costs import describe_costs
 from vibroimpact.cases.doubts import doubts
-from vibroimpact.cases.expected import expected_of, expected_restitution
+from vibroimpact.cases.expected import expected_of, first_restitution
 from vibroimpact.cases.fields.air import air_words
 from vibroimpact.cases.fields.instruments import INSTRUMENTS, AccelerometerTable
-from vibroimpact.cases.keys import quantity_of
+from vibroimpact.cases.fields.liquid import liquid_words
+from vibroimpact.cases.fields.quantities import quantity_of
 from vibroimpact.cases.motion import motion_length
 from vibroimpact.cases.oblique import friction_law_of, is_oblique
 from vibroimpact.cases.pair import contact_pair, is_free_sphere
 from vibroimpact.cases.rigid import contact_laws_of, deforms, elastic_names, impact_limit, mass_of_sphere, touch_speed
 from vibroimpact.cases.schema import SensorSection
-from vibroimpact.contact.law import CompliantLaw, ContactLaw, unit_of
+from vibroimpact.contact.law import CompliantLaw, unit_of
+from vibroimpact.dynamics.liquid import restitution_kept
 from vibroimpact.dynamics.problem import STANDARD_GRAVITY
 from vibroimpact.materials import RIGID, Material
 from vibroimpact.report.terminal_table import facts
@@ -71,6 +73,10 @@ def case_explained(case: Case, aside: Container[str] = ()) -> RenderableType:
             ", ".join(f"{value:.9g}" for value in values) if len(set(values)) > 1 else f"{values[0]:.9g}" if values[0] is not None else "-"
         )
         rows.append((f"  {item.name}", f"{shown} {unit_of(item, getattr(laws[0], 'exponent', 1))}"))
+    if (table := case.contact.local.liquid) is not None:
+        stokes = table.liquid().stokes_number(speed, case.sphere.radius, case.sphere.material.density)
+        left = f"at the first touch the Stokes number is {stokes:.4g}, and {restitution_kept(stokes):.5g} of the restitution is left"
+        rows.append(("liquid", f"{liquid_words(table.model_dump())}: {left}; flights are without it"))
     if (friction := friction_law_of(case)) is not None:
         rows.append(("friction law", f"{friction.name}: {friction.equation}"))
         rows += [(f"  {item.name}", f"{getattr(friction, item.name):.9g} {item.metadata['unit']}".rstrip()) for item in fields(friction)]
@@ -88,7 +94,7 @@ def case_explained(case: Case, aside: Container[str] = ()) -> RenderableType:
     # restitution and expected contact are those of rigid bodies, and labelled so where the bodies deform
     rigid = not deforms(case) or is_free_sphere(case)
     label = "restitution" if rigid else "restitution if rigid"
-    rows += [("" if number else label, line) for number, line in enumerate(_restitution_lines(laws[0], pair.effective_mass, speed))]
+    rows += [("" if number else label, line) for number, line in enumerate(_restitution_lines(case))]
     expected = expected_of(case)
     if not math.isnan(expected.force):
         numbers = f"indentation {expected.depth:.4g} m, force {expected.force:.4g} N"
@@ -197,9 +203,9 @@ def _filter(sensor: SensorSection) -> str:
     return f"{sensor.filter} filter{corner}"
 
 
-def _restitution_lines(law: ContactLaw, mass: float, speed: float) -> list[str]:
-    """Return sentences on the restitution that a law achieves, and on the parameter that would achieve the one asked."""
-    asked, achieved, to_ask, refusal = expected_restitution(law, mass, speed)
+def _restitution_lines(case: Case) -> list[str]:
+    """Return sentences on the restitution that the law achieves, and on the parameter that would achieve the one asked."""
+    asked, achieved, to_ask, refusal = first_restitution(case)
     if math.isnan(to_ask) and not refusal:
         return [f"{achieved:.5g} achieved at the first touch, without gravity"]
     lines = [f"{asked:.5g} asked, {achieved:.5g} achieved at the first touch, without gravity"]

@@ -63,5 +63,23 @@ def _with_caption(make: Callable[[str], Chart], name: str, result: Result) -> Ch
 
 
 def run_charts(result: Result) -> list[Chart]:
-    """Return the charts of a result in the order of the report."""
+    """Return the charts of a result in the order of its report.
+
+    Parameters
+    ----------
+    result : Result
+        Result of one drop.
+
+    Returns
+    -------
+    list of Chart
+        `position`, `force` and `velocity` first, and those that `plot_result` names.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> response = vi.simulate(vi.load_case("paper:type1-theory"))
+    >>> [chart.name for chart in run_charts(vi.result_of(response))]
+    ['position', 'force', 'velocity', 'acceleration', 'force_indentation', 'energy']
+    """
     return [make() for make in chart_makers(result).values()]

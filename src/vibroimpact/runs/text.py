@@ -12,6 +12,7 @@ from vibroimpact.report.terminal_table import TerminalColumn, TerminalTable, fac
 from vibroimpact.results.result import Result
 from vibroimpact.runs.deformation import deformation_rows, treatment_sentence
 from vibroimpact.runs.tables import PUT_IN, SUM, formatted_column, ledger_table, shown_columns
+from vibroimpact.units.display import MISSING, text
 
 _FIRST_LEFT_OUT = (
     "max_acceleration_m_s2",
@@ -75,11 +76,27 @@ def result_summary(result: Result, width: int) -> RenderableType:
         impact_table_for_terminal(result, width),
         Text(),
         energy_table_for_terminal(result),
+        *sensor_lines(result),
         Text(),
         Text(result.status),
         *_deformation(result),
         *doubt_lines(result.doubts),
     )
+
+
+def sensor_lines(result: Result) -> list[RenderableType]:
+    """Return the largest reading of each sensor, and for how long it was beyond the range; empty without sensors."""
+    if not result.signals:
+        return []
+    readings = {name: (signal.largest, signal.sensor.unit) for name, signal in result.signals.items()}
+    overloads = [signal.overload_time for signal in result.signals.values()]
+    columns = [
+        TerminalColumn("sensor", list(readings), text=True),
+        TerminalColumn("largest reading", [text(*reading) for reading in readings.values()], text=True),
+    ]
+    if any(overloads):
+        columns.append(TerminalColumn("beyond its range for", [text(one, "s") if one else MISSING for one in overloads], text=True))
+    return [Text(), TerminalTable(columns)]
 
 
 def _deformation(result: Result) -> list[RenderableType]:

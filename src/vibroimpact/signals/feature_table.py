@@ -37,6 +37,14 @@ class FeatureTable:
         The values; NaN where there is none.
     reasons : array of int, shape (signals, features)
         Why there is none, as members of `Reason`; 0 where there is one.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import vibroimpact as vi
+    >>> table = vi.feature_table(np.sin(np.arange(200) / 3.0)[None], 1e3, ["rms", "decay_time"], unit="V")
+    >>> table.names, table.units, table["rms"].round(2).tolist()
+    (('rms', 'decay_time'), ('V', 's'), [0.7])
     """
 
     names: tuple[str, ...]

@@ -29,6 +29,16 @@ def one_record(path: str | PathLike[str], channel: str | None = None) -> Record:
     ------
     InputError
         If the file can't be read, there is no such channel, or there are several records without a name or of that name.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> import vibroimpact as vi
+    >>> with TemporaryDirectory() as folder:
+    ...     with open(f"{folder}/hammer.csv", "w") as file:
+    ...         _ = file.write("time [ms],force [kN],plate (g)\\n0,1,0\\n1,2,5\\n")
+    ...     vi.one_record(f"{folder}/hammer.csv", "force").value.tolist()
+    [1000.0, 2000.0]
     """
     names, found = [], []
     for record in read_records(path):

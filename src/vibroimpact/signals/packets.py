@@ -41,6 +41,14 @@ class Packets(NamedTuple):
         Largest magnitude of the signal within it, in the unit of the signal.
     impulses : array of int
         Upward crossings of the threshold by the signal within it; a signal that begins above the threshold crosses it there.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> taps = vi.Record("geophone", [0.0, 9.0, -9.0] + 200 * [0.0] + [0.0, 4.0, -4.0], 10e3, "V")
+    >>> found = vi.find_packets(taps, threshold=2.0)
+    >>> found.onset.tolist(), found.peak.round(1).tolist()
+    ([1, 204], [9.0, 4.0])
     """
 
     signal: Integers

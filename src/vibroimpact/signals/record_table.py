@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.arrays import Floats
+from vibroimpact.registry import find_named
 from vibroimpact.signals.feature_table import feature_table
 from vibroimpact.signals.packets import DEAD_TIME
 from vibroimpact.signals.reasons import Reason
@@ -38,12 +39,26 @@ class RecordTable:
         The values, in the units `features()[name].unit_for(record.unit)`; NaN where there is none.
     reasons : array of int, shape (records, features)
         Why there is none, as members of `Reason`; 0 where there is one.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import vibroimpact as vi
+    >>> table = vi.record_table([vi.Record("a", np.sin(np.arange(100)), 1e3, "V")], ["rms", "peak"])
+    >>> table.names, table.values.round(2).tolist()
+    (('rms', 'peak'), [[0.71, 1.0]])
+    >>> table["peak"].round(2).tolist()
+    [1.0]
     """
 
     records: list[Record]
     names: tuple[str, ...]
     values: Floats
     reasons: NDArray[np.int8]
+
+    def __getitem__(self, name: str) -> Floats:
+        """Return the values of a feature, (records,)."""
+        return self.values[:, find_named("feature", name, {one: place for place, one in enumerate(self.names)})]
 
     @property
     def columns(self) -> tuple[str, ...]:

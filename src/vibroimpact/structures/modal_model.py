@@ -239,6 +239,16 @@ class ModalBasis:
         Rotation about x, y and z in each rigid motion [kg^-1/2 m^-1], by which moments at the contact turn the body; none by default.
     sounds : mapping of str to SoundPaths
         Paths of sound to the microphones.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import vibroimpact as vi
+    >>> contact = np.array([1.0, -0.7])
+    >>> modes = vi.ModalBasis(np.array([200.0, 550.0]), np.array([0.01, 0.01]), contact, np.zeros((2, 3)))
+    >>> plate = vi.Body(mass=10.0, contact_offset=0.0, modes=modes)
+    >>> plate.modes.frequencies.tolist()
+    [200.0, 550.0]
     """
 
     frequencies: Floats

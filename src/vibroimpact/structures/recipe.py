@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from typing import Literal
 
 import numpy as np
@@ -48,6 +49,8 @@ _SOLID_GAIN, _PLATE_GAIN = 4.0, 3.0  # measured: docs/elastic-bodies.md compares
 MAIN_CAUSE = "frequencies are off most for"
 """Name of the fact with the main cause of errors of frequencies."""
 
+_RECENT = 64
+"""Recipes whose keys are kept."""
 _MODELS = MemoryCache[ModalModel](capacity=500e6)
 _ROUGH = 1e-4
 """Residual of the modes of the coarser mesh, of which only the frequencies are used; their relative error is 1e-8."""
@@ -251,9 +254,20 @@ def modal_model_of(recipe: Recipe, progress: Progress | None = None, tell: Calla
     return model
 
 
+@lru_cache(maxsize=_RECENT)
+def recipe_key(recipe: Recipe) -> str:
+    """Return the key of a recipe, kept for the next drop on the same plate."""
+    return key_of(recipe)
+
+
+def plate_key(recipe: Recipe) -> str:
+    """Return the key of a held body, whatever its reduction, on which its statics do not depend."""
+    return recipe_key(replace(recipe, reduction=Reduction()))
+
+
 def model_key(recipe: Recipe) -> str:
     """Return the key of the modes of a recipe in the store."""
-    return key_of(_normalised(recipe))
+    return recipe_key(_normalised(recipe))
 
 
 def _normalised(recipe: Recipe) -> Recipe:
@@ -267,7 +281,7 @@ def _normalised(recipe: Recipe) -> Recipe:
 
 def _stored_model(recipe: Recipe, progress: Progress | None, say: Callable[[str], None]) -> ModalModel:
     """Return a model from memory, else from the store, else computed; a model that cannot be stored stays in memory."""
-    key, here = key_of(recipe), _place(recipe)
+    key, here = recipe_key(recipe), _place(recipe)
     model = _MODELS.get(here)
     if model is not None:
         return model
@@ -286,7 +300,7 @@ def _stored_model(recipe: Recipe, progress: Progress | None, say: Callable[[str]
 
 def _place(recipe: Recipe) -> str:
     """Return the key of the modes of a recipe in memory, which differs from store to store."""
-    return f"{store_folder()}/{key_of(recipe)}"
+    return f"{store_folder()}/{recipe_key(recipe)}"
 
 
 def computed_model(recipe: Recipe, progress: Progress | None = None) -> ModalModel:

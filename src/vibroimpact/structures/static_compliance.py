@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import replace
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from scipy.sparse import csr_array
@@ -23,8 +22,8 @@ from vibroimpact.structures.plate_compliance import (
     through_thickness_term,
 )
 from vibroimpact.structures.plate_element import shear_factor
-from vibroimpact.structures.recipe import Recipe, Reduction, SphereOfSolids, is_thin
-from vibroimpact.structures.store import key_of, load_entry, save_entry
+from vibroimpact.structures.recipe import Recipe, SphereOfSolids, is_thin, plate_key
+from vibroimpact.structures.store import hold_entry, key_of, load_entry, save_entry
 from vibroimpact.structures.structure import Structure
 from vibroimpact.structures.supports.constraints import HeldStructure
 from vibroimpact.structures.supports.support import held_by
@@ -93,46 +92,60 @@ def static_compliance(recipe: Recipe, place: tuple[float, float], side: Side = "
     return found
 
 
+def hold_compliances(recipe: Recipe, places: Sequence[tuple[float, float]], side: Side = "upper") -> None:
+    """Compute the compliances of a plate at places together, for calls of `static_compliance` that follow in this process."""
+    for place, found in zip(places, computed_compliances(recipe, places, side), strict=True):
+        hold_entry(compliance_key(recipe, place, side), _KIND, {_KIND: np.array(found)})
+
+
 def compliance_key(recipe: Recipe, place: tuple[float, float], side: Side = "upper") -> str:
     """Return the key of the compliance of a plate at a place in the store."""
-    return key_of(["structural compliance", replace(recipe, reduction=Reduction()), place, side])
+    return key_of(["structural compliance", plate_key(recipe), place, side])
 
 
 def computed_compliance(recipe: Recipe, place: tuple[float, float], side: Side = "upper") -> float:
     """Return the structural compliance of a held plate, computed anew; parameters and errors are those of `static_compliance`."""
+    return float(computed_compliances(recipe, [place], side)[0])
+
+
+def computed_compliances(recipe: Recipe, places: Sequence[tuple[float, float]], side: Side = "upper") -> Floats:
+    """Return the structural compliances of a held plate at several places, solved together, (places,)."""
     if isinstance(recipe.shape, SphereOfSolids):
         raise InputError("a structural compliance is that of a plate, whose two faces are told apart; a sphere has none")
     held, elastic = _factorised(recipe)
     structure, material = held.structure, _material(recipe)
-    thickness = _thickness(structure, place)
-    if is_thin(recipe):
-        load = _faces(held, place, Average(0.0, 0.0))[0]
-        return float(load @ elastic.static(load))
-    layer = thickness, material.youngs_modulus, material.poissons_ratio
-    if structure.mesh.is_flat:
-        factor = shear_factor(material.poissons_ratio)
-        average = plate_theory_average(_RADIUS * thickness, thickness, material.poissons_ratio, factor)
-        correction = plate_theory_term(*layer, factor, average)
-    else:
-        average = through_thickness_average(_RADIUS * thickness)
-        correction = through_thickness_term(*layer, average)
-    upper, lower = _faces(held, place, average)
-    load, seen = (upper, lower) if side == "upper" else (lower, upper)
-    return float(seen @ elastic.static(load)) + correction
+    averages, terms = [], []
+    for thickness in _thicknesses(structure, places):
+        layer = thickness, material.youngs_modulus, material.poissons_ratio
+        if is_thin(recipe):
+            averages.append(Average(0.0, 0.0))
+            terms.append(0.0)
+        elif structure.mesh.is_flat:
+            factor = shear_factor(material.poissons_ratio)
+            averages.append(plate_theory_average(_RADIUS * thickness, thickness, material.poissons_ratio, factor))
+            terms.append(plate_theory_term(*layer, factor, averages[-1]))
+        else:
+            averages.append(through_thickness_average(_RADIUS * thickness))
+            terms.append(through_thickness_term(*layer, averages[-1]))
+    upper, lower = _faces(held, places, averages)
+    load, opposite = (upper, lower) if side == "upper" else (lower, upper)
+    moved = elastic.static(load.toarray().T)
+    return np.asarray(opposite.multiply(moved.T).sum(axis=1)) + terms
 
 
-def _thickness(structure: Structure, place: tuple[float, float]) -> float:
-    """Return the thickness [m] of a body at a place.
+def _thicknesses(structure: Structure, places: Sequence[tuple[float, float]]) -> list[float]:
+    """Return the thickness [m] of a body at places.
 
     Raises
     ------
     InputError
-        If the place is not on the body.
+        If a place is not on the body.
     """
-    top = surface_motion(structure.mesh, np.array([place]))[1]
+    top = surface_motion(structure.mesh, np.array(places))[1]
     if structure.mesh.is_flat:
-        return structure.thickness
-    return float(np.linalg.norm(top - surface_motion(structure.mesh, np.array([place]), "lower")[1]))
+        return len(places) * [structure.thickness]
+    thicknesses: list[float] = np.linalg.norm(top - surface_motion(structure.mesh, np.array(places), "lower")[1], axis=1).tolist()
+    return thicknesses
 
 
 def _material(recipe: Recipe) -> Material:
@@ -141,7 +154,7 @@ def _material(recipe: Recipe) -> Material:
 
 def _factorised(recipe: Recipe) -> tuple[HeldStructure, ElasticSystem]:
     """Return a held body and its factorised system; the last one is cached, for drops on other places of one plate."""
-    key = key_of(replace(recipe, reduction=Reduction()))
+    key = plate_key(recipe)
     found = _FACTORISED.get(key)
     if found is None:
         _FACTORISED.clear()  # before the new factors need the memory
@@ -152,17 +165,20 @@ def _factorised(recipe: Recipe) -> tuple[HeldStructure, ElasticSystem]:
     return found
 
 
-def _faces(held: HeldStructure, place: tuple[float, float], average: Average) -> list[Floats]:
-    """Return the averaged vertical displacements of the upper and lower face around a place, as rows of the free degrees of freedom."""
+def _faces(held: HeldStructure, places: Sequence[tuple[float, float]], averages: Sequence[Average]) -> list[csr_array]:
+    """Return the averaged vertical displacements of the upper and lower face around places, as rows of the free degrees of freedom."""
     mesh = held.structure.mesh
     discs, weights = pressure_rule(UNIFORM)
-    places = np.asarray(place) + average.radius * discs
-    inside, motions = _on_body(mesh, places)
-    if not inside.any():
-        raise InputError(f"the body is too narrow at ({place[0]:g}, {place[1]:g}) m to be taken for a plate")
-    weights = np.where(inside, weights * average.weights(discs), 0.0)
-    weights = weights[inside] / weights.sum()
-    return [(weights @ motion) @ held.expansion for motion in motions]
+    points = np.concatenate([np.asarray(place) + average.radius * discs for place, average in zip(places, averages, strict=True)])
+    inside, motions = _on_body(mesh, points)
+    shares = np.where(inside, np.concatenate([weights * average.weights(discs) for average in averages]), 0.0).reshape(len(places), -1)
+    for place, found in zip(places, inside.reshape(shares.shape), strict=True):
+        if not found.any():
+            raise InputError(f"the body is too narrow at ({place[0]:g}, {place[1]:g}) m to be taken for a plate")
+    shares /= shares.sum(axis=1, keepdims=True)
+    rows = np.repeat(np.arange(len(places)), len(discs))
+    averaging = csr_array((shares.ravel(), (rows, np.arange(len(points)))), shape=(len(places), len(points)))[:, inside]
+    return [csr_array(averaging @ motion @ held.expansion) for motion in motions]
 
 
 def _on_body(mesh: Mesh, places: Floats) -> tuple[Bools, list[csr_array]]:
@@ -187,26 +203,28 @@ def _vertical_motions(mesh: Mesh, places: Floats) -> list[csr_array]:
         return []
 
 
-def response_to_spread_force(
-    recipe: Recipe, place: tuple[float, float], side: Side, average: Callable[[float], Average]
-) -> tuple[Structure, float, Floats]:
-    """Return structure, local thickness and displacements of a held plate under a unit upward force distributed around a place.
+def responses_to_spread_forces(
+    recipe: Recipe, places: Sequence[tuple[float, float]], side: Side, average: Callable[[tuple[float, float], float], Average]
+) -> tuple[Structure, list[float], Floats]:
+    """Return structure, local thicknesses and displacements of a held plate under unit upward forces distributed around places.
 
     Parameters
     ----------
-    recipe, place, side : as in `static_compliance`
-        The plate, and the place of the force.
+    recipe, side : as in `static_compliance`
+        The plate, and its face.
+    places : sequence of two floats
+        The places of the forces, which are solved together.
     average : callable
-        From the thickness [m] to the distribution of the force.
+        From a place and the thickness there [m] to the distribution of the force.
 
     Returns
     -------
     structure : Structure
         The finite elements.
-    thickness : float
-        Thickness at the place [m].
-    displacements : array, shape (dofs,)
-        Displacements of all degrees of freedom of the mesh [m/N].
+    thicknesses : list of float
+        Thickness at each place [m].
+    displacements : array, shape (dofs, places)
+        Displacements of all degrees of freedom of the mesh under each force [m/N].
 
     Raises
     ------
@@ -214,6 +232,7 @@ def response_to_spread_force(
         As in `static_compliance`.
     """
     held, elastic = _factorised(recipe)
-    thickness = _thickness(held.structure, place)
-    load = _faces(held, place, average(thickness))[_FACES.index(side)]
-    return held.structure, thickness, np.asarray(held.expansion @ elastic.static(load))
+    thicknesses = _thicknesses(held.structure, places)
+    loads = _faces(held, places, [average(place, thickness) for place, thickness in zip(places, thicknesses, strict=True)])
+    load = loads[_FACES.index(side)]
+    return held.structure, thicknesses, np.asarray(held.expansion @ elastic.static(load.toarray().T))

@@ -25,6 +25,7 @@ from vibroimpact.errors import InputError
 from vibroimpact.files.atomic_write import write_file
 from vibroimpact.files.recover import clear
 from vibroimpact.structures.geometry import MassProperties
+from vibroimpact.structures.memory_cache import MemoryCache
 from vibroimpact.structures.mesh import ElementBlock, Mesh
 from vibroimpact.structures.modal_model import ModalModel
 
@@ -42,6 +43,9 @@ KINDS = (_MODES, "compliance")
 """Kinds of entries, which are the suffixes of their files."""
 
 Content = TypeVar("Content")
+
+_HELD_SIZE = 2000.0  # bytes, about
+_HELD = MemoryCache[Mapping[str, Any]](capacity=1000 * _HELD_SIZE)
 
 
 def store_folder() -> Path:
@@ -112,6 +116,9 @@ def load_entry(key: str, kind: str, read: Callable[[Mapping[str, Any]], Content]
     read : callable
         Makes the content from the arrays by their names.
     """
+    held = _HELD.get(f"{key}.{kind}")
+    if held is not None:
+        return read(held), ""
     path = _path(key, kind)
     _clear_once(store_folder())
     try:
@@ -125,6 +132,11 @@ def load_entry(key: str, kind: str, read: Callable[[Mapping[str, Any]], Content]
     except (ValueError, KeyError) as error:
         return None, f"the {kind} stored in {path} can't be used: the file is damaged ({error}), and its content will be computed again"
     return content, ""
+
+
+def hold_entry(key: str, kind: str, parts: Mapping[str, Any]) -> None:
+    """Keep arrays by name in memory for this process: for what is used soon, and then hardly again."""
+    _HELD.put(f"{key}.{kind}", parts, _HELD_SIZE)
 
 
 def save_entry(key: str, kind: str, parts: Mapping[str, Any]) -> str:

@@ -9,8 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
-from functools import partial
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.sparse import csr_array
@@ -19,8 +18,8 @@ from vibroimpact.arrays import Floats, Integers
 from vibroimpact.errors import InputError
 from vibroimpact.structures.mesh import Mesh
 from vibroimpact.structures.modal_model import ModalModel
-from vibroimpact.structures.recipe import Recipe, Reduction
-from vibroimpact.structures.static_compliance import response_to_spread_force
+from vibroimpact.structures.recipe import Recipe, plate_key
+from vibroimpact.structures.static_compliance import responses_to_spread_forces
 from vibroimpact.structures.store import key_of, load_entry, save_entry
 from vibroimpact.structures.structure import Structure
 from vibroimpact.structures.supports.constraints import Constraints
@@ -92,16 +91,16 @@ def support_forces(
 
 def support_force_key(recipe: Recipe, place: tuple[float, float], side: Side, spots: Sequence[Spot]) -> str:
     """Return the key of the forces of supports in the store."""
-    return key_of(["support forces", replace(recipe, reduction=Reduction()), place, side, list(spots)])
+    return key_of(["support forces", plate_key(recipe), place, side, list(spots)])
 
 
 def computed_support_forces(recipe: Recipe, place: tuple[float, float], side: Side, spots: Sequence[Spot]) -> SupportForces:
     """Return the forces of supports, computed anew; parameters and errors are those of `support_forces`."""
-    structure, _, displacements = response_to_spread_force(recipe, place, side, partial(spread_at_face, recipe))
+    structure, _, displacements = responses_to_spread_forces(recipe, [place], side, lambda _, thickness: spread_at_face(recipe, thickness))
     shares = _shares(structure, recipe.supports)
     rows = [shares[support_at(structure, recipe.supports, spot)] for spot in spots]
     stiffness, mass = (np.array([(row @ matrix).toarray() for row in rows]) for matrix in (structure.stiffness, structure.mass))
-    return SupportForces(stiffness, mass, stiffness @ displacements)
+    return SupportForces(stiffness, mass, stiffness @ displacements[:, 0])
 
 
 def support_at(structure: Structure, supports: Sequence[Support], spot: Spot) -> int:

@@ -19,6 +19,7 @@ Spot = tuple[float, float] | str | None
 
 _OUTSIDE = 1e-6  # tolerance of a point beyond the edge of a face, relative to the length of the face
 _NEWTON_STEPS = 20
+_CONVERGED = 1e-10  # last step of Newton's method in local coordinates: it is quadratic, so that the rest is rounding
 _STARTS = (
     (1.0 / 3.0, 1.0 / 3.0),
     (0.9, 0.05),
@@ -300,7 +301,7 @@ def _locate(nodes: Floats, faces: Faces, places: Floats, start: tuple[float, flo
         jacobian[flat] = np.eye(2)
         step = np.linalg.solve(jacobian, apart[:, :, None])[:, :, 0]
         local = np.clip(local - step, -1.0, 2.0)
-        if np.abs(step).max() < 1e-14:
+        if np.abs(step).max() < _CONVERGED:
             break
     missed = np.linalg.norm(apart, axis=1) > _OUTSIDE * reach[face].max(axis=1)
     inside = (faces.distance_outside(local) <= _OUTSIDE) & ~missed & ~flat

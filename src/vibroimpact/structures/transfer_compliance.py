@@ -16,16 +16,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 
 import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.structures.plate_compliance import Average, layer_kernels, mean_square
 from vibroimpact.structures.plate_element import shear_factor
-from vibroimpact.structures.recipe import PlateOfPlates, Recipe, Reduction, is_thin
-from vibroimpact.structures.static_compliance import response_to_spread_force
-from vibroimpact.structures.store import key_of, load_entry, save_entry
+from vibroimpact.structures.recipe import PlateOfPlates, Recipe, is_thin, plate_key
+from vibroimpact.structures.static_compliance import responses_to_spread_forces
+from vibroimpact.structures.store import hold_entry, key_of, load_entry, save_entry
 from vibroimpact.structures.surface import Side, surface_motion
 
 _KIND = "compliance"
@@ -94,33 +93,49 @@ def transfer_compliances(
     return found
 
 
+def hold_transfers(recipe: Recipe, places: Sequence[tuple[float, float]], side: Side, points: Sequence[Point], faces: int = 0) -> None:
+    """Compute the compliances between places and points together, for calls of `transfer_compliances` that follow in this process."""
+    for place, found in zip(places, computed_transfers(recipe, places, side, points, faces), strict=True):
+        hold_entry(transfer_key(recipe, place, side, points, faces), _KIND, {_KIND: found})
+
+
 def transfer_key(recipe: Recipe, place: tuple[float, float], side: Side, points: Sequence[Point], faces: int = 0) -> str:
     """Return the key of the compliances between a place and points in the store."""
-    return key_of(["transfer compliance", replace(recipe, reduction=Reduction()), place, side, list(points), faces])
+    return key_of(["transfer compliance", plate_key(recipe), place, side, list(points), faces])
 
 
 def computed_transfer(recipe: Recipe, place: tuple[float, float], side: Side, points: Sequence[Point], faces: int = 0) -> Floats:
     """Return the compliances between a place and points, computed anew; parameters and errors are those of `transfer_compliances`."""
+    return np.asarray(computed_transfers(recipe, [place], side, points, faces)[0])
+
+
+def computed_transfers(
+    recipe: Recipe, places: Sequence[tuple[float, float]], side: Side, points: Sequence[Point], faces: int = 0
+) -> Floats:
+    """Return the compliances between several places, whose forces are solved together, and points, (places, points, 3)."""
     shape, nu = recipe.shape, recipe.poissons_ratio
     flat = isinstance(shape, PlateOfPlates)
     thin = is_thin(recipe)
     square = faces * _square(nu) if flat else 0.0
-    within = _disc_of_an_element(shape, place) if isinstance(shape, PlateOfPlates) else 0.0
 
-    def spread(thickness: float) -> Average:
-        return Average(within, 3.0) if thin else Average(_RADIUS * thickness, 3.0 - 6.0 * square / _RADIUS**2)
+    def within(place: tuple[float, float]) -> float:
+        return _disc_of_an_element(shape, place) if isinstance(shape, PlateOfPlates) else 0.0
 
-    structure, thickness, displacements = response_to_spread_force(recipe, place, side, spread)
-    found = np.empty((len(points), 3))
+    def spread(place: tuple[float, float], thickness: float) -> Average:
+        return Average(within(place), 3.0) if thin else Average(_RADIUS * thickness, 3.0 - 6.0 * square / _RADIUS**2)
+
+    structure, thicknesses, displacements = responses_to_spread_forces(recipe, places, side, spread)
+    found = np.empty((len(places), len(points), 3))
     for number, (point, face) in enumerate(points):
-        motion, _ = surface_motion(structure.mesh, np.array([point]), face, thickness if flat else 0.0, "a sensor")
-        found[number] = motion @ displacements
-        if flat and not thin:
+        motion, _ = surface_motion(structure.mesh, np.array([point]), face, structure.thickness if flat else 0.0, "a sensor")
+        found[:, number] = (motion @ displacements).T
+        for moved, place, thickness in zip(found[:, number], places, thicknesses, strict=True):
             apart = math.dist(point, place)
-            found[number, 2] += near_term(apart, face == side, thickness, recipe.youngs_modulus, nu, faces)
-        elif thin and within:
-            rigidity = recipe.youngs_modulus * thickness**3 / (12.0 * (1.0 - nu**2))
-            found[number, 2] += thin_near_term(math.dist(point, place), within, rigidity)
+            if flat and not thin:
+                moved[2] += near_term(apart, face == side, thickness, recipe.youngs_modulus, nu, faces)
+            elif thin and within(place):
+                rigidity = recipe.youngs_modulus * thickness**3 / (12.0 * (1.0 - nu**2))
+                moved[2] += thin_near_term(apart, within(place), rigidity)
     return found
 
 

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
-from functools import partial
 
 import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.structures.plate_compliance import Average, mean_square
 from vibroimpact.structures.plate_element import shear_factor
-from vibroimpact.structures.recipe import PlateOfPlates, Recipe, Reduction, is_thin
-from vibroimpact.structures.static_compliance import response_to_spread_force
+from vibroimpact.structures.recipe import PlateOfPlates, Recipe, is_thin, plate_key
+from vibroimpact.structures.static_compliance import responses_to_spread_forces
 from vibroimpact.structures.store import key_of, load_entry, save_entry
 from vibroimpact.structures.surface import Side
 from vibroimpact.structures.surface_strain import surface_strain
@@ -64,13 +62,13 @@ def transfer_strains(
 
 def strain_key(recipe: Recipe, place: tuple[float, float], side: Side, points: Sequence[Point]) -> str:
     """Return the key of the strains under a force in the store."""
-    return key_of(["transfer strain", replace(recipe, reduction=Reduction()), place, side, list(points)])
+    return key_of(["transfer strain", plate_key(recipe), place, side, list(points)])
 
 
 def computed_strains(recipe: Recipe, place: tuple[float, float], side: Side, points: Sequence[Point]) -> Floats:
     """Return the strains under a force, computed anew; parameters and errors are those of `transfer_strains`."""
-    structure, _, displacements = response_to_spread_force(recipe, place, side, partial(spread_at_face, recipe))
-    strains = [surface_strain(structure.mesh, point, face, structure.thickness) @ displacements for point, face in points]
+    structure, _, displacements = responses_to_spread_forces(recipe, [place], side, lambda _, thickness: spread_at_face(recipe, thickness))
+    strains = [surface_strain(structure.mesh, point, face, structure.thickness) @ displacements[:, 0] for point, face in points]
     return np.array(strains)
 
 

@@ -28,7 +28,7 @@ from vibroimpact.studies.limit_columns import batch_conditions, drop_conditions,
 from vibroimpact.studies.swept_keys import case_at, is_array_key, with_arrays
 from vibroimpact.studies.window import Window
 
-_TOGETHER = 16
+_TOGETHER = 32
 """Drops with individual bodies that are computed together: enough for efficiency, few enough for their histories to fit in memory."""
 
 
@@ -154,10 +154,19 @@ def _alone(study: _Study, place: np.intp) -> _Part:
 def _side_by_side(study: _Study, places: Indices) -> Iterator[_Part]:
     """Compute drops with individual bodies in small groups; an error of one drop becomes its reason and does not affect the others."""
     for begin in range(0, len(places), _TOGETHER):
-        some, problems = places[begin : begin + _TOGETHER], {}
-        for place in some.tolist():
+        cases, problems = {}, {}
+        for place in places[begin : begin + _TOGETHER].tolist():
             try:
-                problem = study.case(place).to_problem()
+                cases[place] = study.case(place)
+            except Exception as error:
+                yield _failed(place, error)
+        if any(map(deforms, cases.values())):
+            from vibroimpact.cases.elastic.neighbours import solve_together  # imports the finite-element code
+
+            solve_together(cases.values())
+        for place, case in cases.items():
+            try:
+                problem = case.to_problem()
                 noisy = tuple(sensor.of_drop(study.first + place) for sensor in problem.sensors)
                 problems[place] = replace(problem, sensors=noisy, duration=_end(study, problem))
             except Exception as error:

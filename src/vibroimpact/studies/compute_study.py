@@ -37,7 +37,8 @@ LEAST_MEMORY = 1e6
 """Minimum memory for the drops of a chunk [bytes]."""
 
 _CHUNK = 8000  # drops with rigid bodies per chunk: a tenth of a second
-_ELASTIC_CHUNK = 8  # drops with elastic bodies per chunk: half a second
+_ELASTIC_CHUNK = 32  # drops with elastic bodies per chunk: a second
+_PLATE_CHUNKS = 16  # of a population at least, before all falls on a plate are one chunk, so that one process computes its modes
 _PER_DROP, _COPIES = 4000.0, 4.0  # memory of a drop during computation [bytes], and copies of its results until they are written
 
 _FEW_CHUNKS = 40  # the overhead of so many chunks is two seconds, whatever their size
@@ -253,4 +254,8 @@ def chunk_size(sweep: Sweep, memory: float) -> int:
     memory : float
         Memory for the drops of a chunk [bytes].
     """
-    return max(1, min(_ELASTIC_CHUNK if sweep.deforms else _CHUNK, int(memory / _bytes_each(sweep))))
+    most = _CHUNK
+    if sweep.deforms:
+        on_a_plate = 1 if sweep.population is None else sweep.population.falls_per_plate
+        most = max(_ELASTIC_CHUNK, min(on_a_plate, sweep.size // _PLATE_CHUNKS))
+    return max(1, min(most, int(memory / _bytes_each(sweep))))

@@ -13,6 +13,7 @@ from vibroimpact.registry import find_named, modules_in
 from vibroimpact.studies.axes import Axis
 from vibroimpact.studies.plan import Plan
 from vibroimpact.studies.population import Population
+from vibroimpact.studies.scaled import scaled_columns
 
 
 @dataclass(frozen=True)
@@ -88,7 +89,8 @@ def find_design(name: str) -> Design:
 
 def drawn_plan(name: str, axes: Mapping[str, Axis], parts: Floats) -> Plan:
     """Return the plan whose points are the quantiles of the axes at probabilities (points, axes)."""
-    return Plan(name, {key: axis.quantiles(parts[:, place]) for place, (key, axis) in enumerate(axes.items())}, False)
+    columns = {key: axis.quantiles(parts[:, place]) for place, (key, axis) in enumerate(axes.items())}
+    return Plan(name, scaled_columns(axes, columns), False)
 
 
 def generator(seed: int, *stream: int) -> np.random.Generator:

@@ -10,6 +10,7 @@ from rich.text import Text
 
 from vibroimpact.report.terminal_table import TerminalColumn, TerminalTable
 from vibroimpact.studies.axes import Axis, Listed, Normal, Spaced
+from vibroimpact.studies.scaled import Scaled
 from vibroimpact.studies.sweep import Sweep
 from vibroimpact.studies.unit_slips import axis_slips
 
@@ -77,6 +78,9 @@ def _data(axis: Axis) -> dict[str, Any]:
     if isinstance(axis, Spaced):
         drawn = {"distribution": "uniform"} if axis.is_random else {}
         return {**drawn, "from": axis.start, "to": axis.end, "number": axis.number, "scale": axis.scale}
+    if isinstance(axis, Scaled):
+        follows = {"value": axis.value, "of": axis.of, "at": axis.at, "exponent": axis.exponent, "factor": _data(axis.factor)}
+        return {**follows, "each": axis.each}
     assert isinstance(axis, Normal)
     return {
         "distribution": "lognormal" if axis.lognormal else "normal",
@@ -97,6 +101,11 @@ def _words(axis: Axis, unit: str, *, is_drawn: bool) -> str:
     number = "" if is_drawn else f"{len(axis)} values "
     if isinstance(axis, Spaced):
         return f"{number}from {axis.start:g} to {axis.end:g} {unit}".rstrip() + (", logarithmic" if axis.scale == "log" else "")
+    if isinstance(axis, Scaled):
+        power = f" to the power of {axis.exponent:g}" if axis.exponent != 1.0 else ""
+        per = f" for each {axis.each}" if axis.each else ""
+        factor = f"times {_words(axis.factor, '', is_drawn=is_drawn)}{per}"
+        return f"{axis.value:g} {unit} at {axis.of} = {axis.at:g}, with that{power}, {factor}"
     assert isinstance(axis, Normal)
     name = "lognormal" if axis.lognormal else "normal"
     ends = [f"{word} {end:g}" for word, end in (("at least", axis.at_least), ("at most", axis.at_most)) if abs(end) < float("inf")]

@@ -65,7 +65,8 @@ def batch_conditions(case: Case, arrays: Mapping[str, Values], law: ContactLaw, 
     peaks : mapping of str to array
         Their peaks.
     """
-    given_elsewhere = {key: values for key, values in arrays.items() if not key.startswith("contact.")}
+    of_law = (key for key in arrays if key.startswith("contact.") and not key.startswith("contact.liquid."))
+    given_elsewhere = {key: arrays[key] for key in arrays.keys() - set(of_law)}
     table = cast("ResolvedCase", with_values(resolved_case(case), given_elsewhere))
     given = {item.name: getattr(law, item.name) for item in fields(law)}
     table["contact"] |= {name: value for name, value in given.items() if value is not None}

@@ -11,6 +11,7 @@ import numpy as np
 from vibroimpact.arrays import Floats, Indices
 from vibroimpact.errors import InputError
 from vibroimpact.studies.axes import Axis, Listed, Values
+from vibroimpact.studies.scaled import Each, Scaled, drawn_for, scaled_columns
 
 CLASS, ROCK, PLATE = "class", "rock", "plate"
 """Labels of a fall: the name of its class, and the numbers of its rock and its plate, from 0."""
@@ -23,7 +24,7 @@ LABELS = {CLASS: ("1", "class of the rock"), ROCK: ("1", "number of the rock, fr
 class Population:
     """Rocks of several classes that fall on plates.
 
-    Keys of [plate] are drawn once for each plate, those of [drop] for each fall, and all others for each rock.
+    Keys of [plate] and of sensors are drawn once for each plate, those of [drop] for each fall, and all others for each rock.
 
     Parameters
     ----------
@@ -39,6 +40,11 @@ class Population:
     own: Mapping[str, Mapping[str, Axis]]
     falls_per_rock: int = 1
     rocks_per_plate: int = 1
+
+    @property
+    def falls_per_plate(self) -> int:
+        """How many falls share a plate."""
+        return self.falls_per_rock * self.rocks_per_plate
 
     def draw(self, common: Mapping[str, Axis], falls: int, seed: int) -> tuple[dict[str, Values], dict[str, Values]]:
         """Return the values of each fall by key, and its labels.
@@ -76,15 +82,26 @@ class Population:
         if none:
             words = f'"{none[0]}" gets none of the {rock[-1] + 1} rocks; ask for more samples, fewer falls per rock, or a larger share'
             raise InputError(words, "samples")
-        numbers = {"plate": plate, "drop": np.arange(falls)}
-        columns = {key: _drawn(axis, key, numbers.get(key.partition(".")[0], rock), seed) for key, axis in common.items()}
+        groups: dict[Each, Indices] = {"plate": plate, "rock": rock, "fall": np.arange(falls)}
+        columns = {key: _drawn(axis, key, groups[_each(key, axis)], seed) for key, axis in common.items()}
         for key in next(iter(self.own.values())):
-            each = [_drawn(self.own[name][key], key, numbers.get(key.partition(".")[0], rock), seed) for name in names]
+            each = [_drawn(self.own[name][key], key, groups[_each(key, self.own[name][key])], seed) for name in names]
             mixed = np.empty(falls, dtype=np.result_type(*each))
             for number, values in enumerate(each):
                 mixed[of_rock == number] = values[of_rock == number]
             columns[key] = mixed
+        columns = scaled_columns(common, columns)
+        for number, name in enumerate(names):
+            there = of_rock == number
+            rows = scaled_columns(self.own[name], {key: values[there] for key, values in columns.items()})
+            for key in self.own[name]:
+                columns[key][there] = rows[key]
         return columns, {CLASS: np.array(names, dtype=object)[of_rock], ROCK: rock, PLATE: plate}
+
+
+def _each(key: str, axis: Axis) -> Each:
+    """Return for what of the population a key is drawn."""
+    return (axis.each if isinstance(axis, Scaled) else None) or drawn_for(key)
 
 
 def _drawn(axis: Axis, key: str, number: Indices, seed: int) -> Values:

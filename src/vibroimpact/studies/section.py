@@ -17,6 +17,7 @@ from vibroimpact.ranges import Range
 from vibroimpact.shown import shown
 from vibroimpact.studies.axes import Axis, Listed, Normal, Spaced
 from vibroimpact.studies.design import designs, find_design
+from vibroimpact.studies.scaled import Each, Scaled
 
 MOST_DROPS = 10_000_000
 """Maximum number of drops of a study."""
@@ -53,7 +54,8 @@ class SweepSection(Section):
     )
     over: dict[str, Any] = Field(
         description='by dotted keys of the case, such as "sphere.radius": a list, a range { from, to, number, scale }, a distribution '
-        '{ distribution = "normal", "lognormal" or "uniform", ... } or a column of a file { file, column, weights }'
+        '{ distribution = "normal", "lognormal" or "uniform", ... }, a column of a file { file, column, weights }, '
+        "or what follows another key { value, of, at, exponent, factor }"
     )
     samples: Annotated[int, Field(ge=1, le=MOST_DROPS, strict=True)] | None = Field(None, description="how many points are drawn")
     seed: Annotated[int, Field(ge=0, strict=True)] = Field(0, description="of the drawing")
@@ -105,6 +107,17 @@ class ColumnTable(Section):
     weights: str | None = None
 
 
+class ScaledTable(Section):
+    """A value that follows another key by a power, times a factor."""
+
+    value: Any
+    at: Any
+    of: str
+    exponent: Annotated[float, Quantity("", "exponent")] = 1.0
+    factor: Any = Field(default_factory=lambda: [1.0])
+    each: Each | None = None
+
+
 _DISTRIBUTIONS: dict[str, type[Section]] = {"normal": NormalTable, "lognormal": NormalTable, "uniform": UniformTable}
 _ASKED = "a list of values, a range { from, to, number, scale }, a distribution or a column { file, column, weights }"
 
@@ -149,6 +162,32 @@ def read_axis(value: Any, quantity: Quantity | None) -> Axis:
     if "from" not in value and "to" not in value:
         raise InputError(f"{', '.join(value) or 'an empty table'} says nothing; it must be {_ASKED}")
     return _spaced(read_table(RangeTable, value), quantity, is_random=False)
+
+
+def read_scaled(value: Mapping[str, Any], quantity: Quantity | None, followed: Quantity | None) -> Scaled:
+    """Return the axis of a swept key that follows another one.
+
+    Parameters
+    ----------
+    value : mapping
+        Its entry in the TOML file.
+    quantity, followed : Quantity or None
+        The quantities of the key and of the one that it follows; None of a key that is not a quantity.
+
+    Raises
+    ------
+    InputError
+        If the entry is invalid, or a key is not a quantity.
+    """
+    if quantity is None or followed is None:
+        raise InputError("one key follows another where both are quantities; take a list of values")
+    table = read_table(ScaledTable, value)
+    one, at = _number(table.value, quantity, quantity.allowed, "value"), _number(table.at, followed, Range(above=0), "at")
+    try:
+        factor = read_axis(table.factor, Quantity("", "factor", Range(above=0)))
+    except InputError as error:
+        raise InputError(error.message, f"factor.{error.key}".rstrip(".")) from None
+    return Scaled(one, at, table.of, table.exponent, factor, table.each)
 
 
 def _read_item(item: Any, quantity: Quantity) -> Any:

@@ -81,6 +81,17 @@ class Study:
         Reason of each failed drop, by its number in the sequence of all points, from 0.
     labels : dict of str to array
         Of the falls of a population the `class`, by its name, and the numbers of `rock` and `plate`.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> import vibroimpact as vi
+    >>> case = vi.load_case("paper:type1-theory").to_problem().source
+    >>> sweep = vi.read_sweep({**case, "sweep": {"over": {"drop.height": ["1 m", "2 m"]}}})
+    >>> with TemporaryDirectory() as folder:
+    ...     study = vi.read_study(vi.run_sweep(sweep, f"{folder}/heights"))
+    ...     study.dimensions, study.values("largest_force_N").round(1).tolist()
+    ({'drop.height': 2}, [4406.8, 6730.2])
     """
 
     path: Path
@@ -205,6 +216,17 @@ def read_study(directory: str | PathLike[str]) -> Study:
     ------
     InputError
         If there is no completed study, or its dataset is damaged.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> import vibroimpact as vi
+    >>> case = vi.load_case("paper:type1-theory").to_problem().source
+    >>> sweep = vi.read_sweep({**case, "sweep": {"over": {"contact.restitution": [0.5, 0.7]}}})
+    >>> with TemporaryDirectory() as folder:
+    ...     study = vi.read_study(vi.run_sweep(sweep, f"{folder}/restitutions"))
+    ...     study.size, study.coordinates["contact.restitution"].tolist()
+    (2, [0.5, 0.7])
     """
     path = Path(directory) / DATASET
     recover_study(path.parent)

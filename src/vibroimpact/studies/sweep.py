@@ -30,10 +30,12 @@ from vibroimpact.shown import shortened, shown, visible
 from vibroimpact.studies.axes import Axis, Listed, Values
 from vibroimpact.studies.design import Asked, find_design
 from vibroimpact.studies.drop_variables import OUTCOME, PEAKS, SENSOR_PEAK, SIGNAL, SIGNAL_START
+from vibroimpact.studies.kept_signals import check_need_of_signals, check_signals, check_swept_sensors
 from vibroimpact.studies.limit_columns import limit_meanings
 from vibroimpact.studies.plan import Plan
 from vibroimpact.studies.population import LABELS, Population
-from vibroimpact.studies.section import MOST_DROPS, SweepSection, read_axis
+from vibroimpact.studies.scaled import check_scaled
+from vibroimpact.studies.section import MOST_DROPS, SweepSection, read_axis, read_scaled
 from vibroimpact.studies.swept_keys import case_at
 from vibroimpact.studies.window import Window
 
@@ -42,6 +44,9 @@ MOST_KEYS = 100
 
 MOST_POINT_VALUES = 40_000_000
 """Maximum number of values (points times keys) of a study that is not a grid; they are held in memory."""
+
+_SHARED = {"plate": "the plate is", "sensors": "the sensors are"}
+"""What rocks of all classes share, for a message."""
 
 LONG = 100
 """Assumed number of impacts of a drop that goes on until it is at rest."""
@@ -63,6 +68,13 @@ class Sweep:
         Quantity of each swept key; None if it is not a quantity.
     population : Population, optional
         Classes of rocks, with the axes of their keys.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> sweep = vi.load_sweep("signals:coal-gangue", samples=10)
+    >>> sweep.name, sweep.size, sweep.case_of(3).contact.law
+    ('coal and gangue on a tail-beam plate', 10, 'tsuji')
     """
 
     table: dict[str, Any]
@@ -191,35 +203,15 @@ def load_sweep(source: str | PathLike[str], samples: int | None = None) -> Sweep
     ------
     InputError
         If it can't be read or is not a valid study; the message names the key, the value and what is allowed.
-    """
-    changes = {} if samples is None else {"sweep.samples": samples}
-    return prefix_errors(source, lambda: read_sweep(with_values(load_table(source), changes)))
-
-
-def load_drop(source: str | PathLike[str], drop: int, changes: Mapping[str, Any] | None = None) -> Case:
-    """Return the case of one drop of a study.
-
-    Parameters
-    ----------
-    source : path or str
-        A TOML file with a [sweep] section, or a shipped study such as "paper:sweep".
-    drop : int
-        Number of the drop, from 0.
-    changes : mapping, optional
-        Other values by dotted key, swept or not.
-
-    Raises
-    ------
-    InputError
-        If it is not a valid study, or has no such drop.
 
     Examples
     --------
-    >>> case = load_drop("paper:sweep", 13)
-    >>> case.sphere.radius, case.contact.parameters["restitution"]
-    (0.005, 0.95)
+    >>> import vibroimpact as vi
+    >>> vi.load_sweep("paper:sweep").size, vi.load_sweep("signals:coal-gangue", samples=10).size
+    (140, 10)
     """
-    return prefix_errors(source, lambda: read_sweep(load_table(source)).case_of(drop, changes))
+    changes = {} if samples is None else {"sweep.samples": samples}
+    return prefix_errors(source, lambda: read_sweep(with_values(load_table(source), changes)))
 
 
 def read_sweep(table: Mapping[str, Any]) -> Sweep:
@@ -264,8 +256,9 @@ def read_sweep(table: Mapping[str, Any]) -> Sweep:
         elif not over:
             raise InputError("it is empty; it takes dotted keys of the case", "over")
         check_count(len(quantities), MOST_KEYS, "swept keys")
-        if section.window is not None and "signals" not in section.keep:
-            raise InputError('it is a part of the signals, which are not kept; give keep = ["signals"]', "window")
+        own = {} if population is None else {f'classes."{name}".over': of_class for name, of_class in population.own.items()}
+        check_scaled(section.design, {"over": axes, **own}, quantities)
+        check_need_of_signals(section, quantities)
         sweep = Sweep(base, section, axes, quantities, population)
         if sweep.size > MOST_DROPS:
             raise InputError(f"there would be {sweep.size} drops, and {MOST_DROPS} are the most; sweep in parts", "over")
@@ -280,23 +273,8 @@ def read_sweep(table: Mapping[str, Any]) -> Sweep:
     except InputError as error:
         raise InputError(error.message, f"sweep.{error.key}".rstrip(".")) from None
     _check_points(sweep)
-    # names of sensors become names of variables of the dataset, and must not collide with others
     if "signals" in section.keep:
-        sensors = [sensor.name for sensor in sweep.case.sensors]
-        variables = [
-            name
-            for sensor in sensors
-            for name in (f"{SIGNAL}{sensor}", f"{sensor}{SENSOR_PEAK}", f"{sensor}{SIGNAL_START}", f"time_{sensor}")
-        ]
-        taken = {*sweep.quantities, *LABELS, OUTCOME, *PEAKS, *limit_meanings(), *ALL_IMPACT_COLUMNS}
-        for name in variables:
-            if not name.isprintable() or "/" in name or variables.count(name) > 1 or name in taken:
-                words = f'"{name}" can\'t be the name of a variable of the dataset, or is that of another; call the sensor otherwise'
-                raise InputError(words, "sensors")
-        if not sweep.case.sensors:
-            raise InputError('"signals" needs [[sensors]] on an elastic plate', "sweep.keep")
-        if sweep.case.run.duration is None:
-            raise InputError("it is missing; signals need it, so that those of all drops are of one length", "run.duration")
+        check_signals(sweep.case, {*sweep.quantities, *LABELS, OUTCOME, *PEAKS, *limit_meanings(), *ALL_IMPACT_COLUMNS})
     return sweep
 
 
@@ -307,11 +285,15 @@ def _read_over(base: Mapping[str, Any], table: Mapping[str, Any]) -> tuple[dict[
     twice = next((key for number, (key, _) in enumerate(keys) if key in dict(keys[:number])), None)
     if twice is not None:
         raise InputError("this key stands there twice, in quotes and in a table", f'over."{twice}"')
-    quantities, axes = {}, {}
+    quantities: dict[str, Quantity | None] = {}
+    axes: dict[str, Axis] = {}
     for key, value in over.items():
         try:
             quantities[key] = find_quantity(base, key)
-            axes[key] = read_axis(value, quantities[key])
+            if isinstance(value, Mapping) and "of" in value:
+                axes[key] = read_scaled(value, quantities[key], find_quantity(base, str(value["of"])))
+            else:
+                axes[key] = read_axis(value, quantities[key])
             _check_names(axes[key])
         except InputError as error:
             raise InputError(error.message, f'over."{key}".{error.key}'.rstrip(".")) from None
@@ -339,8 +321,9 @@ def _read_population(base: Mapping[str, Any], section: SweepSection) -> tuple[Sw
             words = f'"{wrong[0]}" is not there for all classes; give' if wrong else "it is empty; give"
             raise InputError(f"{words} the same keys for all, or leave it to [sweep.over]", f"{where}.over")
         for key in over:
-            if key in section.over or key.partition(".")[0] == "plate":
-                words = "it stands in [sweep.over] too" if key in section.over else "the plate is not of a class"
+            shared = _SHARED.get(key.partition(".")[0])
+            if key in section.over or shared:
+                words = "it stands in [sweep.over] too" if key in section.over else f"{shared} not of a class"
                 raise InputError(f"{words}; leave it out here", f'{where}.over."{key}"')
         tables[name] = table.model_copy(update={"over": over})
     for key in section.over:
@@ -392,12 +375,12 @@ def _check_points(sweep: Sweep) -> None:
                 remedy = "; truncate the distribution with at_least and at_most" if random else ""
                 raise InputError(f"{error.message}{remedy}", f'sweep.over."{key}"') from None
     first = sweep.values_of(0)
-    sweep.case_at(first)
+    check_swept_sensors(sweep.table, columns, sweep.case_at(first))
     for key, values in columns.items():
         several = _different(values) if values.dtype == object else [values.min(), values.max()]
         for value in several:
             try:
-                sweep.case_at({**first, key: value})
+                check_swept_sensors(sweep.table, columns, sweep.case_at({**first, key: value}))
             except InputError as error:
                 raise InputError.of_several(f"at {key} = {shortened(visible(str(value)), 60)}: {line}" for line in error.lines) from None
 

@@ -11,13 +11,14 @@ import numpy as np
 
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.fields.air import AirTable
+from vibroimpact.cases.fields.liquid import LiquidTable
 from vibroimpact.cases.fields.section import read_table
 from vibroimpact.cases.keys import with_values
 from vibroimpact.cases.reader import read_case
 from vibroimpact.studies.axes import Values
 
 _OF_THE_RUN = ("run.duration", "run.tolerance")  # the same for all drops of a batch
-_WITHOUT_EFFECT = "plate.size."  # on rigid bodies, unless the sphere may fall off the edge
+_WITHOUT_EFFECT = ("plate.size.", "sensors.")  # on rigid bodies, unless the sphere may fall off the edge
 
 
 def case_at(table: Mapping[str, Any], values: Mapping[str, Any]) -> Case:
@@ -69,6 +70,13 @@ def with_arrays(case: Case, arrays: Mapping[str, Values]) -> Case:
         fields[section]["material"] = replace(getattr(case, section).material, **numbers)
     changed: dict[str, Any] = {name: getattr(case, name).model_copy(update=given) for name, given in fields.items() if name != "contact"}
     if "contact" in fields:
+        wet = {key: fields["contact"].pop(key) for key in list(fields["contact"]) if key.startswith("liquid.")}
+        if wet:
+            numbers = {key.removeprefix("liquid."): values for key, values in wet.items()}
+            liquid = (case.contact.local.liquid or read_table(LiquidTable, {})).model_copy(update=numbers)
+            case = case.model_copy(
+                update={"contact": replace(case.contact, local=case.contact.local.model_copy(update={"liquid": liquid}))}
+            )
         friction = {key: fields["contact"].pop(key) for key in list(fields["contact"]) if key.startswith("friction.")}
         changed["contact"] = replace(case.contact, parameters={**case.contact.parameters, **fields["contact"]})
         if friction and case.contact.friction is not None:

@@ -24,6 +24,15 @@ def bounce_charts(found: Rebounds) -> list[Chart]:
     ----------
     found : Rebounds
         The impacts.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import vibroimpact as vi
+    >>> microphone = vi.Record("microphone", np.zeros(48000), 48e3, "Pa")
+    >>> heard = vi.Bounces(microphone, np.array([0.0, 0.4, 0.72, 0.976]), np.full(4, 1e-5), np.ones(4), np.zeros(0), ())
+    >>> [chart.name for chart in vi.bounce_charts(vi.rebounds_of(heard))]
+    ['record', 'restitution']
     """
     return [_record_chart(found), _restitution_chart(found)]
 

@@ -41,6 +41,17 @@ def save_rebounds(found: Rebounds, directory: str | PathLike[str], *, force: boo
     ------
     InputError
         If the folder exists already, or can't be written.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> import numpy as np
+    >>> import vibroimpact as vi
+    >>> microphone = vi.Record("microphone", np.zeros(48000), 48e3, "Pa")
+    >>> heard = vi.Bounces(microphone, np.array([0.0, 0.4, 0.72, 0.976]), np.full(4, 1e-5), np.ones(4), np.zeros(0), ())
+    >>> with TemporaryDirectory() as folder:
+    ...     sorted(file.name for file in vi.save_rebounds(vi.rebounds_of(heard), f"{folder}/found").iterdir())
+    ['bounces.csv', 'report.html', 'summary.json']
     """
     rows, charts, record = bounce_rows(found), bounce_charts(found), found.bounces.record
     with new_folder(directory, force=force) as folder:

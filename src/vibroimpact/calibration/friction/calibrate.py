@@ -61,6 +61,22 @@ class FrictionCalibration:
         Number of bootstrap samples; 0 if the intervals are those of the profile of the sum of squares.
     doubts : tuple of str
         Warnings about the validity of the result, as sentences.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import vibroimpact as vi
+    >>> seen = vi.Observations(
+    ...     speeds=np.full(3, 3.0), wanted={"separation_velocity_x": np.array([3.92, 4.93, 5.91])},
+    ...     speed_noise=np.zeros((3, 3)), noise={"separation_velocity_x": 0.02 * np.eye(3)},
+    ... )
+    >>> impacts = vi.ObliqueImpacts(seen, np.array([5.0, 6.0, 7.0]), np.zeros(3), seen.wanted)
+    >>> found = vi.calibrate_friction(vi.read_case({
+    ...     "sphere": {"radius": 0.01, "material": "glass"}, "plate": {"material": "steel"}, "drop": {"speed": 3.0, "angle": 0.5},
+    ...     "contact": {"law": "newton", "restitution": 0.8, "friction": {"law": "coulomb", "coefficient": 0.1}}, "run": {"impacts": 1},
+    ... }), impacts, ["friction.coefficient"])
+    >>> found.names, found.values.round(2).tolist(), found.slips.tolist()
+    (('friction.coefficient',), [0.2], [True, True, True])
     """
 
     problem: Problem = field(repr=False)
@@ -133,6 +149,22 @@ def calibrate_friction(
     ------
     InputError
         If the friction law has no such parameter, or bodies deform, or the plate is moved.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import vibroimpact as vi
+    >>> case = vi.read_case({
+    ...     "sphere": {"radius": 0.01, "material": "glass"}, "plate": {"material": "steel"}, "drop": {"speed": 3.0, "angle": 0.5},
+    ...     "contact": {"law": "newton", "restitution": 0.8, "friction": {"law": "coulomb", "coefficient": 0.1}}, "run": {"impacts": 1},
+    ... })
+    >>> seen = vi.Observations(
+    ...     speeds=np.full(3, 3.0), wanted={"separation_velocity_x": np.array([3.92, 4.93, 5.91])},
+    ...     speed_noise=np.zeros((3, 3)), noise={"separation_velocity_x": 0.02 * np.eye(3)},
+    ... )
+    >>> impacts = vi.ObliqueImpacts(seen, np.array([5.0, 6.0, 7.0]), np.zeros(3), seen.wanted)
+    >>> vi.calibrate_friction(case, impacts, ["friction.coefficient"]).values.round(3).tolist()
+    [0.2]
     """
     tell, stated = progress or (lambda done: None), problem.to_problem()
     if stated.shape != ():

@@ -49,6 +49,14 @@ class ObliqueImpacts:
         All measured quantities, matched or not, by the names of `ALONG_PLATE`.
     separation_speed : array, shape (n,), optional
         Measured separation speeds along the normal [m/s].
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import vibroimpact as vi
+    >>> seen = vi.Observations(speeds=np.array([3.0, 2.0]), wanted={"separation_velocity_x": np.array([2.1, 1.6])})
+    >>> vi.ObliqueImpacts(seen, np.array([3.0, 2.0]), np.zeros(2), seen.wanted).angle.round(3).tolist()
+    [45.0, 45.0]
     """
 
     seen: Observations

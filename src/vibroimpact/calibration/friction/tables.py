@@ -11,13 +11,11 @@ from vibroimpact._version import __version__
 from vibroimpact.arrays import Floats
 from vibroimpact.calibration.friction.calibrate import FrictionCalibration
 from vibroimpact.calibration.matchable import ALONG_PLATE
-from vibroimpact.calibration.report import Cells
+from vibroimpact.calibration.report import Cells, shortened
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.case import Case
 from vibroimpact.runs.tables import formatted_column
 from vibroimpact.units.display import column_texts, digits, fixed, text
-
-_MOST_ROWS = 50
 
 
 def friction_words(found: FrictionCalibration) -> str:
@@ -93,7 +91,7 @@ def friction_table(found: FrictionCalibration) -> Cells:
     headers.append(("Slips throughout", ""))
     columns.append(["yes" if slips else "no" for slips in found.slips])
     rows = [list(row) for row in zip(*columns, strict=True)]
-    return headers, rows if len(rows) <= _MOST_ROWS else [*rows[: _MOST_ROWS - 1], ["…", *[""] * (len(headers) - 1)]]
+    return headers, shortened(rows)
 
 
 def friction_document(case: Case, found: FrictionCalibration) -> dict[str, Any]:

@@ -42,6 +42,17 @@ class BodyModes:
         Its modes at the contact point and the sensors.
     doubts : tuple of str
         Doubts about it, one sentence each.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> case = vi.read_case({
+    ...     "sphere": {"radius": "25 mm", "material": "rock-paper", "model": "elastic", "modes": 5},
+    ...     "plate": {"material": "rigid"}, "drop": {"speed": 1.0}, "contact": {"law": "hertz"},
+    ... })
+    >>> sphere = vi.compute_modes(case)["sphere"]
+    >>> len(sphere.basis.frequencies), round(sphere.basis.mass, 4)
+    (5, 0.0903)
     """
 
     body: ElasticBody

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated, Any
 
 from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic.fields import FieldInfo
 from pydantic_core import CoreSchema, core_schema
 
 from vibroimpact.cases.fields.quantities import Quantity, read_quantity
@@ -142,6 +143,11 @@ class ConverterTable(Section):
     def converter(self) -> Converter:
         """Return the converter."""
         return Converter(**self.model_dump())
+
+
+def quantity_in_unit(info: FieldInfo, unit: str) -> Quantity | None:
+    """Return the quantity of a field in the unit of the signal; None if it is not one."""
+    return next((Quantity(unit, kind.meaning, kind.allowed) for kind in info.metadata if isinstance(kind, _OfSignal)), None)
 
 
 def read_in_unit(table: Section, unit: str) -> None:

@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, StrictBool, model_validator
 
+from vibroimpact.cases.fields.liquid import LiquidField
 from vibroimpact.cases.fields.quantities import Quantity
 from vibroimpact.cases.fields.section import Section
 from vibroimpact.errors import InputError
@@ -38,6 +39,7 @@ class LocalSection(Section):
     )
     local_stiffness: Annotated[float, Quantity("N/m", "spring of the local element of identified", Range(above=0))] | None = None
     local_damping: Annotated[float, Quantity("N s/m", "dashpot of the local element of identified", Range(above=0))] | None = None
+    liquid: LiquidField = None
     finite_sphere: StrictBool = Field(False, description="correct Hertz's half space to the finite size of a rigid sphere")
     measured: MeasuredImpact | None = Field(None, description="what stiffness and damping of the local element are identified from")
 

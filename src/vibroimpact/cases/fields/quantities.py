@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, get_args
 
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic.fields import FieldInfo
 from pydantic_core import CoreSchema, core_schema
 
 from vibroimpact.errors import InputError
@@ -59,3 +60,21 @@ def quantity_schema(unit: str, description: str) -> dict[str, Any]:
         return {"type": "number", "description": description}
     gravity = ', in which "g" is standard gravity, 9.80665 m/s^2' if unit in ("m/s^2", "V s^2/m") else ""
     return {"type": ["number", "string"], "description": f"{description} [{unit}]; a string carries its own unit{gravity}"}
+
+
+def quantity_of(info: FieldInfo) -> Quantity | None:
+    """Return the quantity of a field of a section; None if it is not one."""
+    return quantity_among((info.annotation, *info.metadata))
+
+
+def quantity_among(annotations: tuple[Any, ...]) -> Quantity | None:
+    """Return the first quantity among annotations or nested in them."""
+    for annotation in annotations:
+        found = (
+            annotation
+            if isinstance(annotation, Quantity)
+            else quantity_among((*get_args(annotation), *getattr(annotation, "__metadata__", ())))
+        )
+        if found is not None:
+            return found
+    return None

@@ -41,7 +41,7 @@ def drag_loss(radius: Array, density: Array, fall: Array, gravity: Array) -> Arr
 
 def _number(drops: Conditions) -> Array:
     height = drops.case["drop"].get("height")
-    if height is None or drops.case["drop"].get("air") is not None:
+    if height is None or drops.case["drop"].get("air") is not None or drops.case["contact"].get("liquid") is not None:
         return math.nan
     return drag_loss(drops.radius, drops.materials["sphere"].density, height - drops.radius, drops.case["drop"]["gravity"])
 

@@ -24,7 +24,15 @@ _TWISTING = 3.0 * np.pi / 16.0
 
 @dataclass(frozen=True, kw_only=True)
 class FrictionLaw(Parameters):
-    """Base of all friction laws."""
+    """Base of all friction laws.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> law = vi.find_friction_law("coulomb")(coefficient=0.3)
+    >>> isinstance(law, vi.FrictionLaw), law.name
+    (True, 'coulomb')
+    """
 
     coefficient: Array = parameter("coefficient of friction mu", detail=r"Coefficient of friction :math:`\mu`.", example=0.3, at_least=0)
     rolling_coefficient: Array = parameter(

@@ -35,6 +35,13 @@ class Amplifier:
         Frequency of the mains [Hz], > 0.
     seed : int or tuple of int, default 0
         Of noise and phase; sensors of different names have their own.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> amplifier = vi.Amplifier(gain=100.0, noise=2e-3, hum=0.01)
+    >>> vi.Sensor("a1", amplifier=amplifier).amplifier.gain
+    100.0
     """
 
     gain: float = 1.0

@@ -56,18 +56,18 @@ class FilteredChain:
     outputs: Floats
     answers: Floats
 
-    def add(self, values: Floats, port: int, times: Floats, impulses: Floats, last: int) -> None:
-        """Add the response to impulses at a port [N s] to `values` (S, samples), which begin at time zero, for samples before `last`."""
-        add_responses(values, self.answers[port], self.rate, times, -impulses, last)
+    def add(self, values: Floats, port: int, times: Floats, impulses: Floats, last: int, origin: int = 0) -> None:
+        """Add the response to impulses at a port [N s] to `values` (S, samples) from sample `origin` on, for samples before `last`."""
+        add_responses(values, self.answers[port], self.rate, times, -impulses, last, origin)
 
 
-def add_responses(values: Floats, whole: Floats, rate: float, times: Floats, impulses: Floats, last: int) -> None:
+def add_responses(values: Floats, whole: Floats, rate: float, times: Floats, impulses: Floats, last: int, origin: int = 0) -> None:
     """Add responses to impulses.
 
     Parameters
     ----------
     values : array, shape (S, samples)
-        Samples from time zero on, to which is added.
+        Samples, to which is added.
     whole : array, shape (S, points)
         Responses to a unit impulse, `FINENESS` points per sample, from `HALF_LENGTH` samples before it on.
     rate : float
@@ -75,10 +75,12 @@ def add_responses(values: Floats, whole: Floats, rate: float, times: Floats, imp
     times, impulses : array, shape (n,)
         The impulses and their times [s].
     last : int
-        Samples before this one are added to.
+        Samples before this one, counted from time zero, are added to.
+    origin : int, default 0
+        Number of the first of `values`, counted from time zero.
     """
     first, spread = _spread_on_grid(times * (rate * FINENESS), impulses)
-    width = len(spread)
+    first, last, width = first - origin * FINENESS, last - origin, len(spread)
     begin = max(0, -((HALF_LENGTH * FINENESS - first) // FINENESS))  # the first sample whose kernel reaches the impulses
     end = min(last, values.shape[1])
     if end <= begin:

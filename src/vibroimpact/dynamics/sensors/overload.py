@@ -25,6 +25,8 @@ class Overload:
     ----------
     rate : float
         Sampling rate of the excess [Hz]: an integer multiple of the sensor's rate.
+    first : int
+        Number of its first sample, 0 at the start of the run; before it there is none. It is at a sample of the sensor.
     excess : array, shape (samples,)
         The signal beyond the range [m/s^2].
     peak : float
@@ -34,6 +36,7 @@ class Overload:
     """
 
     rate: float
+    first: int
     excess: Floats
     peak: float
     time: float
@@ -44,11 +47,11 @@ def finer_rate(rate: float, resonance: float | None) -> float:
     return rate * max(_FINER, math.ceil(_PER_PERIOD * (resonance or 0.0) / rate))
 
 
-def overload(value: Floats, rate: float, begin: int, end: float, limit: float) -> Overload:
-    """Return the excess of samples [m/s^2] over a limit, at a rate [Hz], of which one begins the run, and it ends at a time [s]."""
+def overload(value: Floats, rate: float, first: int, end: float, limit: float) -> Overload:
+    """Return the excess of samples [m/s^2] over a limit, at a rate [Hz] from sample `first` on, of a run that ends at a time [s]."""
     excess = np.maximum(np.abs(value) - limit, 0.0) * np.sign(value)
-    within = slice(begin, begin + sample_count(end, rate))
-    return Overload(rate, excess, float(np.abs(value[within]).max(initial=0.0)), float(np.count_nonzero(excess[within]) / rate))
+    within = slice(max(-first, 0), max(sample_count(end, rate) - first, 0))
+    return Overload(rate, first, excess, float(np.abs(value[within]).max(initial=0.0)), float(np.count_nonzero(excess[within]) / rate))
 
 
 def clipped_part(found: Overload, antialias: AntiAlias, rate: float, count: int) -> Floats:
@@ -64,7 +67,7 @@ def clipped_part(found: Overload, antialias: AntiAlias, rate: float, count: int)
     taps = kernel(np.arange(-HALF_LENGTH * finer, HALF_LENGTH * finer + 1) / finer) / finer
     begin = cut[0] // finer  # the sample at or before the first excess
     given = upfirdn(taps, found.excess[begin * finer : cut[-1] + 1], 1, finer)  # it begins `HALF_LENGTH` samples before `begin`
-    first = begin - HALF_LENGTH
+    first = found.first // finer + begin - HALF_LENGTH
     here = slice(max(first, 0), min(first + len(given), count))
     taken[here] = given[here.start - first : here.stop - first]
     return taken
@@ -80,7 +83,7 @@ def _through_poles(found: Overload, antialias: AntiAlias, finer: int, count: int
     for (level, slope), (stiffness, damping) in parallel(antialias.sections):
         numerator, denominator, _ = cont2discrete(([slope, level], [1.0, damping, stiffness]), 1.0 / found.rate, method="foh")
         response[begin:] += lfilter(np.ravel(numerator), denominator, found.excess[begin:end])
-    taken = np.zeros(count)
-    samples = response[::finer][:count]
-    taken[: len(samples)] = samples
+    taken, samples, first = np.zeros(count), response[::finer], found.first // finer
+    here = slice(max(first, 0), min(first + len(samples), count))
+    taken[here] = samples[here.start - first : here.stop - first]
     return taken

@@ -94,28 +94,55 @@ def place_responses(problem: Problem, sensors: Sequence[Sensor], duration: float
     InputError
         If the rates differ, or a sensor is a microphone or has no anti-alias filter.
     """
-    if len({sensor.rate for sensor in sensors}) != 1:
-        raise InputError("the sensors have different rates; identify with sensors of one rate", "sensors")
-    for sensor in sensors:
-        if isinstance(sensor.instrument, Microphone):
-            raise InputError(f'sensor "{sensor.name}": a microphone hears the whole plate; identify with sensors on it', "sensors")
-        if sensor.filter == "none":
-            words = "without an anti-alias filter frequencies above half the rate fold into the band, and can't be told from those in it"
-            raise InputError(f'sensor "{sensor.name}": {words}; state its filter', "sensors")
-    each = [_responses(problem, sensor, duration) for sensor in sensors]
+    _check(sensors)
+    # a port for each number that the response is linear in: it alone is one
+    ports = np.eye(len(np.concatenate([basis.frequencies for basis in bases_of_plate(problem)])) + 1)
+    each = [_responses(problem, sensor, duration, ports) for sensor in sensors]
     points = min(one.shape[1] for one in each)  # those of a converter's filter are a few longer
     found = np.stack([one[:, :points] for one in each], axis=1)
     return PlaceResponses(sensors[0].rate, found[:-1], found[-1])
 
 
-def _responses(problem: Problem, sensor: Sensor, duration: float) -> Floats:
-    """Return the responses of a sensor to unit impulses: of each mode, and of the residual compliance, (modes + 1, points)."""
+def responses_at(problem: Problem, sensors: Sequence[Sensor], duration: float, shapes: Floats, compliance: Floats) -> Floats:
+    """Return the responses of sensors to a unit impulse of force at one place, (S, points), as `PlaceResponses.at`, in less memory.
+
+    Parameters
+    ----------
+    problem, sensors, duration
+        As those of `place_responses`.
+    shapes, compliance : array, shape (modes,) and (S,)
+        As those of `PlaceResponses.at`.
+
+    Raises
+    ------
+    InputError
+        As `place_responses`.
+    """
+    _check(sensors)
+    each = [_responses(problem, one, duration, np.append(shapes, c)[None])[0] for one, c in zip(sensors, compliance, strict=True)]
+    points = min(len(one) for one in each)
+    return np.stack([one[:points] for one in each])
+
+
+def _check(sensors: Sequence[Sensor]) -> None:
+    """Raise InputError unless sensors have one rate, and hear the plate where they are through a filter."""
+    if len({sensor.rate for sensor in sensors}) != 1:
+        raise InputError("the sensors have different rates; take sensors of one rate", "sensors")
+    for sensor in sensors:
+        if isinstance(sensor.instrument, Microphone):
+            raise InputError(f'sensor "{sensor.name}": a microphone hears the whole plate; take sensors on it', "sensors")
+        if sensor.filter == "none":
+            words = "without an anti-alias filter frequencies above half the rate fold into the band, and can't be told from those in it"
+            raise InputError(f'sensor "{sensor.name}": {words}; state its filter', "sensors")
+
+
+def _responses(problem: Problem, sensor: Sensor, duration: float, ports: Floats) -> Floats:
+    """Return the responses of a sensor to unit impulses, (P, points); a port has a weight for each mode, and one of the compliance."""
     bases = bases_of_plate(problem)
     frequencies, ratios = (
         np.concatenate(part) for part in zip(*((basis.angular_frequencies, basis.damping_ratios) for basis in bases), strict=True)
     )
-    # a port for each number that the response is linear in: it alone is one
-    ports, number = np.eye(len(frequencies) + 1), len(frequencies)
+    number = len(frequencies)
     plate = Oscillators(frequencies, ratios, ports[:, :number])
     shapes = np.concatenate([basis.points[sensor.name] for basis in bases]) @ np.asarray(sensor.components)
     antialias = antialias_of(sensor)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from functools import lru_cache
+from functools import cache, lru_cache
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -27,9 +27,15 @@ def gauss_rule(radians: float) -> tuple[Floats, Floats]:
 @lru_cache(maxsize=64)
 def _panels(number: int) -> tuple[Floats, Floats]:
     """Return the composite Gauss rule with a number of panels, cached."""
-    nodes, weights = np.polynomial.legendre.leggauss(_NODES)
+    nodes, weights = _gauss()
     places = (np.arange(number)[:, None] + 0.5 * (nodes + 1.0)).ravel() / number
     return places, np.tile(0.5 * weights / number, number)
+
+
+@cache
+def _gauss() -> tuple[Floats, Floats]:
+    """Return Gauss's rule of a panel, on [-1, 1]."""
+    return np.polynomial.legendre.leggauss(_NODES)
 
 
 Pulses = tuple[Floats, Floats]

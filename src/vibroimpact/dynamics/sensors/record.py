@@ -23,6 +23,7 @@ from vibroimpact.dynamics.sensors.pole_pairs import Section
 from vibroimpact.dynamics.sensors.ports import Ports, ports_of
 from vibroimpact.dynamics.sensors.recording import Signal
 from vibroimpact.dynamics.sensors.sampled import (
+    first_motion,
     longest_span,
     outputs_around_first_contact,
     sample_at_instants,
@@ -152,7 +153,7 @@ def _recorded(
             if one.filter == "none":
                 value = np.clip(value, -meter.range, meter.range)
             else:
-                value = value - clipped_part(found, antialias, one.rate, before + count)[before:]
+                value = value - clipped_part(found, antialias, one.rate, count)
             facts |= {"peak": found.peak, "overload_time": found.time}
         signals[one.name] = Signal(one, _digitised(one, value), **facts)
     return signals
@@ -167,7 +168,7 @@ def _excited(
     # a converter's filter is applied in closed form; an analogue one is a part of the chain, sampled at instants
     if antialias.half_length:
         known = filtered_chain(bare, rate, longest_span(segments, rate))
-        values = sample_filtered(known, ports, segments, count)
+        values = sample_filtered(known, ports, segments, range(count))
     else:
         chain = _chain(problem, ports, group, (*sensor.sections, *antialias.sections))
         values = sample_at_instants(chain, ports, rate, segments, count)
@@ -186,16 +187,17 @@ def _overload(problem: Problem, ports: Ports, segments: Sequence[VibratingSegmen
     assert meter is not None
     assert meter.range is not None
     rate = finer_rate(sensor.rate, meter.resonance)
-    begin, length, level = before * round(rate / sensor.rate), sample_count(end + ahead, rate), meter.range
-    value = np.zeros(begin + length)
+    finer, level = round(rate / sensor.rate), meter.range
+    first = first_motion(segments, rate) // finer if problem.motion is None else -before
+    samples = range(first * finer, sample_count(end + ahead, rate))
+    value = np.zeros(len(samples))
     if problem.motion is not None:
-        samples = range(-begin, length)
         value += steady_outputs(problem.motion, problem.plate.modes, [sensor], sensor.sections, rate, samples, True)[0]
         level = max(meter.range - float(np.abs(value).max()), 0.0)
     if problem.plate.modes is not None:
-        alone = _chain(problem, ports, [sensor], sensor.sections)
-        value[begin:] += sample_filtered_chain(alone, ports, rate, segments, length, np.array([level]))[0]
-    return overload(value, rate, begin, end, meter.range)
+        alone, moved = _chain(problem, ports, [sensor], sensor.sections), range(max(samples.start, 0), samples.stop)
+        value[-len(moved) :] += sample_filtered_chain(alone, ports, rate, segments, moved, np.array([level]))[0]
+    return overload(value, rate, samples.start, end, meter.range)
 
 
 def _chain(problem: Problem, ports: Ports, group: Sequence[Sensor], sections: Sequence[Section]) -> MeasuringChain:

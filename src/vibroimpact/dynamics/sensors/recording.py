@@ -26,6 +26,14 @@ class Signal:
         The largest magnitude at an accelerometer before clipping [m/s^2].
     overload_time : float, default 0
         Total time beyond its range [s].
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import vibroimpact as vi
+    >>> signal = vi.Signal(vi.Sensor("a1", rate=50e3), np.array([0.0, 3.0, -5.0]))
+    >>> signal.time.tolist(), signal.sensor.unit
+    ([0.0, 2e-05, 4e-05], 'm/s2')
     """
 
     sensor: Sensor

@@ -62,9 +62,9 @@ class _Span:
 
 
 def sample_filtered(
-    filtered: FilteredChain, ports: Ports, segments: Sequence[VibratingSegment], count: int, levels: Floats | None = None
+    filtered: FilteredChain, ports: Ports, segments: Sequence[VibratingSegment], samples: range, levels: Floats | None = None
 ) -> Floats:
-    """Return the outputs of a chain with a converter's filter, (S, count).
+    """Return the outputs of a chain with a converter's filter, (S, samples).
 
     Parameters
     ----------
@@ -74,25 +74,26 @@ def sample_filtered(
         Where the contact forces act.
     segments : sequence of VibratingSegment
         The history of one drop.
-    count : int
-        Number of samples from the start on.
+    samples : range
+        Numbers of the samples, from 0 at the start of the run; everything is at rest before the first of them.
     levels : array, shape (S,), optional
         Free vibration whose magnitudes stay below these is left zero.
     """
-    rate, values = filtered.rate, np.zeros((len(filtered.outputs[0]), count))
+    rate, values, origin = filtered.rate, np.zeros((len(filtered.outputs[0]), len(samples))), samples.start
     blocks = blocks_of(filtered.chain.oscillators, filtered.outputs, rate)
     for span in _spans(filtered.chain, ports, segments, rate):
         if span.rest is not None:
-            _add_rest(filtered, ports.of(span.rest.equilibrium.system), span.rest, span, values, levels)
+            _add_rest(filtered, ports.of(span.rest.equilibrium.system), span.rest, span, values, origin, levels)
             break
         first, last = _first_sample(span.start, rate), _first_sample(span.end, rate)
         if span.end >= segments[-1].end:
-            last = max(last, count)
-        to = min(last, count - HALF_LENGTH)
-        if to > first:
-            blocks.sample(values[:, first + HALF_LENGTH : to + HALF_LENGTH], span.initial, first / rate - span.start, levels)
+            last = max(last, samples.stop)
+        to = min(last, samples.stop - HALF_LENGTH)
+        later = HALF_LENGTH - origin
+        if to > first and first + later >= 0:
+            blocks.sample(values[:, first + later : to + later], span.initial, first / rate - span.start, levels)
         for port, times, impulses in span.joined():
-            filtered.add(values, port, times, impulses, last + HALF_LENGTH)
+            filtered.add(values, port, times, impulses, last + HALF_LENGTH, origin)
     return values
 
 
@@ -110,10 +111,16 @@ def outputs_around_first_contact(filtered: FilteredChain, ports: Ports, segments
 
 
 def sample_filtered_chain(
-    chain: MeasuringChain, ports: Ports, rate: float, segments: Sequence[VibratingSegment], count: int, levels: Floats | None = None
+    chain: MeasuringChain, ports: Ports, rate: float, segments: Sequence[VibratingSegment], samples: range, levels: Floats | None = None
 ) -> Floats:
-    """Return the outputs of a chain followed by a converter's filter, (S, count); see `sample_filtered`."""
-    return sample_filtered(filtered_chain(chain, rate, longest_span(segments, rate)), ports, segments, count, levels)
+    """Return the outputs of a chain followed by a converter's filter, (S, samples); see `sample_filtered`."""
+    return sample_filtered(filtered_chain(chain, rate, longest_span(segments, rate)), ports, segments, samples, levels)
+
+
+def first_motion(segments: Sequence[VibratingSegment], rate: float) -> int:
+    """Return the number of a sample before which the plate is at rest, and so is the output of a converter's filter."""
+    touch = next((segment.start for segment in segments if segment.in_contact), segments[-1].end)
+    return max(_first_sample(touch, rate) - HALF_LENGTH, 0)
 
 
 def sample_at_instants(chain: MeasuringChain, ports: Ports, rate: float, segments: Sequence[VibratingSegment], count: int) -> Floats:
@@ -146,8 +153,10 @@ def longest_span(segments: Sequence[VibratingSegment], rate: float) -> float:
     return max(HALF_LENGTH / rate, *stretches, 0.0)
 
 
-def _add_rest(filtered: FilteredChain, port: int, rest: RestMotion, span: _Span, values: Floats, levels: Floats | None) -> None:
-    """Add the outputs from the instant of rest on, to the end of `values` (S, samples).
+def _add_rest(
+    filtered: FilteredChain, port: int, rest: RestMotion, span: _Span, values: Floats, origin: int, levels: Floats | None
+) -> None:
+    """Add the outputs from the instant of rest on, to the end of `values` (S, samples) from sample `origin` on.
 
     Samples whose kernel lies wholly after that instant see the oscillations at rest alone. For earlier ones the force of these oscillations
     adds to the response to all previous motion.
@@ -155,8 +164,8 @@ def _add_rest(filtered: FilteredChain, port: int, rest: RestMotion, span: _Span,
     rate, chain = filtered.rate, filtered.chain
     first = _first_sample(span.start, rate)
     times, impulses = rest_pulses(rest, 2.0 * np.pi * _PASS_BAND * rate, (first + 2 * HALF_LENGTH) / rate - span.start)
-    filtered.add(values, port, span.start + times, impulses, first + HALF_LENGTH)
-    later = values[:, first + HALF_LENGTH :]
+    filtered.add(values, port, span.start + times, impulses, first + HALF_LENGTH, origin)
+    later = values[:, first + HALF_LENGTH - origin :]
     if not later.shape[1]:
         return
     chained = rest_chain(chain, port, rest, span.initial[:, chain.modes :])

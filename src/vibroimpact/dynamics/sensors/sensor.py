@@ -48,6 +48,13 @@ class Sensor:
     InputError
         If the instrument puts out another quantity or has another filter, there is no such filter, it takes no corner, or the corner is not
         below half the rate.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> geophone = vi.Geophone(natural_frequency=10.0, sensitivity=30.0)
+    >>> vi.Sensor("a1", quantity="velocity", rate=20e3).unit, vi.Sensor("a2", quantity="voltage", instrument=geophone).unit
+    ('m/s', 'V')
     """
 
     name: str

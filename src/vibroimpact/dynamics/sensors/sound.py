@@ -74,7 +74,7 @@ def heard(
     sum_of_all = np.zeros(finer + kernels.lags.shape[1] - 1)
     for begin in range(0, len(kernels.shapes) if finer else 0, _AT_ONCE):
         part = slice(begin, begin + _AT_ONCE)
-        accelerations = sample_filtered(_chain(plate, kernels.shapes[part], rate, later), ports, later, finer)
+        accelerations = sample_filtered(_chain(plate, kernels.shapes[part], rate, later), ports, later, range(finer))
         sum_of_all += _through(accelerations, kernels.lags[part])
     ahead = HALF_LENGTH - kernels.first
     samples = np.pad(sum_of_all, (max(0, -ahead), 0))[max(0, ahead) :: _FINER][:count]

@@ -154,7 +154,7 @@ class VibratingBodies:
 
     def __init__(self, problem: Problem, mass: Floats, gravity: Floats, oblique: ObliqueMotion | None) -> None:
         self.problem, self.mass, self.gravity, self.oblique, size = problem, mass, gravity, oblique, len(mass)
-        sensitive = problem.sensitivity and oblique is None and problem.air is None
+        sensitive = problem.sensitivity and oblique is None and problem.air is None and problem.liquid is None
         self.columns = tuple(name for name in VIBRATING_IMPACT_COLUMNS if sensitive or name != "sensitivity")
         pairs = list(zip(mass.tolist(), gravity.tolist(), strict=True))
         self.system = system_of(problem, *pairs[0])

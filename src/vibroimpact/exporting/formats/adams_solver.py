@@ -11,6 +11,7 @@ from vibroimpact.exporting.adams_model import (
     SENSOR_ERROR,
     TESTED,
     AdamsModel,
+    adams_dialog,
     adams_model,
     adams_notes,
     header_comments,
@@ -163,5 +164,6 @@ FORMAT = ExportFormat(
     tested=TESTED,
     write=write,
     notes=adams_notes,
+    dialog=adams_dialog,
     prepare=as_rigid,
 )

@@ -12,6 +12,7 @@ from vibroimpact.exporting.adams_model import (
     SENSOR_ERROR,
     TESTED,
     AdamsModel,
+    adams_dialog,
     adams_model,
     adams_notes,
     header_comments,
@@ -192,5 +193,6 @@ FORMAT = ExportFormat(
     tested=TESTED,
     write=write,
     notes=adams_notes,
+    dialog=adams_dialog,
     prepare=as_rigid,
 )

@@ -62,6 +62,15 @@ def reproduce_paper(
     ------
     InputError
         If a part is unknown, none is missing, or the folder holds something else or can't be written to.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> import vibroimpact as vi
+    >>> with TemporaryDirectory() as folder:
+    ...     place = vi.reproduce_paper(f"{folder}/paper", only=["table1"])
+    ...     sorted(file.name for file in place.iterdir())
+    ['parts', 'report.html', 'report.md', 'summary.json', 'values.csv']
     """
     folder = Path(directory)
     recover(folder)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from vibroimpact.studies.design import Asked, Design, generator
 from vibroimpact.studies.plan import Plan
+from vibroimpact.studies.scaled import scaled_columns
 
 
 def size(asked: Asked) -> int:
@@ -22,7 +23,7 @@ def plan(asked: Asked) -> Plan:
         key: axis.quantiles(qmc.LatinHypercube(1, rng=generator(asked.seed, place)).random(asked.samples)[:, 0])
         for place, (key, axis) in enumerate(asked.axes.items())
     }
-    return Plan("latin-hypercube", columns, False)
+    return Plan("latin-hypercube", scaled_columns(asked.axes, columns), False)
 
 
 DESIGN = Design("latin-hypercube", "random points, evenly spread along each axis", True, size, plan)

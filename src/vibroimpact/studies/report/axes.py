@@ -112,9 +112,14 @@ def key_words(key: str, meaning: str) -> str:
     ('radius of the sphere', "Young's modulus of the plate")
     >>> key_words("contact.exponent", "force exponent n, 1.5 for a sphere"), key_words("plate.mesh.size", "plate.mesh.size")
     ('force exponent n', 'size of the mesh of the plate')
+    >>> key_words("sensors.a1.accelerometer.noise", "standard deviation of the noise in its samples")
+    'noise of the accelerometer of a1'
     """
     if key in _WORDS:
         return _WORDS[key]
+    if key.startswith("sensors."):
+        _, name, rest = key.split(".", 2)
+        return f"{key_words(rest, meaning)} of {name}"
     *way, last = key.split(".")
     if way == ["contact"] and meaning != key:
         return meaning.split(",")[0]

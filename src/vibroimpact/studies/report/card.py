@@ -43,7 +43,8 @@ def data_card(study: Study) -> str:
         "## Classes",
         _table(["class", "falls", "rocks", "share of the rocks"], _classes(study)),
         "## What was drawn",
-        "Keys of `plate` are drawn once a plate, those of `drop` once a fall, all others once a rock, independently of each other.",
+        "Keys of `plate` and `sensors` are drawn once a plate, those of `drop` once a fall, all others once a rock, each independently."
+        + "".join(f" `{key}` follows `{other}`." for key, other in _following(study)),
         _table(["key", "what it is", *_names(study)], _drawn(study)),
         "## Signals",
         _table(["variable", "quantity", "unit", "samples", "rate [Hz]"], _signals(study)),
@@ -79,6 +80,14 @@ def _drawn(study: Study) -> Iterator[Sequence[str]]:
         if axis.key != CLASS:
             ranges = (StudyAxis(axis.key, axis.words, axis.unit, axis.values[study.labels[CLASS] == name]) for name in _names(study))
             yield f"`{axis.key}`", axis.words, *map(range_text, ranges)
+
+
+def _following(study: Study) -> list[tuple[str, str]]:
+    """Return the keys that follow another one, and these."""
+    sweep = study.table["sweep"]
+    groups = [sweep["over"], *(one["over"] for one in sweep["classes"].values())]
+    found = {key: value["of"] for over in groups for key, value in over.items() if isinstance(value, Mapping) and "of" in value}
+    return list(found.items())
 
 
 def _signals(study: Study) -> Iterator[Sequence[str]]:

@@ -42,6 +42,19 @@ def study_charts(study: Study, outputs: list[Output] | None = None, found: Sensi
         `curves` or `maps` of a grid; `inputs` and `outputs` of drawn points; of many keys one by the name of each result; `restitution`,
         `slip_map` of oblique impacts that were kept, `sensitivity`, and one per sensor whose signals were kept. Left out is what has
         nothing to show.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> import vibroimpact as vi
+    >>> case = {
+    ...     "sphere": {"radius": "25 mm", "material": "granite"}, "plate": {"material": "steel"}, "drop": {"height": 1.0},
+    ...     "contact": {"law": "flores", "restitution": 0.7}, "sweep": {"over": {"drop.height": [1.0, 2.0]}},
+    ... }
+    >>> with tempfile.TemporaryDirectory() as place:
+    ...     study = vi.read_study(vi.run_sweep(vi.read_sweep(case), f"{place}/heights"))
+    ...     [chart.name for chart in study_charts(study)]
+    ['curves', 'restitution']
     """
     if outputs is None:
         outputs = study_outputs(study)

@@ -41,6 +41,16 @@ def plot_study(study: Study, name: str = "") -> go.Figure:
     ------
     InputError
         If the study has no such chart.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> import vibroimpact as vi
+    >>> case = vi.load_case("paper:type1-theory").to_problem().source
+    >>> sweep = vi.read_sweep({**case, "sweep": {"over": {"drop.height": ["1 m", "2 m", "4 m"]}}})
+    >>> with TemporaryDirectory() as folder:
+    ...     vi.plot_study(vi.read_study(vi.run_sweep(sweep, f"{folder}/heights"))).layout.title.text
+    'Over the drop height'
     """
     charts = {chart.name: chart for chart in study_charts(study)}
     if not charts:
@@ -57,6 +67,17 @@ def study_html(study: Study) -> str:
     ----------
     study : Study
         The completed study.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> import vibroimpact as vi
+    >>> case = vi.load_case("paper:type1-theory").to_problem().source
+    >>> sweep = vi.read_sweep({**case, "sweep": {"over": {"drop.height": ["1 m", "2 m"]}}})
+    >>> with TemporaryDirectory() as folder:
+    ...     html = vi.study_html(vi.read_study(vi.run_sweep(sweep, f"{folder}/heights")))
+    >>> "drop.height" in html, "<script" in html
+    (True, False)
     """
     head = Markup("<p><strong>{}</strong><br>{}</p>").format(visible(study.name), counts_sentence(study))
     keys = ["Key", "", "Values"], axes_table(study, study_axes(study))[:_KEYS]

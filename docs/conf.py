@@ -1,0 +1,113 @@
+"""The documentation site: these pages, the docstrings and the gallery, built by `make docs-site` and read without a network."""
+
+import re
+import sys
+from pathlib import Path
+
+from sphinx.application import Sphinx
+
+HERE = Path(__file__).parent
+sys.path.insert(0, str(HERE / "_extensions"))
+
+import vibroimpact  # noqa: E402
+
+project = "vibroimpact"
+copyright = "the vibroimpact authors"
+release = version = vibroimpact.__version__
+
+extensions = [
+    "myst_parser",
+    "plotly_gallery",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.autosummary",
+    "numpydoc",
+    "sphinx_copybutton",
+    "sphinx_gallery.gen_gallery",
+    "offline_math",
+    "check_pages",
+]
+templates_path = ["_templates"]
+exclude_patterns = ["_*", "gallery/**/*.ipynb", "gallery/**/*.py", "gallery/**/*.zip"]
+nitpicky = True
+default_role = "code"
+
+# pages
+myst_enable_extensions = ["dollarmath"]
+myst_fence_as_directive = ["math"]
+myst_heading_anchors = 4
+math_numfig = False
+html_math_renderer = "mathml"
+copybutton_prompt_text = r"\$ |>>> |\.\.\. "
+copybutton_prompt_is_regexp = True
+
+# reference
+autodoc_typehints = "none"  # the docstrings have the types, with units and shapes
+autosummary_generate = ["reference.md"]
+numpydoc_show_class_members = False
+# sections that are known and in order, a summary that ends in a full stop, and parameters that exist, in their order, with words
+numpydoc_validation_checks = {"GL06", "GL07", "SS01", "SS03", "SS05", "PR02", "PR03", "PR07", "PR09", "RT03", "RT05"}
+
+# gallery
+sphinx_gallery_conf = {
+    "examples_dirs": ["../examples/gallery"],
+    "gallery_dirs": ["gallery"],
+    "image_scrapers": ("matplotlib", "plotly_gallery.scrape"),
+    "capture_repr": ("_repr_html_", "__repr__"),
+    "ignore_repr_types": "NoneType|matplotlib",
+    "write_computation_times": False,
+    "backreferences_dir": "gallery/used",
+    "doc_module": ("vibroimpact",),
+    "remove_config_comments": True,
+    "show_memory": False,
+    "show_signature": False,
+    "min_reported_time": 1e9,  # times of the machine that builds say nothing to a reader
+    "download_all_examples": False,
+    "nested_sections": False,
+    "abort_on_example_error": True,
+}
+
+# look
+html_theme = "pydata_sphinx_theme"
+html_title = f"vibroimpact {version}"
+html_static_path = ["_static"]
+html_css_files = ["site.css"]
+html_context = {"default_mode": "auto"}
+html_copy_source = html_show_sourcelink = False
+html_theme_options = {
+    "navbar_end": ["versions", "theme-switcher"],
+    "header_links_before_dropdown": 6,
+    "navbar_align": "left",
+    "show_toc_level": 2,
+    "navigation_with_keys": False,
+    "footer_start": ["copyright"],
+    "footer_end": [],
+}
+
+
+PAGES_OF_FILES = {"README.md#use": "use.md", "CHANGELOG.md": "changelog.md", "CONTRIBUTING.md": "contributing.md"}
+LAWS = """
+```{toctree}
+:hidden:
+:glob:
+
+laws/*
+```
+"""
+
+
+def complete(app: Sphinx, page: str, source: list[str]) -> None:
+    """Lead links to files beside this folder to the pages that include them, and put the pages of the laws below their table."""
+    for file, own in PAGES_OF_FILES.items():
+        source[0] = re.sub(rf"\]\(((?:\.\./)*)\.\./{re.escape(file)}\)", rf"](\1{own})", source[0])
+    if page == "laws":
+        source[0] += LAWS
+
+
+def skip_fields_of_tuples(app: Sphinx, what: str, name: str, member: object, skip: bool, options: object) -> bool | None:
+    """Leave out what Python says of the fields of named tuples, "Alias for field number 0": their docstrings have them as parameters."""
+    return True if type(member).__name__ == "_tuplegetter" else None
+
+
+def setup(app: Sphinx) -> None:
+    app.connect("autodoc-skip-member", skip_fields_of_tuples)
+    app.connect("source-read", complete)

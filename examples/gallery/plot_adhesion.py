@@ -1,0 +1,119 @@
+"""
+Dust that sticks
+================
+
+Below some speed a small particle does not bounce off: surface energy holds it. Under Johnson, Kendall and Roberts' law, with and without
+Krijt's loss in the bulk, grains of different sizes meet a wall; the smaller the grain, the faster it may come and still stick.
+"""
+
+# %%
+# A contact that is torn apart
+# ----------------------------
+# Adhesion pulls the surfaces together at first touch, and a neck holds them until it tears at a negative indentation. The pull-off force is
+# :math:`\tfrac32 \pi w R`, whatever the stiffness.
+import matplotlib.pyplot as plt
+import numpy as np
+
+import vibroimpact as vi
+
+modulus, surface_energy, density = 1.7e9, 0.1, 1050.0  # polystyrene on silica
+
+
+def laws_of(radius):
+    """Return the mass of a grain [kg] and its law without and with a loss in the bulk."""
+    mass = 4.0 / 3.0 * np.pi * radius**3 * density
+    pair = {
+        "effective_modulus": modulus,
+        "effective_radius": radius,
+        "work_of_adhesion": surface_energy,
+    }
+    return (
+        mass,
+        vi.find_contact_law("jkr")(**pair),
+        vi.find_contact_law("krijt")(**pair, dissipation_time=radius / 4e3),
+    )
+
+
+radius, speed = 1e-6, 0.8
+mass, jkr, _ = laws_of(radius)
+grain = vi.Body(mass=mass, contact_offset=radius)
+response = vi.simulate(
+    vi.Problem(
+        sphere=grain, plate=vi.rigid_plate(), laws=(jkr,), speed=speed, gravity=0.0, impacts=1
+    )
+)
+time = np.linspace(0.0, (1.0 - 1e-9) * response.impacts["duration_s"][0], 2000)
+history = response.at(time)
+pull_off = 1.5 * np.pi * surface_energy * radius
+assert abs(history["force_N"].min() / -pull_off - 1.0) < 1e-3
+
+# %%
+# Stick or bounce
+# ---------------
+# Without other losses the energy that tearing takes is :math:`7.09\, (w^5 R^4 / E^{*2})^{1/3}` (Thornton and Ning 1998), which makes the
+# sticking speed.
+radii = np.array([0.3e-6, 1e-6, 3e-6, 10e-6])
+sticks = np.sqrt(
+    2.0
+    * 7.09
+    * (surface_energy**5 * radii**4 / modulus**2) ** (1.0 / 3.0)
+    / (4.0 / 3.0 * np.pi * radii**3 * density)
+)
+for one, limit in zip(radii, sticks, strict=True):
+    mass, jkr, _ = laws_of(one)
+    restitution = vi.achieved_restitution(jkr, mass, np.array([0.98, 1.02, 3.0]) * limit)
+    assert restitution[0] == 0.0 < restitution[1]
+    assert abs(restitution[2] - np.sqrt(1.0 - 1.0 / 9.0)) < 2e-3
+
+# %%
+# The neck, and who bounces
+# -------------------------
+plt.style.use("vibroimpact.charts.print")
+figure, (left, right) = plt.subplots(1, 2, figsize=(7.2, 3.8), layout="constrained")
+left.axhline(0.0, color="#6b6b6b", linewidth=0.7)
+left.axhline(-1.0, color="#b3400e", linestyle="--", linewidth=0.9)
+left.fill_between(
+    1e9 * history["indentation_m"], history["force_N"] / pull_off, color="#0072b2", alpha=0.08
+)
+left.plot(
+    1e9 * history["indentation_m"], history["force_N"] / pull_off, color="#00204d", linewidth=1.8
+)
+left.text(
+    0.98,
+    -0.95,
+    r"pull-off, $\frac{3}{2} \pi w R$",
+    color="#b3400e",
+    transform=left.get_yaxis_transform(),
+    ha="right",
+    va="bottom",
+    fontsize=8,
+)
+left.set(
+    xlabel="Indentation [nm]",
+    ylabel="Force over the pull-off force [-]",
+    title="A grain of 2 µm at 0.8 m/s",
+)
+speeds = np.geomspace(0.01, 20.0, 120)
+for one, colour in zip(
+    radii, plt.get_cmap("cividis")(np.linspace(0.0, 0.85, len(radii))), strict=True
+):
+    mass, jkr, krijt = laws_of(one)
+    right.semilogx(
+        speeds,
+        vi.achieved_restitution(jkr, mass, speeds),
+        color=colour,
+        linewidth=1.8,
+        label=f"{2e6 * one:g} µm",
+    )
+    right.semilogx(
+        speeds, vi.achieved_restitution(krijt, mass, speeds), ":", color=colour, linewidth=1.4
+    )
+right.set(
+    xlabel="Approach speed [m/s]",
+    ylabel="Restitution [-]",
+    title="Dotted: with a loss in the bulk",
+    ylim=(-0.02, 1.02),
+)
+right.xaxis.set_major_formatter("{x:g}")
+right.legend(title="diameter", loc="upper left")
+plt.show()

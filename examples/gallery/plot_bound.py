@@ -1,0 +1,80 @@
+"""
+What can be told at all?
+========================
+
+Before a classifier of coal and gangue is trained, physics says how good it can become: an impact shows its impulse and its contact time,
+and rocks that share both cannot be told apart by any program. Drops of a whole population give that bound in seconds.
+"""
+
+# %%
+# A population
+# ------------
+# Coal and gangue of 15 to 60 mm fall from 0.8 to 3 m; their densities, moduli and restitutions scatter as stated in the shipped study.
+import matplotlib.pyplot as plt
+import numpy as np
+
+import vibroimpact as vi
+
+bound = vi.bound_of(vi.load_sweep("signals:coal-gangue", samples=2048))
+for name, error in bound.errors.items():
+    print(f"{name:40} {100.0 * error.lower:5.1f} to {100.0 * error.upper:5.1f} % told wrong")
+assert bound.errors["one impact"].upper < 0.01 < 0.2 < bound.errors["contact time"].lower
+
+# %%
+# The contact times are Hertz's, :math:`T = 2.87\, (m^2 / (E^{*2} R v))^{1/5}` (Johnson 1985, eq. 11.24), and longer by the damping.
+falls = bound.falls
+mass = 4.0 / 3.0 * np.pi * falls.radius**3 * falls.density
+effective = 1.0 / ((1.0 - 0.28**2) / falls.modulus + (1.0 - 0.3**2) / 210e9)  # against steel
+johnson = 2.87 * (mass**2 / (effective**2 * falls.radius * falls.speed)) ** 0.2
+longer = falls.duration / johnson
+assert np.all((longer > 1.0) & (longer < 1.25))
+
+# %%
+# What an impact shows
+# --------------------
+plt.style.use("vibroimpact.charts.print")
+figure, (left, right) = plt.subplots(
+    1, 2, figsize=(7.6, 4.0), width_ratios=(5, 4), layout="constrained"
+)
+for name, colour in (("coal", "#1b1b1b"), ("gangue", "#c79000")):
+    some = falls.classes == name
+    left.plot(
+        falls.impulse[some],
+        1e6 * falls.duration[some],
+        ".",
+        color=colour,
+        markersize=3.0,
+        alpha=0.6,
+        label=name,
+    )
+left.set(
+    xscale="log",
+    yscale="log",
+    xlabel="Impulse [N s]",
+    ylabel="Duration of the contact [µs]",
+    title="2,048 falls, as one impact shows them",
+)
+left.legend(loc="upper left", markerscale=4)
+names = ("impulse", "contact time", "one impact, place unknown", "one impact")
+upper = 100.0 * np.array([bound.errors[name].upper for name in names])
+bars = right.barh(
+    [name.replace(", ", ",\n") for name in names],
+    upper,
+    color=["#b9c9d8", "#b9c9d8", "#0072b2", "#00204d"],
+)
+right.bar_label(bars, [f"{one:.1f} %" for one in upper], padding=3)
+right.axvline(100.0 * bound.majority, color="#b3400e", linestyle="--", linewidth=0.9)
+right.text(
+    100.0 * bound.majority + 0.7,
+    3.6,
+    "always the\nfrequent one",
+    color="#b3400e",
+    ha="left",
+    va="top",
+    fontsize=8,
+)
+right.set(
+    xlabel="Told wrong by the best classifier [%]", title="by what is measured", xlim=(0.0, 56.0)
+)
+right.grid(visible=False, axis="y")
+plt.show()

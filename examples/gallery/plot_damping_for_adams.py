@@ -1,0 +1,105 @@
+"""
+What damping do I type into Adams?
+==================================
+
+Adams' IMPACT function wants a damping, which no one can measure; rebound heights can be measured with a ruler and a camera. From four of
+them follow the damping at each approach speed, its interval, and the numbers in the units of the dialogue: newtons, millimetres and
+seconds.
+"""
+
+# %%
+# The measurement
+# ---------------
+# A rock of 25 mm was dropped from 4 m; its first four rebounds are known to 2 mm.
+import matplotlib.pyplot as plt
+import numpy as np
+
+import vibroimpact as vi
+
+case = {
+    "sphere": {"radius": "25 mm", "material": "rock-paper"},
+    "plate": {"material": "steel-paper"},
+    "drop": {"height": "4 m", "gravity": 9.8},
+    "contact": {"law": "adams-impact"},
+    "calibrate": {
+        "target": {
+            "rebound_heights": ["2.411 m", "1.457 m", "885 mm", "541 mm"],
+            "standard_deviation": "2 mm",
+        },
+        "degree": 1,
+    },
+}
+question = vi.read_calibration(case)
+found = vi.calibrate_case(question)
+
+# %%
+# What to type
+# ------------
+# A stiffness in N/m\ :sup:`1.5` is not a thousandth in N/mm\ :sup:`1.5`: the unit of the length is raised to the exponent too.
+law = found.problem.laws[0]
+stiffness = vi.convert_units(float(law.stiffness), "N/m^1.5", "N/mm^1.5")
+print(f"Stiffness          {stiffness:.0f} N/mm^{law.exponent}")
+print(f"Force exponent     {law.exponent}")
+print(f"Penetration depth  {1e3 * law.full_damping_penetration:g} mm")
+for speed, damping in zip(found.observations.speeds, found.values, strict=True):
+    print(f"Damping            {1e-3 * damping:.4f} N s/mm for an impact at {speed:.2f} m/s")
+
+# %%
+# The paper found 179.75, 172.8, 166.3 and 160.9 N s/m by trial, for rebounds that are those of its own theory: the intervals hold them.
+printed = np.array([179.75, 172.8, 166.3, 160.9])
+assert np.all((found.intervals[:, 0] < printed) & (printed < found.intervals[:, 1]))
+
+# %%
+# Check, and draw
+# ---------------
+# The calibrated case runs as any other, and rebounds as high as was measured.
+response = vi.simulate(vi.calibrated_case(question.case, found))
+assert np.allclose(
+    response.impacts["rebound_height_m"][:4], [2.411, 1.457, 0.885, 0.541], atol=2e-3
+)
+
+plt.style.use("vibroimpact.charts.print")
+figure, axes = plt.subplots(figsize=(6.4, 4.0), layout="constrained")
+speeds = np.linspace(found.observations.speeds.min(), found.observations.speeds.max(), 100)
+line, band = found.fit.function(speeds), found.fit.band(speeds, found.confidence)
+axes.fill_between(
+    speeds,
+    1e-3 * (line - band),
+    1e-3 * (line + band),
+    color="#0072b2",
+    alpha=0.15,
+    label="95 % band of the line",
+)
+axes.plot(
+    speeds,
+    1e-3 * line,
+    color="#0072b2",
+    linewidth=1.8,
+    label="line over the speed: one input for all impacts",
+)
+axes.errorbar(
+    found.observations.speeds,
+    1e-3 * found.values,
+    1e-3 * np.abs(found.intervals.T - found.values),
+    fmt="o",
+    color="#00204d",
+    markersize=7,
+    capsize=4,
+    label="from the measured rebounds, 95 % intervals",
+)
+axes.plot(
+    found.observations.speeds,
+    1e-3 * printed,
+    "_",
+    color="#b3400e",
+    markersize=22,
+    markeredgewidth=1.8,
+    label="found by trial in the paper",
+)
+axes.set(
+    xlabel="Approach speed [m/s]",
+    ylabel="Damping of IMPACT [N s/mm]",
+    title="The damping to type into Adams",
+)
+axes.legend(loc="upper left")
+plt.show()

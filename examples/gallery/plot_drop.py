@@ -1,0 +1,88 @@
+"""
+Drop a rock on a plate
+======================
+
+A rock of 25 mm falls 4 m onto a steel plate and bounces five times: Type 1 of the paper from which this project started, with Adams' IMPACT
+and a damping for each bounce. The rebound is the printed one; the largest force is larger, as the program of the paper stepped over it.
+"""
+
+# %%
+# Run a shipped case
+# ------------------
+# A case is a file, a dictionary, or one of those that are shipped. Five seconds of flight and five contacts of a quarter of a millisecond
+# take some milliseconds. At the end of a cell a response shows its impacts, and what of the theory its drop exceeds.
+import matplotlib.pyplot as plt
+import numpy as np
+
+import vibroimpact as vi
+
+response = vi.simulate(vi.load_case("paper:type1-variable"))
+response
+
+# %%
+# The chart of the report
+# -----------------------
+# Every chart of the report is also a figure of plotly, by its name.
+response.plot("force")
+
+# %%
+# Compare with the paper
+# ----------------------
+# The paper prints a first rebound of 2.41132 m and a largest force of 9583.984 N. Its program wrote 20,000 outputs in 5 s, one in 0.25 ms,
+# which is as long as a contact: its largest force is the largest of those that an output happened to hit.
+force, rebound = response.impacts["max_force_N"], response.impacts["rebound_height_m"]
+assert abs(rebound[0] - 2.41132) < 1e-4
+assert force[0] > 9583.984
+assert abs(response.energy["closure_relative"]) < 1e-9
+
+# %%
+# Five contacts
+# -------------
+# The history can be asked at any time, however short the contacts are: above the path, below the force of each bounce from its first touch
+# on.
+plt.style.use("vibroimpact.charts.print")
+figure, (above, below) = plt.subplots(
+    2, figsize=(6.4, 5.0), height_ratios=(2, 3), layout="constrained"
+)
+time = np.linspace(0.0, response.end_time[0], 2000)
+above.plot(time, response.at(time)["position_m"], color="#1b1b1b")
+above.set(
+    xlabel="Time [s]",
+    ylabel="Height [m]",
+    ylim=(0.0, 4.2),
+    title="A rock bounces five times on a steel plate",
+)
+
+colours = plt.get_cmap("cividis")(np.linspace(0.0, 0.85, len(force)))
+for colour, touch, duration, rise in zip(
+    colours,
+    *(response.impacts[key] for key in ("time_s", "duration_s", "rebound_height_m")),
+    strict=True,
+):
+    since = np.linspace(0.0, duration, 300)
+    pulse = 1e-3 * response.at(touch + since)["force_N"]
+    below.fill_between(1e6 * since, pulse, color=colour, alpha=0.15)
+    below.plot(
+        1e6 * since,
+        pulse,
+        color=colour,
+        linewidth=1.8,
+        label=f"{pulse.max():.2f} kN, rises to {rise:.2f} m",
+    )
+    above.plot(touch, 0.025, "o", color=colour, markersize=7, clip_on=False)
+below.axhline(9.583984, color="#b3400e", linestyle="--", linewidth=0.9)
+below.text(
+    350,
+    9.65,
+    "largest force that the paper prints",
+    color="#b3400e",
+    ha="right",
+    va="bottom",
+    fontsize=8,
+)
+below.set(
+    xlabel="Time since first touch [µs]", ylabel="Contact force [kN]", xlim=(0, 350), ylim=(0, 11)
+)
+below.legend(loc="upper right", bbox_to_anchor=(1.0, 0.88))
+# sphinx_gallery_thumbnail_number = -1
+plt.show()

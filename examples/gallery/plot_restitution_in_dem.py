@@ -1,0 +1,88 @@
+"""
+Which restitution do I really get?
+==================================
+
+The restitution that is typed into a discrete-element program is a parameter of a contact law, not the rebound. Six laws are asked for the
+whole range of restitutions here: under some of them a sphere that should stop dead keeps two thirds of its speed.
+"""
+
+# %%
+# What is asked and what comes out
+# --------------------------------
+# `achieved_restitution` takes the closed form where there is one, and integrates the contact otherwise, for arrays of parameters at once.
+import matplotlib.pyplot as plt
+import numpy as np
+
+import vibroimpact as vi
+
+asked = np.linspace(0.05, 1.0, 96)
+laws = {
+    "lankarani-nikravesh": "Lankarani\nNikravesh 1990",
+    "hunt-crossley": "Hunt\nCrossley 1975",
+    "lee-wang": "Lee, Wang 1983",
+    "flores": "Flores 2011",
+    "gonthier": "Gonthier 2004",
+    "hu-guo": "Hu, Guo 2015",
+}
+mass, speed, stiffness = 0.0903, 3.0, 5.115e8
+achieved = {
+    name: vi.achieved_restitution(
+        vi.find_contact_law(name)(stiffness=stiffness, restitution=asked), mass=mass, speed=speed
+    )
+    for name in laws
+}
+
+# %%
+# A published check: EXUDYN, a multibody program, records an outgoing speed of 6.629838 m/s for a sphere that comes with 10 m/s under
+# Hunt and Crossley's law with a restitution of 0.5.
+hunt = vi.find_contact_law("hunt-crossley")(stiffness=1e6, exponent=1.0, restitution=0.5)
+assert abs(vi.achieved_restitution(hunt, mass=1.0, speed=10.0) - 0.6629838) < 1e-4
+
+# %%
+# The parameter that does what you want
+# -------------------------------------
+# `law_achieving` goes the other way: it returns the law under which the sphere rebounds as wanted.
+wanted = 0.7
+typed = {}
+for name in laws:
+    law = vi.law_achieving(
+        vi.find_contact_law(name)(stiffness=stiffness, restitution=0.5),
+        wanted,
+        mass=mass,
+        speed=speed,
+    )
+    assert abs(vi.integrated_restitution(law, mass, speed) - wanted) < 1e-6
+    typed[name] = float(law.restitution)
+typed
+
+# %%
+# All of them
+# -----------
+# On the dashed diagonal a program does what it is told. The dots are what has to be typed in for a restitution of 0.7.
+plt.style.use("vibroimpact.charts.print")
+figure, axes = plt.subplots(figsize=(6.4, 4.4), layout="constrained")
+axes.plot([0, 1], [0, 1], "--", color="#9a9a9a")
+axes.axhline(wanted, color="#d9d9d9")
+for name, colour in zip(
+    laws, ("#00204d", "#0072b2", "#56a8d8", "#b3400e", "#c79000", "#5f8f3e"), strict=True
+):
+    axes.plot(
+        asked, achieved[name], color=colour, linewidth=2.0, label=laws[name].replace("\n", ", ")
+    )
+    axes.plot(
+        typed[name], wanted, "o", color=colour, markersize=6, markeredgecolor="white", zorder=3
+    )
+axes.annotate(
+    "asked to stop,\nkeeps two thirds",
+    (0.06, achieved["lankarani-nikravesh"][1]),
+    (0.02, 0.84),
+    color="#00204d",
+)
+axes.set(
+    xlabel="Restitution asked [-]",
+    ylabel="Restitution achieved [-]",
+    title="The restitution asked is not the one that comes out",
+)
+axes.set(xlim=(0.0, 1.0), ylim=(0.0, 1.0), aspect="equal")
+axes.legend(loc="center left", bbox_to_anchor=(1.02, 0.5))
+plt.show()

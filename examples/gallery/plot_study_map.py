@@ -1,0 +1,90 @@
+"""
+Two thousand drops on one map
+=============================
+
+Which rocks dent a plate? A study drops spheres of granite of fifty sizes from forty heights, all in a second, and keeps the largest force
+and the pressure over what the plate bears. The pressure under a sphere does not depend on its size, which the map shows at a glance.
+"""
+
+# %%
+# The study
+# ---------
+# A study is a case with a section that says over which keys it goes, here a grid on logarithmic scales.
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+import vibroimpact as vi
+
+case = {
+    "sphere": {"radius": "25 mm", "material": "granite"},
+    "plate": {"material": "steel"},
+    "drop": {"height": "1 m"},
+    "contact": {"law": "hertz"},
+    "run": {"impacts": 1},
+    "sweep": {
+        "over": {
+            "sphere.radius": {"from": "2 mm", "to": "60 mm", "number": 50, "scale": "log"},
+            "drop.height": {"from": "0.1 m", "to": "5 m", "number": 40, "scale": "log"},
+        }
+    },
+}
+with TemporaryDirectory() as folder:
+    study = vi.read_study(vi.run_sweep(vi.read_sweep(case), Path(folder, "rocks")))
+    radius, height = study.coordinates["sphere.radius"], study.coordinates["drop.height"]
+    force, indentation = study.values("largest_force_N"), study.values("largest_indentation_m")
+    overload = study.values("limit_plate_strength")
+
+# %%
+# Size does not matter
+# --------------------
+# Hertz's contact of a sphere that has fallen from a height is the same at all sizes: the force goes with the square of the radius, the
+# indentation with the radius, and the peak pressure over 1.6 times the yield strength, the limit of the plate, with neither. What is left
+# is the weight, which presses on in the contact.
+dropped = height - radius[:, None]  # the height is that of the centre
+reference = force[0, 0] / radius[0] ** 2 / dropped[0, 0] ** 0.6
+assert np.allclose(force, reference * radius[:, None] ** 2 * dropped**0.6, rtol=5e-3)
+reference = overload[0, 0] / dropped[0, 0] ** 0.2
+assert np.allclose(overload, reference * dropped**0.2, rtol=5e-3)
+
+# %%
+# The map
+# -------
+# Colours are the largest force; dashed is how many times the pressure exceeds what mild steel bears: granite dents it from every height
+# here.
+plt.style.use("vibroimpact.charts.print")
+figure, axes = plt.subplots(figsize=(6.4, 4.4), layout="constrained")
+map_of_force = axes.pcolormesh(
+    1e3 * radius, height, force.T, norm="log", cmap="cividis", shading="gouraud", rasterized=True
+)
+lines = axes.contour(
+    1e3 * radius, height, force.T, 10.0 ** np.arange(1.0, 6.0), colors="white", linewidths=0.9
+)
+axes.clabel(
+    lines, fmt=lambda value: f"{value:g} N" if value < 1e3 else f"{1e-3 * value:g} kN", fontsize=8
+)
+yields = axes.contour(
+    1e3 * radius,
+    height,
+    overload.T,
+    [4.0, 5.0, 6.0, 7.0, 8.0],
+    colors="#1b1b1b",
+    linestyles="--",
+    linewidths=1.2,
+)
+axes.clabel(yields, fmt="%g times yield", fontsize=8)
+axes.set(
+    xscale="log",
+    yscale="log",
+    xlabel="Radius of the rock [mm]",
+    ylabel="Drop height [m]",
+    title="Granite on steel: 2,000 drops",
+)
+axes.set_xticks([2, 5, 10, 20, 50], ["2", "5", "10", "20", "50"])
+axes.set_yticks([0.1, 0.2, 0.5, 1.0, 2.0, 5.0], ["0.1", "0.2", "0.5", "1", "2", "5"])
+axes.minorticks_off()
+axes.grid(visible=False)
+figure.colorbar(map_of_force, label="Largest force [N]")
+plt.show()

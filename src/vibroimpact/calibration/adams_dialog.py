@@ -1,0 +1,59 @@
+"""Contacts of Adams' IMPACT as the dialog of a contact in Adams View has them: in newtons, millimetres and seconds."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from vibroimpact.calibration.calibration import Calibration
+from vibroimpact.calibration.report import Cells, shortened
+from vibroimpact.contact.law import ContactLaw
+from vibroimpact.contact.laws.adams_impact import AdamsImpact
+
+_FIELDS = {
+    "stiffness_N_mm_n": ("Stiffness", "N/mm^n"),
+    "force_exponent": ("Force Exponent", ""),
+    "damping_N_s_mm": ("Damping", "N s/mm"),
+    "penetration_depth_mm": ("Penetration Depth", "mm"),
+}
+"""Label and unit of each field of the dialog, by its name in JSON."""
+
+DIALOG_TITLE = "For the dialog of a contact in Adams View (Impact; newton, mm, s)"
+DIALOG_NOTE = "The dialog takes one damping. For one that follows the speed, vibroimpact export --to adams writes a model."
+
+
+def dialog_rows(laws: Iterable[ContactLaw]) -> list[dict[str, Any]]:
+    """Return the fields of the dialog for the contact law of each impact; one row if all are equal, none if one is not IMPACT.
+
+    Examples
+    --------
+    >>> dialog_rows([AdamsImpact(stiffness=1e9, damping_max=150.0, exponent=1.0)])
+    [{'stiffness_N_mm_n': 1000000.0, 'force_exponent': 1.0, 'damping_N_s_mm': 0.15, 'penetration_depth_mm': 0.1}]
+    """
+    rows = []
+    for law in laws:
+        if not isinstance(law, AdamsImpact):
+            return []
+        exponent = float(law.exponent)
+        values = (
+            float(law.stiffness) / 1000.0**exponent,
+            exponent,
+            float(law.damping_max) / 1000.0,
+            1000.0 * float(law.full_damping_penetration),
+        )
+        rows.append(dict(zip(_FIELDS, values, strict=True)))
+    return rows if any(row != rows[0] for row in rows) else rows[:1]
+
+
+def calibrated_dialog(found: Calibration) -> list[dict[str, Any]]:
+    """Return the fields of the dialog that match each impact; none if what was tuned is not a parameter of IMPACT."""
+    law, name = found.problem.laws[0], found.parameter
+    return dialog_rows(law.changed({name: value}) for value in found.values.tolist()) if "." not in name else []
+
+
+def dialog_cells(rows: Iterable[Mapping[str, Any]], names: Iterable[str]) -> Cells:
+    """Return the fields as a table, whose rows have the names of the impacts, or are "every impact" if there is one."""
+    rows = list(rows)
+    cells = [[f"{row[field]:.6g}" for field in _FIELDS] for row in rows]
+    names = list(names)[: len(rows)] if len(rows) > 1 else ["every impact"]
+    return [("", ""), *_FIELDS.values()], shortened([[name, *row] for name, row in zip(names, cells, strict=True)])

@@ -1,0 +1,105 @@
+"""The command `correlate`, which lays records of a test over the simulation of the case."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from vibroimpact.cli.shared import (
+    CaseArgument,
+    Changes,
+    Figures,
+    Force,
+    Json,
+    app,
+    console,
+    exit_on_interrupt,
+    pair_in,
+    say,
+    settings_of,
+    show,
+    stem,
+)
+from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.shown import shown
+
+if TYPE_CHECKING:
+    from vibroimpact.signals.record import Record
+
+
+@app.command()
+def correlate(
+    case: CaseArgument,
+    records: Annotated[
+        list[Path], typer.Argument(metavar="RECORD...", help="Records of one test: CSV, WAV, UFF, NetCDF-4 or the folder of a run.")
+    ],
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", metavar="DIR", help="The folder to make; by default CASE-correlated.")
+    ] = None,
+    hammer: Annotated[
+        str | None, typer.Option("--hammer", metavar="CHANNEL", help="The channel of the records that is the force of a hammer.")
+    ] = None,
+    window: Annotated[
+        str | None,
+        typer.Option("--window", metavar="TIME", help="Time from first touch on that is compared; by default to the next impact."),
+    ] = None,
+    band: Annotated[
+        str | None,
+        typer.Option("--band", metavar="FROM,TO", help='Band of frequencies, such as "100 Hz, 5 kHz"; by default that of the modes.'),
+    ] = None,
+    changes: Changes = None,
+    figures: Figures = False,
+    force: Force = False,
+    as_json: Json = False,
+) -> None:
+    """Lay records of a test over the simulation: residual, frequency responses, FRAC, and modal damping from the decay.
+
+    The case gives the plate, the sensors, which have the names of the records, and the impact; of a hammer whose force was measured only
+    where it hits.
+    """
+    from vibroimpact.cases.reader import load_case
+    from vibroimpact.correlation.correlate import correlate as correlated
+    from vibroimpact.correlation.document import summary_of_correlation
+    from vibroimpact.correlation.folder import save_correlation
+    from vibroimpact.correlation.text import correlation_summary
+    from vibroimpact.report.progress import patient_progress
+    from vibroimpact.results.folder import check_free
+    from vibroimpact.signals.read_records import read_records
+    from vibroimpact.units.reading import to_si
+
+    found = load_case(case, settings_of(changes))
+    target = Path(f"{stem(case)}-correlated") if output is None else output
+    check_free(target, force=force)
+    length = None if window is None else to_si(window, "s")
+    ends = None if band is None else pair_in("--band", band, "Hz", "a lower and an upper frequency", "100 Hz, 5 kHz")
+    heard = [record for path in records for record in read_records(path)]
+    push = None if hammer is None else _force_among(heard, hammer)
+    with exit_on_interrupt():
+        with patient_progress("correlating", console(err=as_json)) as progress:
+            motions = [record for record in heard if record is not push]
+            told = correlated(found, motions, force=push, window=length, band=ends, progress=progress)
+        folder = save_correlation(told, target, force=force, figures=("png",) if figures else ())
+    show(
+        lambda: {"folder": str(folder), **summary_of_correlation(told)},
+        lambda: correlation_summary(told),
+        as_json=as_json,
+    )
+    say(f"wrote {folder / 'report.html'}", err=as_json)
+
+
+def _force_among(records: list[Record], name: str) -> Record:
+    """Return the record of a channel.
+
+    Raises
+    ------
+    InputError
+        If there is none of this name, or several.
+    """
+    named = [record for record in records if record.name == name]
+    if len(named) != 1:
+        names = list(dict.fromkeys(record.name for record in records))
+        there = f"the records are {', '.join(map(shown, names))}.{did_you_mean(name, names)}"
+        raise InputError(f"--hammer {shown(name)}: there {'are several channels' if named else 'is no channel'} of this name; {there}")
+    return named[0]

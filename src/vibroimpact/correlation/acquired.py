@@ -1,0 +1,115 @@
+"""Records of a test: the motion of sensors and, if it was measured, the force of the hammer, hit by hit."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.dynamics.sensors.antialias import HALF_LENGTH
+from vibroimpact.dynamics.sensors.sensor import Sensor
+from vibroimpact.errors import InputError
+from vibroimpact.identification.measured import on_common_time, sensors_of
+from vibroimpact.shown import shown
+from vibroimpact.signals.onset import onset_time
+from vibroimpact.signals.packets import find_packets
+from vibroimpact.signals.record import Record
+
+_SAME_HIT = 0.05
+"""Pulses of force that follow each other within so long are one hit [s]."""
+_APART = 5e-4
+"""Pulses of force that are further apart than so long are two [s]."""
+LEAD = HALF_LENGTH + 1
+"""Samples before an onset that belong to it: as early as a converter's filter lets it be heard."""
+
+
+@dataclass(frozen=True)
+class Acquired:
+    """Records of a test on a common time.
+
+    Parameters
+    ----------
+    sensors : tuple of Sensor
+        The sensors, with the rate of the records.
+    value : array, shape (S, samples)
+        Their samples.
+    force : array, shape (samples,), or None
+        The force of the hammer [N].
+    start : float
+        Time of the first sample [s].
+    onsets : tuple of int
+        First sample of each hit; of one alone without a force.
+    ends : tuple of int
+        The sample after which the force of each hit is over; empty without a force.
+    pulses : int
+        Pulses of force: more than there are hits, if a hammer hit twice.
+    """
+
+    sensors: tuple[Sensor, ...]
+    value: Floats
+    force: Floats | None
+    start: float
+    onsets: tuple[int, ...]
+    ends: tuple[int, ...]
+    pulses: int
+
+    @property
+    def rate(self) -> float:
+        """Samples per second [Hz]."""
+        return self.sensors[0].rate
+
+    @property
+    def passed(self) -> float:
+        """Highest frequency that the sensors pass [Hz]."""
+        return min(0.45 * self.rate if one.filter == "sigma-delta" else one.corner or 0.4 * self.rate for one in self.sensors)
+
+
+def acquired_of(sensors: Sequence[Sensor], records: Sequence[Record], force: Record | None) -> Acquired:
+    """Return the records of a test.
+
+    Parameters
+    ----------
+    sensors : sequence of Sensor
+        The sensors of the case; they get the rate of the records.
+    records : sequence of Record
+        The records, named after the sensors.
+    force : Record, optional
+        The force of the hammer.
+
+    Raises
+    ------
+    InputError
+        If there is no record, no sensor of its name, its unit is another, rates differ, records do not overlap in time, one is constant or
+        not finite, or the force is not one.
+    """
+    every = [*records, *([] if force is None else [force])]
+    for one in every:
+        if one.rate != every[0].rate:
+            words = f"the record {shown(one.name)} has {one.rate:g} samples per second, and {shown(every[0].name)} {every[0].rate:g}"
+            raise InputError(f"{words}; give records of one acquisition, or resample one of them")
+        if not np.isfinite(one.value).all():
+            raise InputError(f"a sample of the record {shown(one.name)} is not a finite number; give it without gaps")
+    rate = every[0].rate if every else 1.0
+    used = sensors_of([replace(sensor, rate=rate) for sensor in sensors], records)
+    if force is not None and force.unit != "N":
+        raise InputError(f"the record {shown(force.name)} is in {force.unit}; the force of a hammer is in N")
+    whole, start = on_common_time(every)
+    if whole.shape[1] < 2 * LEAD:
+        raise InputError(f"the records have {whole.shape[1]} samples in common; they do not overlap in time, or are too short")
+    for one, value in zip(every, whole, strict=True):
+        if np.ptp(value) == 0.0:
+            raise InputError(f"the record {shown(one.name)} is constant where it overlaps with the others; it has no onset")
+    # without the offset of an amplifier; a median, since the plate is at rest or rings about it
+    whole = whole - np.median(whole, axis=1, keepdims=True)
+    value = whole[: len(records)]
+    if force is None:
+        onset = min(onset_time(Record(one.name, part, rate, one.unit)) for one, part in zip(records, value, strict=True))
+        return Acquired(used, value, None, start, (round(onset * rate),), (), 0)
+    push = whole[-1]
+    pulses = Record(force.name, push, rate, "N")
+    hits = find_packets(pulses, dead_time=_SAME_HIT)
+    number = len(find_packets(pulses, dead_time=_APART).first)
+    onsets, ends = (tuple(part.tolist()) for part in (hits.first, hits.last))
+    return Acquired(used, value, push, start, onsets, ends, number)

@@ -1,0 +1,130 @@
+"""The charts of a correlation: records over their simulation, what is left, frequency responses, criteria and modes."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vibroimpact.charts.axis import Axis
+from vibroimpact.charts.chart import Chart, Panel
+from vibroimpact.charts.marks import Bars, Line, Mark, Points, Rug
+from vibroimpact.correlation.correlate import Correlation
+from vibroimpact.correlation.document import what_frac_is_of
+from vibroimpact.shown import shortened, visible
+
+MOST = 8
+"""Number of records drawn; all are in the tables."""
+_HEIGHT = 2.8
+_BEGIN = 6e-3
+"""Time from the first touch on that is shown beside the whole [s]."""
+_LOOKS = (("measured", "main"), ("simulated", "fit"), ("residual", "mark line"))
+"""Names and roles of the lines of an overlay."""
+_DECADES = 4.0
+"""Decades below its peak down to which a response is shown."""
+
+
+def correlation_charts(found: Correlation) -> list[Chart]:
+    """Return the charts `overlay`, `responses`, `frac` and, if a damping was told, `damping`.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> plate = {"size": [0.3, 0.3, 0.02], "material": "steel", "model": "elastic", "modes": 10, "supports": "clamped", "damping": 0.01}
+    >>> case = vi.read_case({
+    ...     "sphere": {"radius": 0.02, "material": "steel"}, "plate": plate, "drop": {"speed": 1.0, "position": [0.02, 0.01]},
+    ...     "contact": {"law": "hertz"}, "run": {"duration": 0.1}, "sensors": [{"name": "a", "position": [0.1, 0.03], "rate": 20e3}],
+    ... })
+    >>> record = vi.Record("a", vi.simulate(case).signals()["a"].value, 20e3, "m/s2")
+    >>> found = vi.correlate(case, [record], window=0.05)
+    >>> [chart.name for chart in vi.correlation_charts(found)]
+    ['overlay', 'responses', 'frac', 'damping']
+    """
+    charts = [_overlay(found), _responses(found), _frac(found)]
+    return [*charts, *([_damping(found)] if any(pair.told for pair in found.modes) else [])]
+
+
+def _name(found: Correlation, number: int) -> str:
+    return shortened(visible(found.sensors[number].name), 40)
+
+
+def _overlay(found: Correlation) -> Chart:
+    begin, whole = Axis("Time since first touch", "s"), Axis("Time since first touch", "s")
+    rows: list[tuple[Panel, ...]] = []
+    early = found.time <= max(_BEGIN, float(found.time[0]) + _BEGIN)
+    for number, sensor in enumerate(found.sensors[:MOST]):
+        level = Axis(sensor.quantity.capitalize(), sensor.unit)
+        shown = ((begin, early, "the beginning"), (whole, slice(None), f"residual {100.0 * found.residual_part[number]:.1f} % (rms)"))
+        panels = []
+        for axis, part, words in shown:
+            values = (found.measured[number, part], found.simulated[number, part], found.residual[number, part])
+            lines = (Line(found.time[part], value, name, role) for value, (name, role) in zip(values, _LOOKS, strict=True))
+            panels.append(Panel(axis, level, tuple(lines), f"{_name(found, number)}: {words}"))
+        rows.append(tuple(panels))
+    caption = (
+        f"Each record, aligned by its beginning, the simulation, and the difference; of all what lies from {found.band[0]:.4g} to "
+        f"{found.band[1]:.4g} Hz."
+    )
+    return Chart("overlay", "Records and simulation", tuple(rows), caption, _HEIGHT)
+
+
+def _responses(found: Correlation) -> Chart:
+    axis = Axis("Frequency", "Hz", range=found.band)
+    rows: list[tuple[Panel, ...]] = []
+    computed = np.array([pair.frequency for pair in found.modes if pair.number is not None])
+    quantity = "Magnitude" if found.hits else "Amplitude"
+    for number, sensor in enumerate(found.sensors[:MOST]):
+        sizes = [np.abs(one[number]) for one in (found.measured_response, found.simulated_response)]
+        most = max(float(size.max(initial=0.0)) for size in sizes)
+        floor = 10.0**-_DECADES * most + 1e-300
+        shown = (floor, 2.0 * most) if most > 0.0 else None
+        scale = Axis(quantity, f"{sensor.unit}/N" if found.hits else sensor.unit, log=True, range=shown)
+        lines = [
+            Line(found.frequency, np.maximum(size, 1e-3 * floor), name, role) for size, (name, role) in zip(sizes, _LOOKS[:2], strict=True)
+        ]
+        marks: tuple[Mark, ...] = (*lines, Rug(computed, "modes of the case"))
+        panels = [Panel(axis, scale, marks, f"{_name(found, number)}: FRAC {found.frac[number]:.3f}")]
+        if found.coherence is not None:
+            level = Axis("Coherence", range=(0.0, 1.02))
+            panels.append(
+                Panel(axis, level, (Line(found.frequency, found.coherence[number], role="detail"),), "Coherence of force and record")
+            )
+        rows += [(panel,) for panel in panels]
+    what = "Frequency responses to the force (estimator H1)" if found.hits else "Spectra of record and simulation"
+    caption = f"{what}, of one window for both, so that they leak alike. Ticks are the modes of the case."
+    return Chart("responses", "Frequency responses" if found.hits else "Spectra", tuple(rows), caption, _HEIGHT)
+
+
+def _frac(found: Correlation) -> Chart:
+    names = tuple(f"{low:.4g} to {high:.4g} Hz" for low, high in found.octaves)
+    shown = found.octave_frac[:MOST]
+    width = 0.8 / len(shown)
+    marks = tuple(
+        Bars(
+            np.asarray(np.arange(len(names)) + (number - 0.5 * (len(shown) - 1)) * width),
+            np.nan_to_num(values),
+            _name(found, number),
+            f"series {number}",
+            width=width,
+        )
+        for number, values in enumerate(shown)
+    )
+    panel = Panel(Axis("Band", names=names), Axis("FRAC", range=(0.0, 1.0)), marks)
+    caption = (
+        f"Frequency response assurance criterion over each octave, of {what_frac_is_of(found)}. 1: alike but for a factor; "
+        "0: nothing in common."
+    )
+    return Chart("frac", "Frequency response assurance criterion", ((panel,),), caption, _HEIGHT)
+
+
+def _damping(found: Correlation) -> Chart:
+    told = [pair.measured for pair in found.modes if pair.measured is not None and not pair.measured.doubt]
+    intervals = np.array([mode.damping_ratio.interval for mode in told])
+    places = np.array([mode.frequency.value for mode in told])
+    ratios = np.array([mode.damping_ratio.value for mode in told])
+    of_case = [pair for pair in found.modes if pair.number is not None]
+    marks = (
+        Points(np.array([pair.frequency for pair in of_case]), np.array([pair.damping_ratio for pair in of_case]), "case", "other mark"),
+        Points(places, ratios, "measured, with its 95 % interval", "matched", low=intervals[:, 0], high=intervals[:, 1]),
+    )
+    panel = Panel(Axis("Frequency", "Hz", range=found.band), Axis("Damping ratio", range=(0.0, np.nan)), marks)
+    caption = "Damping ratios from the decay of the records, and those of the case."
+    return Chart("damping", "Modal damping", ((panel,),), caption, _HEIGHT)

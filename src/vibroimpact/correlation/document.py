@@ -1,0 +1,149 @@
+"""A correlation as data: its tables, and its summary, which `correlate --json` prints."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from vibroimpact._version import __version__
+from vibroimpact.correlation.correlate import Correlation
+from vibroimpact.correlation.mode_pairs import ModePair, damping_field
+from vibroimpact.shown import visible
+from vibroimpact.units.display import MISSING, digits
+
+RECORD_HEADERS = ("Record", "Polarity", "Correlation", "Measured over simulated", "Residual, %", "FRAC")
+"""Headers of the table of records."""
+MODE_HEADERS = (
+    "Mode",
+    "Computed, Hz",
+    "Measured, Hz",
+    "95 % ±",
+    "Difference, %",
+    "Damping ratio of the case",
+    "Measured damping ratio",
+    "95 % from",
+    "to",
+    "Remark",
+)
+"""Headers of the table of modes."""
+MODE_COLUMNS = (
+    "mode",
+    "case_frequency_Hz",
+    "case_damping_ratio",
+    "case_response",
+    "frequency_Hz",
+    "frequency_low_Hz",
+    "frequency_high_Hz",
+    "damping_ratio",
+    "damping_ratio_low",
+    "damping_ratio_high",
+    "told",
+    "remark",
+)
+"""Columns of `modes.csv`."""
+
+
+def what_frac_is_of(found: Correlation) -> str:
+    """Return of what the frequency response assurance criterion is."""
+    if not found.hits:
+        return "the spectra of the signals, since no force was measured"
+    return f"the frequency responses to the force, by H1 from {found.hits} hit{'s' if found.hits > 1 else ''}"
+
+
+def record_rows(found: Correlation) -> list[list[str]]:
+    """Return the cells of the table of records."""
+    columns = zip(found.sensors, found.polarity, found.coefficient, found.scale, found.residual_part, found.frac, strict=True)
+    return [
+        [
+            visible(sensor.name),
+            "turned" if sign < 0.0 else "as simulated",
+            f"{alike:.3f}",
+            digits(scale, 4),
+            f"{100.0 * part:.1f}",
+            f"{of:.3f}",
+        ]
+        for sensor, sign, alike, scale, part, of in columns
+    ]
+
+
+def octave_headers(found: Correlation) -> list[str]:
+    """Return the headers of the table of octaves."""
+    return ["Band", *(visible(sensor.name) for sensor in found.sensors)]
+
+
+def octave_rows(found: Correlation) -> list[list[str]]:
+    """Return the cells of the table of octaves: the criterion of each record over each, and over the whole band."""
+    whole = [f"{found.band[0]:.5g} to {found.band[1]:.5g} Hz, whole", *(f"{value:.3f}" for value in found.frac)]
+    parts = [
+        [f"{low:.5g} to {high:.5g} Hz", *(MISSING if np.isnan(value) else f"{value:.3f}" for value in values)]
+        for (low, high), values in zip(found.octaves, found.octave_frac.T, strict=True)
+    ]
+    return [whole, *parts]
+
+
+def mode_rows(found: Correlation) -> list[list[str]]:
+    """Return the cells of the table of modes."""
+    return [_mode_row(pair) for pair in found.modes]
+
+
+def _mode_row(pair: ModePair) -> list[str]:
+    number = MISSING if pair.number is None else str(pair.number)
+    computed, ratio = (MISSING if pair.number is None else digits(value, 5) for value in (pair.frequency, pair.damping_ratio))
+    if pair.measured is None:
+        return [number, computed, MISSING, MISSING, MISSING, ratio, MISSING, MISSING, MISSING, pair.remark]
+    mode = pair.measured
+    half = mode.frequency.interval[1] - mode.frequency.value
+    damping = [digits(value, 4) for value in (mode.damping_ratio.value, *mode.damping_ratio.interval)]
+    difference = MISSING if pair.number is None else f"{100.0 * pair.frequency_difference:+.2f}"
+    return [number, computed, digits(mode.frequency.value, 6), digits(half, 2), difference, ratio, *damping, pair.remark]
+
+
+def mode_table(found: Correlation) -> list[dict[str, Any]]:
+    """Return the modes as rows of `MODE_COLUMNS`; None where there is no number."""
+    return [dict(zip(MODE_COLUMNS, _mode_values(pair), strict=True)) for pair in found.modes]
+
+
+def _mode_values(pair: ModePair) -> list[Any]:
+    of_case = [pair.frequency, pair.damping_ratio, pair.response] if pair.number is not None else 3 * [None]
+    mode = pair.measured
+    measured = 6 * [None] if mode is None else [part for one in (mode.frequency, mode.damping_ratio) for part in (one.value, *one.interval)]
+    return [pair.number, *of_case, *measured, pair.told, pair.remark]
+
+
+def summary_of_correlation(found: Correlation) -> dict[str, Any]:
+    """Return the content of `summary.json`, and of what `correlate --json` prints."""
+    records = zip(
+        found.sensors,
+        found.polarity,
+        found.coefficient,
+        found.scale,
+        found.residual_part,
+        found.frac,
+        found.octave_frac,
+        strict=True,
+    )
+    return {
+        "name": found.case.name,
+        "version": __version__,
+        "band_Hz": list(found.band),
+        "rate_Hz": found.sensors[0].rate,
+        "first_touch_s": found.first_touch,
+        "delay_s": found.delay,
+        "hits": found.hits,
+        "octaves_Hz": [list(one) for one in found.octaves],
+        "records": {
+            sensor.name: {
+                "polarity": int(sign),
+                "correlation": float(alike),
+                "scale": float(scale),
+                "residual_rms_relative": float(part),
+                "frac": float(of),
+                "octave_frac": [None if np.isnan(value) else float(value) for value in octaves],
+            }
+            for sensor, sign, alike, scale, part, of, octaves in records
+        },
+        "modes": mode_table(found),
+        "damping": damping_field(found.modes),
+        "doubts": list(found.doubts),
+    }

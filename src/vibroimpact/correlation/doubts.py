@@ -1,0 +1,80 @@
+"""What is not sure about a correlation, and why."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from vibroimpact.correlation.acquired import Acquired
+from vibroimpact.dynamics.problem import Problem
+from vibroimpact.shown import shown
+from vibroimpact.signals.block import Block
+from vibroimpact.signals.delay import Delay
+from vibroimpact.signals.features.clipping import FAMILY as CLIPPING
+
+_ALIKE = 0.7
+"""Correlation coefficient below which the delay may be off by a period."""
+_TOGETHER = 0.5
+"""Delay behind a force of the same acquisition that is none, in samples."""
+_SOFT = 0.1
+"""Part of the force's spectrum at low frequencies below which it excites nothing."""
+
+
+def doubts_about(problem: Problem, acquired: Acquired, delay: Delay, band: tuple[float, float], over: float) -> Iterator[str]:
+    """Yield the doubts about a correlation, one sentence each without its full stop.
+
+    Parameters
+    ----------
+    problem : Problem
+        The problem of the case.
+    acquired : Acquired
+        The records.
+    delay : Delay
+        How they were aligned.
+    band : tuple of two floats
+        The band of frequencies [Hz].
+    over : float
+        How long the force acts [s].
+    """
+    rates = {sensor.rate for sensor in problem.sensors if sensor.name in {one.name for one in acquired.sensors}} - {acquired.rate}
+    if rates:
+        others = ", ".join(f"{rate:g}" for rate in sorted(rates))
+        yield f"the records have {acquired.rate:g} samples per second, and the case says {others}: it was simulated at those of the records"
+    for sensor, value, sign, alike in zip(acquired.sensors, acquired.value, delay.polarity, delay.correlation, strict=True):
+        name = shown(sensor.name)
+        if sign < 0.0:
+            yield f"the record {name} is upside down, and is turned"
+        if alike < _ALIKE:
+            yield f"the beginnings of {name} and of its simulation are not alike (correlation {alike:.2f}): the delay may be a period off"
+        yield from _clipped(f"the record {name}", value, acquired.rate)
+    if acquired.force is not None:
+        yield from _of_force(acquired, delay, band, over)
+    assert problem.plate.modes is not None
+    highest = float(problem.plate.modes.frequencies[-1])
+    if highest < band[1]:
+        yield f"the modes of the case end at {highest:.5g} Hz, and the band at {band[1]:.5g} Hz: ask for more modes"
+
+
+def _clipped(what: str, value: np.ndarray, rate: float) -> Iterator[str]:
+    part = float(CLIPPING.of(Block(value[None], rate))[0, 0])
+    if part > 0.0:
+        yield f"{what} is clipped: {max(1, round(part * len(value)))} samples lie at its extremes; damping is told by what follows"
+
+
+def _of_force(acquired: Acquired, delay: Delay, band: tuple[float, float], over: float) -> Iterator[str]:
+    """Yield the doubts about the force of a hammer."""
+    assert acquired.force is not None
+    yield from _clipped("the force", acquired.force, acquired.rate)
+    samples = delay.time * acquired.rate
+    if abs(samples) > _TOGETHER:
+        yield f"the records come {samples:.3g} samples after what the force lets expect: the channels were not sampled together"
+    if acquired.pulses > len(acquired.onsets):
+        yield f"the hammer hit twice: there are {acquired.pulses} pulses of force in {len(acquired.onsets)} hits"
+    begin = acquired.onsets[0]
+    pulse = acquired.force[begin : begin + max(4, int(np.ceil(over * acquired.rate)) + 2)]
+    spectrum = np.abs(np.fft.rfft(pulse, 4096))
+    frequency = np.fft.rfftfreq(4096, 1.0 / acquired.rate)
+    weak = frequency[(spectrum < _SOFT * spectrum[0]) & (frequency <= band[1])]
+    if len(weak):
+        yield f"the force is 20 dB down at {weak[0]:.4g} Hz, and excites little above; take a harder tip, or a band that ends there"

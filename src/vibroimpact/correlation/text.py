@@ -1,0 +1,43 @@
+"""What the correlate command prints."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rich.console import Group, RenderableType
+from rich.text import Text
+
+from vibroimpact.correlation.correlate import Correlation
+from vibroimpact.correlation.document import (
+    MODE_HEADERS,
+    RECORD_HEADERS,
+    mode_rows,
+    octave_headers,
+    octave_rows,
+    record_rows,
+    what_frac_is_of,
+)
+from vibroimpact.correlation.mode_pairs import damping_field
+from vibroimpact.report.terminal_table import TerminalColumn, TerminalTable
+from vibroimpact.runs.text import doubt_lines
+
+
+def correlation_summary(found: Correlation) -> RenderableType:
+    """Return how records and simulation agree, the modes of both, the damping to be put into the case, and the doubts, for the terminal."""
+    octaves = octave_rows(found)
+    parts: list[RenderableType] = [
+        Text(found.case.name or "a test", style="bold"),
+        _table(RECORD_HEADERS, record_rows(found), ("Record", "Polarity")),
+        Text(f"\nFRAC of {what_frac_is_of(found)}"),
+        _table(octave_headers(found), octaves, ("Band",)),
+        Text("\nmodes"),
+        _table(MODE_HEADERS, mode_rows(found), ("Remark",)),
+    ]
+    if damping := damping_field(found.modes):
+        parts.append(Text(f"\nin [plate] of the case:\n{damping}"))
+    return Group(*parts, *doubt_lines(found.doubts))
+
+
+def _table(headers: Sequence[str], rows: Sequence[Sequence[str]], texts: Sequence[str]) -> TerminalTable:
+    columns = zip(headers, zip(*rows, strict=True), strict=True) if rows else ((head, ()) for head in headers)
+    return TerminalTable([TerminalColumn(head, cells, text=head in texts) for head, cells in columns])

@@ -1,0 +1,1 @@
+"""Modal frequencies and damping ratios from the decay of records."""

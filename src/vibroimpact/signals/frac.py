@@ -1,0 +1,54 @@
+"""The frequency response assurance criterion: how much two frequency responses are alike."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.errors import InputError
+
+
+def frac(measured: object, simulated: object) -> Floats:
+    r"""Return the frequency response assurance criterion of two frequency responses, or of two spectra.
+
+    .. math:: \mathrm{FRAC} = \frac{|\sum_k H_m^* H_s|^2}{\sum_k |H_m|^2 \sum_k |H_s|^2}
+
+    It is 1 if one is a multiple of the other at all frequencies, and 0 if they have nothing in common. It does not tell a wrong size, and
+    shifted resonances lower it much: of two light resonances whose frequencies are a half-power bandwidth apart it is 0.5.
+
+    Parameters
+    ----------
+    measured, simulated : array of complex, shape (..., frequencies)
+        The responses at the same frequencies.
+
+    Returns
+    -------
+    array, shape (...)
+        The criterion; NaN where one of the responses is zero throughout.
+
+    Raises
+    ------
+    InputError
+        If the shapes differ.
+
+    References
+    ----------
+    Heylen, W. and Lammens, S. (1996). FRAC: a consistent way of comparing frequency response functions. Proceedings of the Conference on
+    Identification in Engineering Systems, Swansea, 48-57.
+    Allemang, R. J. (2003). The modal assurance criterion: twenty years of use and abuse. Sound and Vibration 37(8), 14-21.
+
+    Examples
+    --------
+    >>> response = np.array([1.0, 2.0j, -1.0])
+    >>> float(frac(response, -3.0 * response)), round(float(frac(response, [1.0, 1.0j, 1.0])), 6)
+    (1.0, 0.222222)
+    """
+    one, other = np.asarray(measured), np.asarray(simulated)
+    if one.shape != other.shape or one.ndim == 0:
+        raise InputError(f"responses of the shapes {one.shape} and {other.shape} can't be compared; give both at the same frequencies")
+    # sizes do not count: scaled, so that no square overflows or vanishes
+    sizes = [np.max(np.abs(each), axis=-1, keepdims=True, initial=0.0) for each in (one, other)]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        one, other = one / sizes[0], other / sizes[1]
+        common = np.abs(np.sum(one.conj() * other, axis=-1)) ** 2
+        return np.asarray(common / (np.sum(np.abs(one) ** 2, axis=-1) * np.sum(np.abs(other) ** 2, axis=-1)))

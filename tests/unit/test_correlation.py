@@ -1,0 +1,235 @@
+"""Records of a test beside the simulation: of an impact that the program simulates, and of a hammer by a superposition of SciPy."""
+
+from __future__ import annotations
+
+import csv
+import json
+import sys
+import tomllib
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import tomli_w
+
+import vibroimpact as vi
+from hammered import RATE, TABLE, a_case, hammered, records
+from vibroimpact.cli import main
+from vibroimpact.correlation.correlate import Correlation
+from vibroimpact.signals.record import Record
+
+DROP = {"drop": {"height": 0.03, "position": TABLE["drop"]["position"]}}
+
+
+@cache
+def fallen() -> tuple[float, tuple[Record, ...]]:
+    """First touch [s], and the noisy records of a ball that falls from 3 cm at another rate than the case says, one upside down."""
+    sensors = [{**one, "rate": RATE} for one in TABLE["sensors"]]
+    response = vi.simulate(vi.read_case({**TABLE, **DROP, "sensors": sensors, "run": {"impacts": 2}}))
+    value = np.stack([one.value for one in response.signals().values()])
+    touch, after = response.impacts["time_s"][:2]
+    value = value[:, : int(after * RATE) - 40] * [[-1.0], [1.0]]
+    return float(touch), tuple(records(value, 40.0, seed=7))
+
+
+@cache
+def dropped() -> Correlation:
+    return vi.correlate(vi.read_case({**TABLE, **DROP}), fallen()[1], window=0.15)
+
+
+@cache
+def struck(damping: float = 0.008) -> Correlation:
+    """Two blows, and the records of a plate of damping 0.008, beside the case with another."""
+    force, value = hammered((0.02, 0.24), 0.45)
+    return vi.correlate(a_case(damping=damping), records(value), force=Record("hammer", force, RATE, "N"))
+
+
+def test_the_delay_is_found_to_a_part_of_a_sample() -> None:
+    touch, _ = fallen()
+    assert dropped().first_touch * RATE == pytest.approx(touch * RATE, abs=0.01)
+    assert abs(touch * RATE - round(touch * RATE)) > 0.05  # not at a sample
+    assert dropped().polarity.tolist() == [-1.0, 1.0]
+    assert (dropped().coefficient > 0.995).all()
+
+
+def test_what_is_left_of_an_impact_is_the_noise() -> None:
+    found = dropped()
+    assert (found.residual_part < 0.015).all()
+    assert found.scale == pytest.approx(np.ones(2), abs=0.01)
+    assert (found.frac > 0.999).all()
+    assert found.hits == 0
+    assert found.coherence is None
+    words = " ".join(found.doubts)
+    assert "12800 samples per second, and the case says 25600" in words
+    assert 'the record "a1" is upside down, and is turned' in words
+
+
+@pytest.mark.parametrize("found", [dropped, struck])
+def test_frequencies_and_damping_are_those_of_the_case(found: Callable[[], Correlation]) -> None:
+    pairs = [pair for pair in found().modes if pair.measured is not None]
+    assert len(pairs) >= 7
+    inside = []
+    for pair in pairs:
+        assert pair.measured is not None
+        assert pair.number is not None
+        assert abs(pair.frequency_difference) < max(1e-4, 3.5 * pair.measured.frequency.deviation / pair.frequency)
+        assert abs(np.log(pair.measured.damping_ratio.value / 0.008)) < 3.5 * pair.measured.damping_ratio.deviation
+        inside.append(pair.measured.damping_ratio.interval[0] <= 0.008 <= pair.measured.damping_ratio.interval[1])
+    assert np.mean(inside) > 0.7
+    assert min(abs(pair.frequency_difference) for pair in pairs) < 1e-5
+
+
+def test_a_hammer_by_another_superposition() -> None:
+    found = struck()
+    assert found.hits == 2
+    assert abs(found.delay) * RATE < 0.01
+    assert (found.residual_part < 0.015).all()
+    assert found.scale == pytest.approx(np.ones(2), abs=0.005)
+    assert (found.octave_frac[:, :3] > 0.999).all()  # where the force has much
+    assert found.octaves[1] == pytest.approx((353.55, 707.11), rel=1e-4)
+    assert found.coherence is not None
+    assert (found.coherence[:, found.frequency < 700.0] > 0.99).all()
+    assert any("the force is 20 dB down at 1" in doubt for doubt in found.doubts)
+
+
+def test_frequency_responses_are_those_of_the_modes() -> None:
+    """Beside the first resonance, where the window smears little: a/F is the sum over modes, and what is left out of it."""
+    from vibroimpact.cases.build import problem_of
+
+    modes = problem_of(a_case()).plate.modes
+    assert modes is not None
+    found = struck()
+    omega = 2.0 * np.pi * found.frequency[:, None]
+    resonances = omega**2 / (modes.angular_frequencies**2 - omega**2 + 2j * modes.damping_ratios * modes.angular_frequencies * omega)
+    for number, name in enumerate(("a1", "a2")):
+        response = resonances @ (modes.contact * modes.points[name][:, 2]) + omega[:, 0] ** 2 * modes.residuals[name][2]
+        beside = (found.frequency > 550.0) & (found.frequency < 650.0)
+        assert np.abs(found.measured_response[number, beside]) == pytest.approx(np.abs(response[beside]), rel=0.05)
+
+
+def test_a_wrong_damping_is_seen() -> None:
+    found = struck(0.02)
+    assert (found.residual_part > 0.3).all()
+    assert (found.octave_frac[:, 1] < 0.9).all()
+    measured = [pair.measured for pair in found.modes if pair.measured is not None]
+    assert measured[0].damping_ratio.value == pytest.approx(0.008, rel=0.01)
+    assert found.modes[0].damping_ratio == 0.02
+
+
+def test_the_damping_is_put_into_the_case() -> None:
+    from vibroimpact.correlation.mode_pairs import damping_field
+
+    found = struck(0.02)
+    field = tomllib.loads(damping_field(found.modes))["damping"]
+    assert (struck(0.008).residual_part < 0.015).all()
+    force, value = hammered((0.02, 0.24), 0.45)
+    again = vi.correlate(a_case(damping=field), records(value), force=Record("hammer", force, RATE, "N"), band=(300.0, 1100.0))
+    assert (again.residual_part < 0.015).all()
+
+
+def test_what_a_hammer_may_do() -> None:
+    force, value = hammered((0.02, 0.024), 0.2)
+    most = 0.4 * np.abs(value).max()
+    clipped = [replace(one, value=np.clip(one.value, -most, most)) for one in records(value)]
+    found = vi.correlate(a_case(), clipped, force=Record("hammer", force, RATE, "N"), band=(300.0, 1100.0))
+    words = " ".join(found.doubts)
+    assert "the hammer hit twice: there are 2 pulses of force in 1 hits" in words
+    assert 'the record "a' in words
+    assert "is clipped" in words
+    assert found.hits == 1
+
+
+def test_channels_that_were_not_sampled_together_are_told() -> None:
+    force, value = hammered((0.02,), 0.2)
+    late = records(np.roll(value, 3, axis=1))
+    found = vi.correlate(a_case(), late, force=Record("hammer", force, RATE, "N"), band=(300.0, 1100.0))
+    assert found.delay * RATE == pytest.approx(3.0, abs=0.01)
+    assert "samples after what the force lets expect" in " ".join(found.doubts)
+
+
+def changed(**one: Any) -> list[Record]:
+    first, *others = records(hammered()[1])
+    return [replace(first, **one), *others]
+
+
+@pytest.mark.parametrize(
+    ("change", "options", "words"),
+    [
+        ({"name": "a3"}, {}, 'no sensor "a3"; it has "a1", "a2"'),
+        ({"unit": "V"}, {}, '"a1" is in V'),
+        ({"rate": 10e3}, {}, "give records of one acquisition, or resample"),
+        ({"start": 5.0}, {}, "do not overlap in time"),
+        ({"start": 0.3 / RATE}, {}, "not sampled at the same instants"),
+        ({"value": np.zeros(5120)}, {}, '"a1" is constant'),
+        ({"value": np.full(5120, np.nan)}, {}, '"a1" is not a finite number'),
+        ({}, {"window": 1e-3}, "64 are needed"),
+        ({}, {"window": -1.0}, "it is above 0"),
+        ({}, {"band": (100.0, 7e3)}, "5760 Hz"),
+        ({}, {"force": Record("hammer", np.ones(5120), RATE, "V")}, "the force of a hammer is in N"),
+    ],
+)
+def test_what_is_refused(change: dict[str, Any], options: dict[str, Any], words: str) -> None:
+    with pytest.raises(vi.InputError, match=f"(?i){words}"):
+        vi.correlate(a_case(), changed(**change), **options)
+
+
+def test_no_records_are_refused() -> None:
+    with pytest.raises(vi.InputError, match="there is no record"):
+        vi.correlate(a_case(), [])
+
+
+@pytest.mark.parametrize(
+    ("table", "words"),
+    [
+        ({"plate": {"size": [0.4, 0.3, 0.012], "material": "steel"}, "sensors": []}, 'give it model = "elastic"'),
+        ({"sensors": []}, "the case has no sensors"),
+        ({"drop": {"speed": 0.5, "angle": 0.2}}, "along the normal"),
+    ],
+)
+def test_cases_that_are_refused(table: dict[str, Any], words: str) -> None:
+    with pytest.raises(vi.InputError, match=words):
+        vi.correlate(vi.read_case({**TABLE, **table}), changed())
+
+
+def test_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.chdir(tmp_path)
+
+    def call(*words: str) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", ["vibroimpact", *words])
+        with pytest.raises(SystemExit) as left:
+            main()
+        return int(left.value.code or 0), *capsys.readouterr()
+
+    force, value = hammered((0.02,), 0.2)
+    Path("case.toml").write_text(tomli_w.dumps(TABLE))
+    table = np.column_stack([np.arange(len(force)) / RATE, force, value.T / 9.80665])
+    np.savetxt("tap.csv", table, delimiter=",", header="time [s],hammer [N],a1 [g],a2 [g]", comments="")
+    code, out, _ = call("correlate", "case.toml", "tap.csv", "--hammer", "hammer", "-o", "found", "--band", "300 Hz, 1.7 kHz")
+    assert code == 0
+    assert "FRAC of the frequency responses to the force, by H1 from 1 hit" in out
+    assert "damping = { frequencies = [" in out
+    files = {"case.toml", "modes.csv", "overlay.csv", "report.html", "responses.csv", "summary.json"}
+    assert {one.name for one in Path("found").iterdir()} == files
+    rows = list(csv.DictReader(Path("found/overlay.csv").read_text().splitlines()))
+    parts = [np.array([float(row[f"a2_{name}"]) for row in rows]) for name in ("measured", "simulated", "residual")]
+    assert parts[0] - parts[1] == pytest.approx(parts[2], abs=1e-6)
+    code, out, _ = call("correlate", "case.toml", "tap.csv", "--hammer", "hammer", "-o", "again", "--band", "300 Hz, 1.7 kHz", "--json")
+    assert code == 0
+    told = json.loads(out)
+    assert told["records"]["a1"]["frac"] > 0.999
+    assert told["modes"][0]["damping_ratio"] == pytest.approx(0.008, rel=1e-3)
+    assert {key: one for key, one in told.items() if key != "folder"} == json.loads(Path("again/summary.json").read_text())
+    for words, message in (
+        (("tap.csv", "-o", "new"), 'no sensor "hammer"'),
+        (("tap.csv", "-o", "new", "--hammer", "hamer"), "did you mean"),
+        (("tap.csv", "-o", "new", "--band", "300 Hz"), "give a lower and an upper frequency"),
+        (("tap.csv", "-o", "found"), "there already"),
+    ):
+        code, _, err = call("correlate", "case.toml", *words)
+        assert code == 2
+        assert message in err.lower()
+    assert not Path("new").exists()

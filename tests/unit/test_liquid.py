@@ -1,0 +1,133 @@
+"""Cases, studies and exports of impacts in a liquid."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import vibroimpact as vi
+from support import plain_case
+from vibroimpact.cases.build import resolved_case
+from vibroimpact.cases.conditions import Conditions
+from vibroimpact.cases.expected import expected_of
+from vibroimpact.cases.keys import with_values
+from vibroimpact.cases.limit import numbers_of
+from vibroimpact.dynamics.liquid import restitution_kept
+from vibroimpact.exporting.load_drop import load_drop as drop_in_folder
+from vibroimpact.exporting.rigid_drop import as_rigid
+from vibroimpact.runs.case_document import case_document
+
+
+def wet(liquid: Any = True, **changes: Any) -> dict[str, Any]:
+    """A drop in a liquid."""
+    contact = {"law": "tsuji", "restitution": 0.8, "liquid": liquid}
+    return plain_case(**{"contact": contact, "drop": {"speed": 1.0}, **changes})
+
+
+def test_water_is_the_liquid_by_default_and_the_case_comes_back() -> None:
+    case = vi.read_case(wet())
+    assert case.contact.local.liquid is not None
+    assert case.contact.local.liquid.model_dump() == {"density": 998.2, "viscosity": 1.002e-3}
+    again = vi.read_case(resolved_case(case))
+    assert again.contact.local == case.contact.local
+    assert vi.read_case(wet(False)).contact.local.liquid is None
+    assert "liquid" not in resolved_case(vi.read_case(wet(False)))["contact"]
+
+
+def test_a_check_tells_what_is_left_and_a_run_achieves_it() -> None:
+    case = vi.read_case(wet({"viscosity": "0.3 Pa s"}))
+    told = case_document(case)["first_impact"]
+    first = {name: values[0] for name, values in vi.simulate(case).impacts.items()}
+    assert first["restitution_asked"] == pytest.approx(told["restitution_asked"], rel=1e-12)
+    assert first["restitution_achieved"] == pytest.approx(told["restitution_achieved"], rel=1e-2)  # gravity
+    assert case_document(case)["case"]["contact"]["restitution"] == 0.8
+    assert 0.2 < told["restitution_asked"] < 0.7
+
+
+def test_a_check_tells_what_to_ask_in_air() -> None:
+    contact = {"law": "hunt-crossley", "restitution": 0.8, "liquid": {"viscosity": "0.1 Pa s"}}
+    told = case_document(vi.read_case(wet(contact=contact)))["first_impact"]
+    again = case_document(vi.read_case(wet(contact={**contact, "restitution": told["restitution_to_ask"]})))["first_impact"]
+    assert told["restitution_achieved"] > told["restitution_asked"] + 0.02
+    assert again["restitution_achieved"] == pytest.approx(told["restitution_asked"], rel=1e-6)
+
+
+def test_the_ledger_and_the_history_know_of_it() -> None:
+    response = vi.simulate(vi.read_case(wet({"viscosity": "0.3 Pa s"}, run={"impacts": 3})))
+    assert response.energy["closure_relative"] < 1e-9
+    lost = response.impacts["energy_lost_J"].sum()
+    assert response.history()["contact_dissipated_J"].max() == pytest.approx(lost, rel=1e-6)
+
+
+def test_an_elastic_plate_is_hit_in_it() -> None:
+    plate = {"size": [0.4, 0.3, 0.02], "material": "steel", "model": "elastic", "supports": "clamped", "modes": 5, "damping": 0.02}
+    impacts = {
+        viscosity: vi.simulate(vi.read_case(wet({"viscosity": viscosity}, plate=plate, run={"impacts": 1}))).impacts
+        for viscosity in (1e-9, 0.5)
+    }
+    thin, thick = (found["restitution_achieved"][0] for found in impacts.values())
+    assert thick < 0.75 * thin
+    assert "sensitivity" not in impacts[0.5]
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"contact": {"law": "hertz", "liquid": True}}, "contact.liquid: hertz takes no restitution, of which a liquid leaves a part"),
+        ({"plate": {"material": "steel", "radius": 0.1}}, "contact.liquid: what a liquid leaves of the restitution is known for a sphere"),
+        ({"drop": {"height": 1.0, "air": True}}, "drop.air: the sphere meets the plate in a liquid"),
+        ({"contact": {"law": "tsuji", "restitution": 0.8, "liquid": "water"}}, "contact.liquid: .*it must be true, false, or a table"),
+        ({"contact": {"law": "tsuji", "restitution": 0.8, "liquid": {"viscosty": 1.0}}}, "Did you mean"),
+        ({"contact": {"law": "tsuji", "restitution": 0.8, "liquid": {"viscosity": 0.0}}}, "contact.liquid.viscosity"),
+    ],
+)
+def test_what_is_not_known_is_refused(change: dict[str, Any], words: str) -> None:
+    with pytest.raises(vi.InputError, match=words):
+        vi.read_case(wet(**change))
+
+
+def test_problems_check_their_liquid() -> None:
+    problem = vi.read_case(wet()).to_problem()
+    parts = {"sphere": problem.sphere, "plate": problem.plate, "speed": 1.0}
+    with pytest.raises(vi.InputError, match="liquid must be a Liquid"):
+        vi.Problem(**parts, laws=problem.laws, liquid=1.0)  # type: ignore[arg-type]
+    with pytest.raises(vi.InputError, match="hertz takes no restitution"):
+        vi.Problem(**parts, laws=(vi.find_contact_law("hertz")(stiffness=1e9),), liquid=vi.Liquid())
+    with pytest.raises(vi.InputError, match="viscosity of a liquid must be a finite number greater than 0"):
+        vi.Liquid(viscosity=[1.0, -1.0])
+
+
+def test_studies_sweep_it_as_arrays(tmp_path: Path) -> None:
+    over = {"contact.liquid.viscosity": ["1 mPa s", "100 mPa s", "10 Pa s"], "drop.speed": [1.0, 2.0]}
+    sweep = vi.read_sweep({**wet(run={"impacts": 1}), "sweep": {"over": over}})
+    study = vi.read_study(vi.run_sweep(sweep, tmp_path / "study"))
+    singly = [float(vi.simulate(sweep.case_of(drop)).impacts["restitution_achieved"][0]) for drop in range(6)]
+    np.testing.assert_allclose(study.values("first_restitution_achieved").ravel(), singly, rtol=1e-9)
+    stokes = 10.0 / study.values("limit_no_rebound")
+    np.testing.assert_allclose(study.values("first_restitution_asked"), 0.8 * restitution_kept(stokes), rtol=1e-5)
+    assert study.values("limit_no_rebound").argmax() == 4
+
+
+def test_too_slow_an_impact_is_doubted() -> None:
+    def number(viscosity: str) -> float:
+        case = vi.read_case(wet({"viscosity": viscosity}))
+        return float(numbers_of(Conditions(resolved_case(case), expected_of(case)))["no_rebound"])
+
+    assert number("0.5 Pa s") < 1.0 < number("2 Pa s")
+    assert any(
+        "spheres were seen to stay on the wall" in doubt for doubt in case_document(vi.read_case(wet({"viscosity": "2 Pa s"})))["doubts"]
+    )
+
+
+def test_programs_do_not_get_it(tmp_path: Path) -> None:
+    vi.simulate(vi.read_case(wet(drop={"height": 0.5}))).save(tmp_path / "run")
+    with pytest.raises(vi.InputError, match="programs get contacts without a liquid"):
+        as_rigid(drop_in_folder(tmp_path / "run"))
+
+
+def test_single_keys_of_it_are_set() -> None:
+    table = with_values(wet(), {"contact.liquid.viscosity": "0.2 Pa s"})
+    assert table["contact"]["liquid"] == {"viscosity": "0.2 Pa s"}
