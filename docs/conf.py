@@ -84,7 +84,7 @@ html_theme_options = {
 }
 
 
-PAGES_OF_FILES = {"README.md#use": "use.md", "CHANGELOG.md": "changelog.md"}
+PAGES_OF_FILES = {"README.md#use": "use.md", "CHANGELOG.md": "changelog.md", "CONTRIBUTING.md": "contributing.md"}
 LAWS = """
 ```{toctree}
 :hidden:
