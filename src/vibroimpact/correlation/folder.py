@@ -11,7 +11,6 @@ import numpy as np
 import tomli_w
 
 from vibroimpact._version import __version__
-from vibroimpact.arrays import Floats
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.charts.figures_folder import write_figures
 from vibroimpact.correlation.charts import correlation_charts
@@ -31,7 +30,7 @@ from vibroimpact.correlation.document import (
 from vibroimpact.correlation.mode_pairs import damping_field
 from vibroimpact.files.plain_names import plain_names
 from vibroimpact.report.page import render_page
-from vibroimpact.results.csv_files import write_csv
+from vibroimpact.results.csv_files import write_columns, write_csv
 from vibroimpact.results.folder import SUMMARY, new_folder
 
 
@@ -84,8 +83,8 @@ def save_correlation(found: Correlation, directory: str | PathLike[str], *, forc
                 responses |= {f"{name}_{what}_magnitude": np.abs(response[number]), f"{name}_{what}_phase_rad": np.angle(response[number])}
             if found.coherence is not None:
                 responses[f"{name}_coherence"] = found.coherence[number]
-        _write_columns(overlay, folder / "overlay.csv")
-        _write_columns(responses, folder / "responses.csv")
+        write_columns(overlay, folder / "overlay.csv")
+        write_columns(responses, folder / "responses.csv")
         write_csv(mode_table(found), list(MODE_COLUMNS), folder / "modes.csv")
         (folder / SUMMARY).write_text(json.dumps(summary_of_correlation(found), indent=2, allow_nan=False) + "\n", encoding="utf-8")
         (folder / "case.toml").write_text(tomli_w.dumps(resolved_case(found.case)), encoding="utf-8")
@@ -108,9 +107,3 @@ def save_correlation(found: Correlation, directory: str | PathLike[str], *, forc
         )
         (folder / "report.html").write_text(page, encoding="utf-8")
     return Path(directory)
-
-
-def _write_columns(columns: dict[str, Floats], path: Path) -> None:
-    names = list(columns)
-    rows = [dict(zip(names, row, strict=True)) for row in np.stack(list(columns.values()), axis=1).tolist()]
-    write_csv(rows, names, path)
