@@ -55,6 +55,10 @@ NOT_RUN = {
     "vibroimpact recognise grains -o recognised --group rock": "of the same",
     "vibroimpact reproduce -o paper-whole": "minutes; tests/published has the page",
     'pip install "vibroimpact[app]"': "installs",
+    "pipx install .": "installs",
+    "uvx --from . vibroimpact demo": "installs; make package tries the command",
+    "podman build -t vibroimpact -f packaging/Containerfile .": "needs a container engine",
+    'podman run --rm -v "$PWD":/work vibroimpact demo': "needs a container engine",
     "vibroimpact serve": "runs until it is ended; tests/page tries it",
 }
 """Commands of the pages that no test here runs, and why."""
