@@ -199,7 +199,6 @@ LONG_EXAMPLES = {
     "pictures_of_guides",
     "pictures_of_pages",
     "ringing_plate",
-    "tolerances",
 }
 
 
