@@ -58,7 +58,7 @@ def test_the_delay_is_found_to_a_part_of_a_sample() -> None:
 
 def test_what_is_left_of_an_impact_is_the_noise() -> None:
     found = dropped()
-    assert (found.residual_part < 0.015).all()
+    assert (found.relative_residual < 0.015).all()
     assert found.scale == pytest.approx(np.ones(2), abs=0.01)
     assert (found.frac > 0.999).all()
     assert found.hits == 0
@@ -87,7 +87,7 @@ def test_a_hammer_by_another_superposition() -> None:
     found = struck()
     assert found.hits == 2
     assert abs(found.delay) * RATE < 0.01
-    assert (found.residual_part < 0.015).all()
+    assert (found.relative_residual < 0.015).all()
     assert found.scale == pytest.approx(np.ones(2), abs=0.005)
     assert (found.octave_frac[:, :3] > 0.999).all()  # where the force has much
     assert found.octaves[1] == pytest.approx((353.55, 707.11), rel=1e-4)
@@ -113,7 +113,7 @@ def test_frequency_responses_are_those_of_the_modes() -> None:
 
 def test_a_wrong_damping_is_seen() -> None:
     found = struck(0.02)
-    assert (found.residual_part > 0.3).all()
+    assert (found.relative_residual > 0.3).all()
     assert (found.octave_frac[:, 1] < 0.9).all()
     measured = [pair.measured for pair in found.modes if pair.measured is not None]
     assert measured[0].damping_ratio.value == pytest.approx(0.008, rel=0.01)
@@ -125,10 +125,10 @@ def test_the_damping_is_put_into_the_case() -> None:
 
     found = struck(0.02)
     field = tomllib.loads(damping_field(found.modes))["damping"]
-    assert (struck(0.008).residual_part < 0.015).all()
+    assert (struck(0.008).relative_residual < 0.015).all()
     force, value = hammered((0.02, 0.24), 0.45)
     again = vi.correlate(a_case(damping=field), records(value), force=Record("hammer", force, RATE, "N"), band=(300.0, 1100.0))
-    assert (again.residual_part < 0.015).all()
+    assert (again.relative_residual < 0.015).all()
 
 
 def test_what_a_hammer_may_do() -> None:
