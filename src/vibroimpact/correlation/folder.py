@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from os import PathLike
 from pathlib import Path
@@ -31,7 +30,7 @@ from vibroimpact.correlation.mode_pairs import damping_field
 from vibroimpact.files.plain_names import plain_names
 from vibroimpact.report.page import render_page
 from vibroimpact.results.csv_files import write_columns, write_csv
-from vibroimpact.results.folder import SUMMARY, new_folder
+from vibroimpact.results.folder import new_folder, write_summary
 
 
 def save_correlation(found: Correlation, directory: str | PathLike[str], *, force: bool = False, figures: Sequence[str] = ()) -> Path:
@@ -86,7 +85,7 @@ def save_correlation(found: Correlation, directory: str | PathLike[str], *, forc
         write_columns(overlay, folder / "overlay.csv")
         write_columns(responses, folder / "responses.csv")
         write_csv(mode_table(found), list(MODE_COLUMNS), folder / "modes.csv")
-        (folder / SUMMARY).write_text(json.dumps(summary_of_correlation(found), indent=2, allow_nan=False) + "\n", encoding="utf-8")
+        write_summary(summary_of_correlation(found), folder)
         (folder / "case.toml").write_text(tomli_w.dumps(resolved_case(found.case)), encoding="utf-8")
         charts = correlation_charts(found)
         write_figures(charts, folder, figures)

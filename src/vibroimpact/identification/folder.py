@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from os import PathLike
 from pathlib import Path
@@ -17,7 +16,7 @@ from vibroimpact.identification.document import HEADERS, identification_rows, su
 from vibroimpact.identification.identify import Identification
 from vibroimpact.report.page import render_page
 from vibroimpact.results.csv_files import write_columns
-from vibroimpact.results.folder import SUMMARY, new_folder
+from vibroimpact.results.folder import new_folder, write_summary
 from vibroimpact.signals.estimate import Estimate
 
 
@@ -66,8 +65,7 @@ def save_identification(found: Identification, directory: str | PathLike[str], *
             "force_high_N": recovered.force + spread,
         }
         write_columns(columns, folder / "force.csv")
-        summary = summary_of_identification(found)
-        (folder / SUMMARY).write_text(json.dumps(summary, indent=2, allow_nan=False) + "\n", encoding="utf-8")
+        write_summary(summary_of_identification(found), folder)
         (folder / "case.toml").write_text(tomli_w.dumps(resolved_case(found.plate.case)), encoding="utf-8")
         charts = identification_charts(found)
         write_figures(charts, folder, figures)
