@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import json
-import sys
 import tomllib
 from collections.abc import Callable
 from dataclasses import replace
@@ -18,7 +17,6 @@ import tomli_w
 
 import vibroimpact as vi
 from hammered import RATE, TABLE, a_case, hammered, records
-from vibroimpact.cli import main
 from vibroimpact.correlation.correlate import Correlation
 from vibroimpact.signals.record import Record
 
@@ -195,20 +193,12 @@ def test_cases_that_are_refused(table: dict[str, Any], words: str) -> None:
         vi.correlate(vi.read_case({**TABLE, **table}), changed())
 
 
-def test_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    monkeypatch.chdir(tmp_path)
-
-    def call(*words: str) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["vibroimpact", *words])
-        with pytest.raises(SystemExit) as left:
-            main()
-        return int(left.value.code or 0), *capsys.readouterr()
-
+def test_the_command(command: Callable[..., tuple[int, str, str]]) -> None:
     force, value = hammered((0.02,), 0.2)
     Path("case.toml").write_text(tomli_w.dumps(TABLE))
     table = np.column_stack([np.arange(len(force)) / RATE, force, value.T / 9.80665])
     np.savetxt("tap.csv", table, delimiter=",", header="time [s],hammer [N],a1 [g],a2 [g]", comments="")
-    code, out, _ = call("correlate", "case.toml", "tap.csv", "--hammer", "hammer", "-o", "found", "--band", "300 Hz, 1.7 kHz")
+    code, out, _ = command("correlate", "case.toml", "tap.csv", "--hammer", "hammer", "-o", "found", "--band", "300 Hz, 1.7 kHz")
     assert code == 0
     assert "FRAC of the frequency responses to the force, by H1 from 1 hit" in out
     assert "damping = { frequencies = [" in out
@@ -217,7 +207,7 @@ def test_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: py
     rows = list(csv.DictReader(Path("found/overlay.csv").read_text().splitlines()))
     parts = [np.array([float(row[f"a2_{name}"]) for row in rows]) for name in ("measured", "simulated", "residual")]
     assert parts[0] - parts[1] == pytest.approx(parts[2], abs=1e-6)
-    code, out, _ = call("correlate", "case.toml", "tap.csv", "--hammer", "hammer", "-o", "again", "--band", "300 Hz, 1.7 kHz", "--json")
+    code, out, _ = command("correlate", "case.toml", "tap.csv", "--hammer", "hammer", "-o", "again", "--band", "300 Hz, 1.7 kHz", "--json")
     assert code == 0
     told = json.loads(out)
     assert told["records"]["a1"]["frac"] > 0.999
@@ -229,7 +219,7 @@ def test_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: py
         (("tap.csv", "-o", "new", "--band", "300 Hz"), "give a lower and an upper frequency"),
         (("tap.csv", "-o", "found"), "there already"),
     ):
-        code, _, err = call("correlate", "case.toml", *words)
+        code, _, err = command("correlate", "case.toml", *words)
         assert code == 2
         assert message in err.lower()
     assert not Path("new").exists()
