@@ -144,7 +144,7 @@ def test_readme_shows_what_the_demo_prints(variable: vi.Response) -> None:
 
 
 # of the pages on elastic bodies the other one computes modes too, and fewer
-LONG_PAGES = {"coal-from-rock.md", "elastic-drops.md", "measured-and-computed.md", "river-geophone.md"}
+LONG_PAGES = {"coal-from-rock.md", "elastic-drops.md", "river-geophone.md"}
 
 
 @pytest.mark.parametrize(
