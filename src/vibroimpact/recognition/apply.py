@@ -63,7 +63,7 @@ class Recognised:
 
 
 def apply_recogniser(model: Recogniser | str | PathLike[str], dataset: str | PathLike[str] | LabelledSignals) -> Recognised:
-    """Recognise signals by a saved model, and estimate the fraction of each class in them.
+    """Return the classes that a saved classifier gives to signals, and the fraction of each class among them.
 
     Parameters
     ----------
