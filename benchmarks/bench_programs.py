@@ -27,6 +27,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+from cpu_time import cpu_ms
 from scipy.integrate import solve_ivp
 
 import vibroimpact as vi
@@ -88,17 +89,6 @@ class Row(NamedTuple):
     steps: str
     milliseconds: float
     error: float
-
-
-def cpu_ms(work: Callable[[], object], runs: int) -> float:
-    """Median CPU time of `work` in this process [ms], after a warm-up."""
-    work()
-    times = []
-    for _ in range(runs):
-        begin = time.process_time()
-        work()
-        times.append(time.process_time() - begin)
-    return 1e3 * statistics.median(times)
 
 
 def by_scipy(mass: float, radius: float, height: float, law: vi.ContactLaw, tolerance: float) -> float:

@@ -17,9 +17,9 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable
 
 import numpy as np
+from cpu_time import cpu_ms
 from scipy.integrate import solve_ivp
 
 import vibroimpact as vi
@@ -27,17 +27,6 @@ from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
 from vibroimpact.contact.pair import ContactPair
 from vibroimpact.contact.registry import contact_laws
-
-
-def cpu_ms(work: Callable[[], object], runs: int = 15) -> float:
-    """Median CPU time of `work` [ms], after a warm-up."""
-    work()
-    times = []
-    for _ in range(runs):
-        begin = time.process_time()
-        work()
-        times.append(time.process_time() - begin)
-    return 1e3 * statistics.median(times)
 
 
 def restarted_dop853(problem: vi.Problem, tolerance: float = 1e-10) -> list[float]:

@@ -84,7 +84,13 @@ html_theme_options = {
 }
 
 
-PAGES_OF_FILES = {"README.md#use": "use.md", "CHANGELOG.md": "changelog.md", "CONTRIBUTING.md": "contributing.md"}
+PAGES_OF_FILES = {
+    "README.md#use": "use.md",
+    "CHANGELOG.md": "changelog.md",
+    "CONTRIBUTING.md": "contributing.md",
+    "CODE_OF_CONDUCT.md": "code-of-conduct.md",
+    "SECURITY.md": "security.md",
+}
 LAWS = """
 ```{toctree}
 :hidden:
@@ -95,10 +101,15 @@ laws/*
 """
 
 
-def complete(app: Sphinx, page: str, source: list[str]) -> None:
-    """Lead links to files beside this folder to the pages that include them, and put the pages of the laws below their table."""
+def lead_to_pages(source: list[str]) -> None:
+    """Lead links to files beside this folder, and between these files, to the pages that include them."""
     for file, own in PAGES_OF_FILES.items():
-        source[0] = re.sub(rf"\]\(((?:\.\./)*)\.\./{re.escape(file)}\)", rf"](\1{own})", source[0])
+        source[0] = re.sub(rf"\]\((?:((?:\.\./)*)\.\./)?{re.escape(file)}\)", rf"](\1{own})", source[0])
+
+
+def complete(app: Sphinx, page: str, source: list[str]) -> None:
+    """Lead links to pages, and put the pages of the laws below their table."""
+    lead_to_pages(source)
     if page == "laws":
         source[0] += LAWS
 
@@ -111,3 +122,4 @@ def skip_fields_of_tuples(app: Sphinx, what: str, name: str, member: object, ski
 def setup(app: Sphinx) -> None:
     app.connect("autodoc-skip-member", skip_fields_of_tuples)
     app.connect("source-read", complete)
+    app.connect("include-read", lambda app, path, page, source: lead_to_pages(source))

@@ -51,16 +51,16 @@ def measured() -> tuple[vi.Record, vi.Record]:
 
 acceleration, hammer = measured()
 found = vi.correlate(vi.read_case(DRAWN), [acceleration], force=hammer)
-print(f"as drawn: residual {100.0 * found.residual_part[0]:.0f} %, FRAC {found.frac[0]:.3f}")
-told = [pair for pair in found.modes if pair.told]
-for pair in told:
+print(f"as drawn: residual {100.0 * found.relative_residual[0]:.0f} %, FRAC {found.frac[0]:.3f}")
+pairs = [pair for pair in found.modes if pair.damping_measured]
+for pair in pairs:
     mode, difference = pair.measured, 100.0 * pair.frequency_difference
     print(f"mode {pair.number}: {mode.frequency.value:.1f} Hz ({difference:+.2f} %), damping ratio {mode.damping_ratio.value:.5f}")
 chart = next(one for one in vi.correlation_charts(found) if one.name == "responses")
 vi.save_charts([replace(chart, name="hammer-responses")], Path(), ["png"])
 
 # frequencies 2 % low in all modes are those of a plate 2 % thinner; the damping is the measured one
-damping = {"frequencies": [pair.frequency for pair in told], "ratios": [pair.measured.damping_ratio.value for pair in told]}
+damping = {"frequencies": [pair.frequency for pair in pairs], "ratios": [pair.measured.damping_ratio.value for pair in pairs]}
 thinner = {**DRAWN["plate"], "size": ["400 mm", "300 mm", "11.76 mm"], "damping": damping}
 again = vi.correlate(vi.read_case({**DRAWN, "plate": thinner}), [acceleration], force=hammer)
-print(f"thinner, with the measured damping: residual {100.0 * again.residual_part[0]:.1f} %, FRAC {again.frac[0]:.4f}")
+print(f"thinner, with the measured damping: residual {100.0 * again.relative_residual[0]:.1f} %, FRAC {again.frac[0]:.4f}")

@@ -43,8 +43,8 @@ FLOORS = {  # top to bottom: what a floor is, its colour, its rooms and what the
         {
             "cases": "the case file: sections,\nlimits, slips of units",
             "results": "the result of a run\nand its folder",
-            "signals": "records, packets,\nfeatures",
-            "charts": "described once, drawn\nby plotly and matplotlib",
+            "signals": "records, packets,\nfeatures, decays",
+            "charts": "described once, drawn\non pages and for print",
             "report": "pages, tables,\nprogress",
             "meshes": "mesh files in and out",
             "measurements": "records and tables in",
@@ -56,7 +56,7 @@ FLOORS = {  # top to bottom: what a floor is, its colour, its rooms and what the
             "dynamics": "problem, simulate, response;\nrigid, phase_plane, vibrating, sensors",
             "bodies": "sphere, plate",
             "structures": "meshes, supports, modes,\nreduction, store",
-            "contact": "24 laws, pair, statics",
+            "contact": f"{len(vibroimpact.contact_laws())} laws, pair, statics",
         },
     ),
     "ground": (

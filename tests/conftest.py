@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import sys
+from collections.abc import Callable, Iterator
 from functools import cache
+from pathlib import Path
 
 import pytest
 import typer.main
 
 import vibroimpact as vi
+from vibroimpact.cli import main
 
 
 @pytest.fixture(autouse=True, scope="session")
@@ -33,3 +36,17 @@ def variable() -> vi.Response:
 def damping() -> vi.Calibration:
     """The damping that the paper calibrates."""
     return vi.calibrate_case(vi.load_calibration("paper:calibration"))
+
+
+@pytest.fixture
+def command(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Callable[..., tuple[int, str, str]]:
+    """Run `vibroimpact` with words in the folder of the test, and return its exit status, its output and its errors."""
+    monkeypatch.chdir(tmp_path)
+
+    def run(*words: object) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", ["vibroimpact", *map(str, words)])
+        with pytest.raises(SystemExit) as left:
+            main()
+        return int(left.value.code or 0), *capsys.readouterr()
+
+    return run

@@ -32,7 +32,7 @@ def documented() -> Iterator[tuple[str, dict[str, Any]]]:
         yield from ((page.name, tomllib.loads(block)) for block in re.findall(r"```toml\n(.*?)```", text, flags=re.S))
         for block in re.findall(r"```python\n(.*?)```", text, flags=re.S):
             yield from ((page.name, one) for one in written_in(block))
-    for script in sorted((ROOT / "examples").glob("*.py")):
+    for script in sorted((ROOT / "examples").rglob("*.py")):
         yield from ((script.name, one) for one in written_in(script.read_text(encoding="utf-8")))
 
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import csv
 import json
-import sys
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -16,7 +17,6 @@ from heard import RATE, burst, heard, music
 from support import plain_case
 from vibroimpact.calibration.bounces.speed_laws import speed_laws
 from vibroimpact.calibration.calibrate_case import calibrate_case, read_calibration
-from vibroimpact.cli import main
 from vibroimpact.signals.bounces.chain import longest_chain
 
 SAID = 1.96
@@ -244,16 +244,8 @@ def file(tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def call(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path):
-    def called(*words: object) -> tuple[int, str, str]:
-        monkeypatch.chdir(tmp_path)
-        monkeypatch.setattr(sys, "argv", ["vibroimpact", "calibrate", *map(str, words)])
-        with pytest.raises(SystemExit) as left:
-            main()
-        out, err = capsys.readouterr()
-        return int(left.value.code or 0), out, err
-
-    return called
+def call(command: Callable[..., tuple[int, str, str]]) -> Callable[..., tuple[int, str, str]]:
+    return partial(command, "calibrate")
 
 
 def test_a_record_is_calibrated(call, file: Path, tmp_path: Path) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import re
-import sys
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -17,7 +17,6 @@ from scipy.integrate import solve_ivp
 
 import vibroimpact as vi
 from identifying import DELAY, RATE, SENSORS, THICKNESS, WINDOW, a_case, an_impact, drawn, plate, records_of
-from vibroimpact.cli import main
 from vibroimpact.dynamics.sensors.place_responses import sampled_responses
 from vibroimpact.identification.contact import contact_forces
 from vibroimpact.identification.identify import identify_on
@@ -246,18 +245,10 @@ def test_options_that_are_refused(options: dict[str, Any], words: str) -> None:
         vi.identify(small(), its_records(small()), **options)
 
 
-def test_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    monkeypatch.chdir(tmp_path)
-
-    def call(*words: str) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["vibroimpact", *words])
-        with pytest.raises(SystemExit) as left:
-            main()
-        return int(left.value.code or 0), *capsys.readouterr()
-
+def test_the_command(command: Callable[..., tuple[int, str, str]]) -> None:
     Path("case.toml").write_text(tomli_w.dumps(SMALL))
-    assert call("run", "case.toml", "-o", "run")[0] == 0
-    code, out, _ = call("identify", "case.toml", "run", "-o", "found")
+    assert command("run", "case.toml", "-o", "run")[0] == 0
+    code, out, _ = command("identify", "case.toml", "run", "-o", "found")
     assert code == 0
     assert "radius" in out
     assert "95 % from" in out
@@ -265,7 +256,7 @@ def test_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: py
     rows = list(csv.DictReader(Path("found/force.csv").read_text().splitlines()))
     force = np.array([[float(row[name]) for name in ("force_low_N", "force_N", "force_high_N")] for row in rows])
     assert (np.diff(force, axis=1) >= 0.0).all()
-    code, out, _ = call("identify", "case.toml", "run", "-o", "known", "--place", "20 mm, 10 mm", "--json")
+    code, out, _ = command("identify", "case.toml", "run", "-o", "known", "--place", "20 mm, 10 mm", "--json")
     assert code == 0
     told = json.loads(out)
     assert told["estimates"]["radius_m"]["value"] == pytest.approx(0.02, rel=1e-3)
@@ -275,7 +266,7 @@ def test_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: py
         (("run", "-o", "new", "--place", "20 mm"), "give x and y"),
         (("nowhere", "-o", "new"), "nowhere"),
     ):
-        code, _, err = call("identify", "case.toml", *words)
+        code, _, err = command("identify", "case.toml", *words)
         assert code == 2
         assert message in err
     assert not Path("new").exists()

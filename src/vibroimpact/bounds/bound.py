@@ -29,7 +29,7 @@ _TESTED, _TESTED_OF_MAP, _FALLS_OF_MAP = 2000, 500, 8000
 
 @dataclass(frozen=True, eq=False)
 class Bound:
-    """What a population lets any classifier tell.
+    """The Bayes error of a population, below which no classifier gets.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ class Bound:
 def bound_of(
     population: Study | Sweep, channel: Channel | None = None, seed: int = 0, progress: Callable[[float], None] | None = None
 ) -> Bound:
-    """Return what a population lets any classifier tell, before there is one.
+    """Return the Bayes error of a population, below which no classifier gets, by what is measured of an impact.
 
     A sensor hears the contact force through the plate, a linear system that is the same whatever falls. What it records of an impact is
     therefore no better than the force itself, and the force of a sphere is a pulse of an impulse and a duration.

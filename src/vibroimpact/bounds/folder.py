@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import asdict
 from os import PathLike
 from pathlib import Path
@@ -15,7 +14,7 @@ from vibroimpact.bounds.observations import OBSERVATIONS
 from vibroimpact.bounds.tables import HEADERS, bound_rows, error_rows, headline, heard_words
 from vibroimpact.report.page import render_page
 from vibroimpact.results.csv_files import write_csv
-from vibroimpact.results.folder import SUMMARY, new_folder
+from vibroimpact.results.folder import new_folder, write_summary
 
 
 def save_bound(bound: Bound, directory: str | PathLike[str], *, force: bool = False) -> Path:
@@ -53,7 +52,7 @@ def save_bound(bound: Bound, directory: str | PathLike[str], *, force: bool = Fa
             for other, ratio in enumerate(SIGNAL_TO_NOISE)
         ]
         write_csv(over, list(over[0]), folder / "map.csv")
-        (folder / SUMMARY).write_text(json.dumps(bound_document(bound), indent=2, allow_nan=False) + "\n", encoding="utf-8")
+        write_summary(bound_document(bound), folder)
         page = render_page(
             __package__,
             bound_charts(bound),

@@ -20,7 +20,7 @@ _LARGEST = 3.0  # standard deviation of a logarithm beyond which nothing is know
 
 @dataclass(frozen=True)
 class Channel:
-    """What hears the contact force, through a channel that is known.
+    """A measuring channel that hears the contact force: its band, noise and calibration.
 
     Parameters
     ----------

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from vibroimpact.cli.completion import complete_case
-from vibroimpact.cli.shared import Force, Json, app, console, exit_on_interrupt, say, show, stem
+from vibroimpact.cli.shared import Force, Json, app, console, exit_on_interrupt, show_folder, stem
 from vibroimpact.errors import InputError
 
 
@@ -58,5 +58,4 @@ def bound(
         found = read_study(population) if Path(population).is_dir() else load_sweep(population, samples)
         known = bound_of(found, Channel(bandwidth=band, signal_to_noise=signal_to_noise), progress=progress)
         folder = save_bound(known, target, force=force)
-    show(lambda: {"folder": str(folder), **bound_document(known)}, lambda: bound_summary(known), as_json=as_json)
-    say(f"wrote {folder / 'report.html'}", err=as_json)
+    show_folder(folder, lambda: bound_document(known), lambda: bound_summary(known), as_json=as_json)

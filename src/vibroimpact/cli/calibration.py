@@ -8,20 +8,7 @@ from typing import Annotated
 import typer
 
 from vibroimpact.cli.completion import RECORDS, complete_case_or_record
-from vibroimpact.cli.shared import (
-    Changes,
-    Figures,
-    Force,
-    Json,
-    app,
-    console,
-    exit_on_interrupt,
-    note,
-    say,
-    settings_of,
-    show,
-    stem,
-)
+from vibroimpact.cli.shared import Changes, Figures, Force, Json, app, console, exit_on_interrupt, note, settings_of, show_folder, stem
 from vibroimpact.errors import InputError
 
 
@@ -92,12 +79,7 @@ def calibrate(
             found = prefix_errors(case, lambda: calibrate_case(what, progress, note))
         folder = save_calibration(what.case, found, target, force=force, figures=("png",) if figures else ())
     told = report_of(what.case, found)
-    show(
-        lambda: {"folder": str(folder), **told.document, **told.tables},
-        lambda: calibration_summary(what.case, told),
-        as_json=as_json,
-    )
-    say(f"wrote {folder / 'report.html'}", err=as_json)
+    show_folder(folder, lambda: {**told.document, **told.tables}, lambda: calibration_summary(what.case, told), as_json=as_json)
 
 
 def _listen(
@@ -132,8 +114,7 @@ def _listen(
         except InputError as error:
             raise with_path(file, error) from None
         folder = save_rebounds(found, target, force=force, figures=("png",) if figures else ())
-    show(lambda: {"folder": str(folder), **bounce_document(found)}, lambda: bounce_summary(found), as_json=as_json)
-    say(f"wrote {folder / 'report.html'}", err=as_json)
+    show_folder(folder, lambda: bounce_document(found), lambda: bounce_summary(found), as_json=as_json)
 
 
 def _quantity(option: str, words: str, unit: str) -> float:

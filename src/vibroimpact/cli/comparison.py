@@ -17,9 +17,8 @@ from vibroimpact.cli.shared import (
     console,
     exit_on_interrupt,
     names_in,
-    say,
     settings_of,
-    show,
+    show_folder,
     stem,
 )
 
@@ -76,9 +75,4 @@ def compare(
                 progress=progress,
             )
         folder = save_comparison(comparison, target, force=force, figures=("png",) if figures else ())
-    show(
-        lambda: {"folder": str(folder), **comparison_document(comparison)},
-        lambda: comparison_summary(comparison),
-        as_json=as_json,
-    )
-    say(f"wrote {folder / 'report.html'}", err=as_json)
+    show_folder(folder, lambda: comparison_document(comparison), lambda: comparison_summary(comparison), as_json=as_json)

@@ -17,9 +17,8 @@ from vibroimpact.cli.shared import (
     console,
     exit_on_interrupt,
     pair_in,
-    say,
     settings_of,
-    show,
+    show_folder,
     stem,
 )
 from vibroimpact.errors import InputError, did_you_mean
@@ -81,12 +80,7 @@ def correlate(
             motions = [record for record in heard if record is not push]
             told = correlated(found, motions, force=push, window=length, band=ends, progress=progress)
         folder = save_correlation(told, target, force=force, figures=("png",) if figures else ())
-    show(
-        lambda: {"folder": str(folder), **summary_of_correlation(told)},
-        lambda: correlation_summary(told),
-        as_json=as_json,
-    )
-    say(f"wrote {folder / 'report.html'}", err=as_json)
+    show_folder(folder, lambda: summary_of_correlation(told), lambda: correlation_summary(told), as_json=as_json)
 
 
 def _force_among(records: list[Record], name: str) -> Record:

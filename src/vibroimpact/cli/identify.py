@@ -17,9 +17,8 @@ from vibroimpact.cli.shared import (
     console,
     exit_on_interrupt,
     pair_in,
-    say,
     settings_of,
-    show,
+    show_folder,
     stem,
 )
 
@@ -74,9 +73,4 @@ def identify(
         with patient_progress("identifying", console(err=as_json)) as progress:
             told = identified(found, heard, place=where, window=length, frequency_error=frequency_error, progress=progress)
         folder = save_identification(told, target, force=force, figures=("png",) if figures else ())
-    show(
-        lambda: {"folder": str(folder), **summary_of_identification(told)},
-        lambda: identification_summary(told),
-        as_json=as_json,
-    )
-    say(f"wrote {folder / 'report.html'}", err=as_json)
+    show_folder(folder, lambda: summary_of_identification(told), lambda: identification_summary(told), as_json=as_json)

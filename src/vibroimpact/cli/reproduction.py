@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from vibroimpact.cli.completion import complete_parts
-from vibroimpact.cli.shared import Json, app, console, fail, names_in, note, say, show
+from vibroimpact.cli.shared import Json, app, console, fail, names_in, note, show_folder
 
 
 @app.command()
@@ -47,9 +47,9 @@ def reproduce(
         some = f" --only {','.join(left)}" if left else ""
         fail(f"interrupted; the parts that are done stay; go on with: vibroimpact reproduce -o {shlex.quote(str(output))}{some}", 130)
     parts = read_parts(folder)
-    show(
-        lambda: {"folder": str(folder), "version": __version__, "verdicts": verdict_counts(parts), "values": reproduced_values(parts)},
+    show_folder(
+        folder,
+        lambda: {"version": __version__, "verdicts": verdict_counts(parts), "values": reproduced_values(parts)},
         lambda: verdict_table(parts),
         as_json=as_json,
     )
-    say(f"wrote {folder / 'report.html'}", err=as_json)

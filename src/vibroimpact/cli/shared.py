@@ -124,6 +124,12 @@ def show(document: Callable[[], Mapping[str, Any]], *tables: Callable[[], Render
             screen.print(table())
 
 
+def show_folder(folder: Path, document: Callable[[], Mapping[str, Any]], table: Callable[[], RenderableType], *, as_json: bool) -> None:
+    """Print what a folder with a report holds, as `show` does, and that it was written."""
+    show(lambda: {"folder": str(folder), **document()}, table, as_json=as_json)
+    say(f"wrote {folder / 'report.html'}", err=as_json)
+
+
 def say(text: str, *, err: bool = False) -> None:
     """Print lines, transliterated to the encoding of the stream and with control characters escaped."""
     from vibroimpact.report.encodable import encodable

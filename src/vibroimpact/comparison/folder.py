@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from os import PathLike
 from pathlib import Path
@@ -24,7 +23,7 @@ from vibroimpact.comparison.document import summary_of_comparison
 from vibroimpact.dynamics.columns import impact_columns
 from vibroimpact.report.page import render_page
 from vibroimpact.results.csv_files import impact_rows, write_csv
-from vibroimpact.results.folder import SUMMARY, new_folder
+from vibroimpact.results.folder import new_folder, write_summary
 
 
 def save_comparison(comparison: Comparison, directory: str | PathLike[str], *, force: bool = False, figures: Sequence[str] = ()) -> Path:
@@ -59,8 +58,7 @@ def save_comparison(comparison: Comparison, directory: str | PathLike[str], *, f
         rows = [{"law": name, **row} for name, one in comparison.results.items() for row in impact_rows(one.impacts)]
         columns = impact_columns(name for one in comparison.results.values() for name in one.impacts)
         write_csv(rows, ["law", *columns], folder / "comparison.csv")
-        summary = summary_of_comparison(comparison)
-        (folder / SUMMARY).write_text(json.dumps(summary, indent=2, allow_nan=False) + "\n", encoding="utf-8")
+        write_summary(summary_of_comparison(comparison), folder)
         (folder / "cases").mkdir()
         for name, one in comparison.results.items():
             (folder / "cases" / f"{name}.toml").write_text(tomli_w.dumps(one.case), encoding="utf-8")

@@ -63,7 +63,7 @@ class Acquired:
     @property
     def passed(self) -> float:
         """Highest frequency that the sensors pass [Hz]."""
-        return min(0.45 * self.rate if one.filter == "sigma-delta" else one.corner or 0.4 * self.rate for one in self.sensors)
+        return min(sensor.passed for sensor in self.sensors)
 
 
 def acquired_of(sensors: Sequence[Sensor], records: Sequence[Record], force: Record | None) -> Acquired:

@@ -23,7 +23,7 @@ _DECADES = 4.0
 
 
 def correlation_charts(found: Correlation) -> list[Chart]:
-    """Return the charts `overlay`, `responses`, `frac` and, if a damping was told, `damping`.
+    """Return the charts `overlay`, `responses`, `frac` and, if a damping was measured, `damping`.
 
     Examples
     --------
@@ -39,7 +39,7 @@ def correlation_charts(found: Correlation) -> list[Chart]:
     ['overlay', 'responses', 'frac', 'damping']
     """
     charts = [_overlay(found), _responses(found), _frac(found)]
-    return [*charts, *([_damping(found)] if any(pair.told for pair in found.modes) else [])]
+    return [*charts, *([_damping(found)] if any(pair.damping_measured for pair in found.modes) else [])]
 
 
 def _name(found: Correlation, number: int) -> str:
@@ -52,7 +52,7 @@ def _overlay(found: Correlation) -> Chart:
     early = found.time <= max(_BEGIN, float(found.time[0]) + _BEGIN)
     for number, sensor in enumerate(found.sensors[:MOST]):
         level = Axis(sensor.quantity.capitalize(), sensor.unit)
-        shown = ((begin, early, "the beginning"), (whole, slice(None), f"residual {100.0 * found.residual_part[number]:.1f} % (rms)"))
+        shown = ((begin, early, "the beginning"), (whole, slice(None), f"residual {100.0 * found.relative_residual[number]:.1f} % (rms)"))
         panels = []
         for axis, part, words in shown:
             values = (found.measured[number, part], found.simulated[number, part], found.residual[number, part])
@@ -116,10 +116,10 @@ def _frac(found: Correlation) -> Chart:
 
 
 def _damping(found: Correlation) -> Chart:
-    told = [pair.measured for pair in found.modes if pair.measured is not None and not pair.measured.doubt]
-    intervals = np.array([mode.damping_ratio.interval for mode in told])
-    places = np.array([mode.frequency.value for mode in told])
-    ratios = np.array([mode.damping_ratio.value for mode in told])
+    measured = [pair.measured for pair in found.modes if pair.measured is not None and not pair.measured.doubt]
+    intervals = np.array([mode.damping_ratio.interval for mode in measured])
+    places = np.array([mode.frequency.value for mode in measured])
+    ratios = np.array([mode.damping_ratio.value for mode in measured])
     of_case = [pair for pair in found.modes if pair.number is not None]
     marks = (
         Points(np.array([pair.frequency for pair in of_case]), np.array([pair.damping_ratio for pair in of_case]), "case", "other mark"),

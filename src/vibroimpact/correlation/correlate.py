@@ -112,7 +112,7 @@ class Correlation:
         return self.measured - self.simulated
 
     @property
-    def residual_part(self) -> Floats:
+    def relative_residual(self) -> Floats:
         """The rms value of the residual, relative to that of the record, (S,)."""
         return np.asarray(_rms(self.residual) / _rms(self.measured))
 
@@ -172,7 +172,7 @@ def correlate(
     ... })
     >>> signal = vi.simulate(case).signals()["a"]
     >>> found = correlate(case, [Record("a", signal.value, 20e3, "m/s2")], window=0.05)
-    >>> bool(found.residual_part[0] < 0.01), round(float(found.frac[0]), 4)
+    >>> bool(found.relative_residual[0] < 0.01), round(float(found.frac[0]), 4)
     (True, 1.0)
     """
     problem = plate_problem(case, progress)

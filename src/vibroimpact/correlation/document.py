@@ -38,7 +38,7 @@ MODE_COLUMNS = (
     "damping_ratio",
     "damping_ratio_low",
     "damping_ratio_high",
-    "told",
+    "damping_measured",
     "remark",
 )
 """Columns of `modes.csv`."""
@@ -53,7 +53,7 @@ def what_frac_is_of(found: Correlation) -> str:
 
 def record_rows(found: Correlation) -> list[list[str]]:
     """Return the cells of the table of records."""
-    columns = zip(found.sensors, found.polarity, found.coefficient, found.scale, found.residual_part, found.frac, strict=True)
+    columns = zip(found.sensors, found.polarity, found.coefficient, found.scale, found.relative_residual, found.frac, strict=True)
     return [
         [
             visible(sensor.name),
@@ -108,7 +108,7 @@ def _mode_values(pair: ModePair) -> list[Any]:
     of_case = [pair.frequency, pair.damping_ratio, pair.response] if pair.number is not None else 3 * [None]
     mode = pair.measured
     measured = 6 * [None] if mode is None else [part for one in (mode.frequency, mode.damping_ratio) for part in (one.value, *one.interval)]
-    return [pair.number, *of_case, *measured, pair.told, pair.remark]
+    return [pair.number, *of_case, *measured, pair.damping_measured, pair.remark]
 
 
 def summary_of_correlation(found: Correlation) -> dict[str, Any]:
@@ -118,7 +118,7 @@ def summary_of_correlation(found: Correlation) -> dict[str, Any]:
         found.polarity,
         found.coefficient,
         found.scale,
-        found.residual_part,
+        found.relative_residual,
         found.frac,
         found.octave_frac,
         strict=True,

@@ -59,7 +59,7 @@ def doubts_about(problem: Problem, acquired: Acquired, delay: Delay, band: tuple
 def _clipped(what: str, value: np.ndarray, rate: float) -> Iterator[str]:
     part = float(CLIPPING.of(Block(value[None], rate))[0, 0])
     if part > 0.0:
-        yield f"{what} is clipped: {max(1, round(part * len(value)))} samples lie at its extremes; damping is told by what follows"
+        yield f"{what} is clipped: {max(1, round(part * len(value)))} samples lie at its extremes; damping is determined by what follows"
 
 
 def _of_force(acquired: Acquired, delay: Delay, band: tuple[float, float], over: float) -> Iterator[str]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from os import PathLike
 from pathlib import Path
@@ -11,7 +10,6 @@ import numpy as np
 import tomli_w
 
 from vibroimpact._version import __version__
-from vibroimpact.arrays import Floats
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.charts.figures_folder import write_figures
 from vibroimpact.correlation.charts import correlation_charts
@@ -31,8 +29,8 @@ from vibroimpact.correlation.document import (
 from vibroimpact.correlation.mode_pairs import damping_field
 from vibroimpact.files.plain_names import plain_names
 from vibroimpact.report.page import render_page
-from vibroimpact.results.csv_files import write_csv
-from vibroimpact.results.folder import SUMMARY, new_folder
+from vibroimpact.results.csv_files import write_columns, write_csv
+from vibroimpact.results.folder import new_folder, write_summary
 
 
 def save_correlation(found: Correlation, directory: str | PathLike[str], *, force: bool = False, figures: Sequence[str] = ()) -> Path:
@@ -84,10 +82,10 @@ def save_correlation(found: Correlation, directory: str | PathLike[str], *, forc
                 responses |= {f"{name}_{what}_magnitude": np.abs(response[number]), f"{name}_{what}_phase_rad": np.angle(response[number])}
             if found.coherence is not None:
                 responses[f"{name}_coherence"] = found.coherence[number]
-        _write_columns(overlay, folder / "overlay.csv")
-        _write_columns(responses, folder / "responses.csv")
+        write_columns(overlay, folder / "overlay.csv")
+        write_columns(responses, folder / "responses.csv")
         write_csv(mode_table(found), list(MODE_COLUMNS), folder / "modes.csv")
-        (folder / SUMMARY).write_text(json.dumps(summary_of_correlation(found), indent=2, allow_nan=False) + "\n", encoding="utf-8")
+        write_summary(summary_of_correlation(found), folder)
         (folder / "case.toml").write_text(tomli_w.dumps(resolved_case(found.case)), encoding="utf-8")
         charts = correlation_charts(found)
         write_figures(charts, folder, figures)
@@ -108,9 +106,3 @@ def save_correlation(found: Correlation, directory: str | PathLike[str], *, forc
         )
         (folder / "report.html").write_text(page, encoding="utf-8")
     return Path(directory)
-
-
-def _write_columns(columns: dict[str, Floats], path: Path) -> None:
-    names = list(columns)
-    rows = [dict(zip(names, row, strict=True)) for row in np.stack(list(columns.values()), axis=1).tolist()]
-    write_csv(rows, names, path)

@@ -36,7 +36,7 @@ class ModePair:
     measured : DecayMode, optional
         The measured mode; None if none was found.
     remark : str
-        Why it has no partner, or its damping is not told.
+        Why it has no partner, or its damping could not be determined.
 
     Examples
     --------
@@ -59,7 +59,7 @@ class ModePair:
         return self.measured.frequency.value / self.frequency - 1.0 if self.measured is not None else float("nan")
 
     @property
-    def told(self) -> bool:
+    def damping_measured(self) -> bool:
         """Whether its damping was measured, at a mode of the case."""
         return self.number is not None and self.measured is not None and not self.measured.doubt
 
@@ -118,13 +118,13 @@ def _missing(place: float, ratio: float, found: Sequence[DecayMode]) -> str:
     """Return why a mode was not found."""
     width = 2.0 * ratio * place
     near = [mode.frequency.value for mode in found if abs(mode.frequency.value - place) < width]
-    return f"not told from the mode at {near[0]:.5g} Hz" if near else "not found in the decay"
+    return f"not separated from the mode at {near[0]:.5g} Hz" if near else "not found in the decay"
 
 
 def damping_field(pairs: Sequence[ModePair]) -> str:
-    """Return the measured damping as it is written in a case, at the frequencies of the case's modes; empty if none was told."""
-    told = {pair.frequency: pair.measured.damping_ratio.value for pair in pairs if pair.told and pair.measured is not None}
-    if not told:
+    """Return the measured damping as it is written in a case, at the frequencies of the case's modes; empty if none was measured."""
+    measured = {pair.frequency: pair.measured.damping_ratio.value for pair in pairs if pair.damping_measured and pair.measured is not None}
+    if not measured:
         return ""
-    frequencies, ratios = (", ".join(f"{value:.6g}" for value in part) for part in (sorted(told), (told[one] for one in sorted(told))))
+    frequencies, ratios = (", ".join(f"{value:.6g}" for value in part) for part in zip(*sorted(measured.items()), strict=True))
     return f"damping = {{ frequencies = [{frequencies}], ratios = [{ratios}] }}"

@@ -28,7 +28,8 @@ from vibroimpact.dynamics.oblique.history import oblique_history
 from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.rest import Rest
-from vibroimpact.dynamics.rigid.segments import FlightSegment, RestSegment
+from vibroimpact.dynamics.rigid.history import rigid_history
+from vibroimpact.dynamics.rigid.segments import RestSegment
 from vibroimpact.dynamics.rigid.timeline import Timeline, end_of, timeline_of
 from vibroimpact.dynamics.sensors.recording import Signal
 from vibroimpact.dynamics.sensors.sensor import Sensor, sample_count
@@ -342,7 +343,8 @@ class Response:
         """Return columns at times since the start of one segment."""
         segments, problem = self._segments, self.problem
         if isinstance(segments, Timeline):
-            found, resting = self._rigid_history(segments, number, times), isinstance(segments[number], RestSegment)
+            written_off = float(self.rest.written_off[0])
+            found, resting = rigid_history(problem, segments, number, times, written_off), isinstance(segments[number], RestSegment)
         else:
             from vibroimpact.dynamics.vibrating.history import vibrating_history
             from vibroimpact.dynamics.vibrating.rest_motion import RestMotion
@@ -359,35 +361,6 @@ class Response:
         if self.legs is not None and problem.air is not None:
             found["air_J"] = air_lost(self.legs, float(problem.sphere.mass), segments[number].start + times)
         return {name: found[name] for name in columns}
-
-    def _rigid_history(self, segments: Timeline, number: int, times: Floats) -> dict[str, Floats]:
-        """Return the columns of the motion of rigid bodies along the normal at times since the start of one segment."""
-        problem = self.problem
-        segment, mass, gravity = segments[number], float(problem.sphere.mass), float(problem.gravity)
-        gap, velocity, force, stored, lost, plastic = segment.at(times)
-        lost_before, plastic_before, drive_before = segments.spent[number]
-        resting, flying = isinstance(segment, RestSegment), isinstance(segment, FlightSegment)
-        found = {
-            "time_s": segment.start + times,
-            "position_m": float(problem.sphere.contact_offset) + gap,
-            "velocity_m_s": velocity,
-            "acceleration_m_s2": np.zeros_like(times) if resting else force / mass - gravity,
-            "force_N": force,
-            "indentation_m": np.zeros_like(times) if flying else -gap,
-            "kinetic_J": 0.5 * mass * velocity**2,
-            "potential_J": mass * gravity * gap,
-            "contact_elastic_J": stored,
-            "contact_dissipated_J": lost_before + lost,
-            "plastic_work_J": plastic_before + plastic,
-            "written_off_at_rest_J": np.full_like(times, self.rest.written_off[0] if resting else 0.0),
-        }
-        if problem.motion is not None:
-            place, surface_velocity, _ = problem.surface(found["time_s"])
-            drive = drive_before - (segment.drive_work(times) if isinstance(segment, RideSegment) else 0.0 * times)
-            found |= {"surface_m": place, "surface_velocity_m_s": surface_velocity, "drive_J": drive}
-        if isinstance(segment, FlightSegment):
-            found["acceleration_m_s2"] = segment.flight.acceleration(segment.flight.start + times)
-        return found
 
     @cached_property
     def _segments(self) -> Sequence[VibratingSegment] | Timeline:

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from os import PathLike
 from pathlib import Path
 
-import numpy as np
 import tomli_w
 
 from vibroimpact._version import __version__
@@ -17,11 +15,9 @@ from vibroimpact.identification.charts import identification_charts
 from vibroimpact.identification.document import HEADERS, identification_rows, summary_of_identification
 from vibroimpact.identification.identify import Identification
 from vibroimpact.report.page import render_page
-from vibroimpact.results.csv_files import write_csv
-from vibroimpact.results.folder import SUMMARY, new_folder
+from vibroimpact.results.csv_files import write_columns
+from vibroimpact.results.folder import new_folder, write_summary
 from vibroimpact.signals.estimate import Estimate
-
-_COLUMNS = ["time_s", "force_N", "force_low_N", "force_high_N"]
 
 
 def save_identification(found: Identification, directory: str | PathLike[str], *, force: bool = False, figures: Sequence[str] = ()) -> Path:
@@ -62,11 +58,14 @@ def save_identification(found: Identification, directory: str | PathLike[str], *
     with new_folder(directory, force=force) as folder:
         recovered = found.force.found
         spread = Estimate(0.0, 1.0).interval[1] * recovered.deviation
-        columns = (found.measured.start + found.force.time, recovered.force, recovered.force - spread, recovered.force + spread)
-        rows = [dict(zip(_COLUMNS, row, strict=True)) for row in np.stack(columns, axis=1).tolist()]
-        write_csv(rows, _COLUMNS, folder / "force.csv")
-        summary = summary_of_identification(found)
-        (folder / SUMMARY).write_text(json.dumps(summary, indent=2, allow_nan=False) + "\n", encoding="utf-8")
+        columns = {
+            "time_s": found.measured.start + found.force.time,
+            "force_N": recovered.force,
+            "force_low_N": recovered.force - spread,
+            "force_high_N": recovered.force + spread,
+        }
+        write_columns(columns, folder / "force.csv")
+        write_summary(summary_of_identification(found), folder)
         (folder / "case.toml").write_text(tomli_w.dumps(resolved_case(found.plate.case)), encoding="utf-8")
         charts = identification_charts(found)
         write_figures(charts, folder, figures)

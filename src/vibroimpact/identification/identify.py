@@ -30,7 +30,7 @@ _VAGUE = 0.5
 
 @dataclass(frozen=True, eq=False)
 class Identification:
-    """What records tell of an impact.
+    """An impact as it is identified from records of sensors.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def identify(
     frequency_error: float = 0.0,
     progress: Callable[[float], None] | None = None,
 ) -> Identification:
-    """Return what records tell of an impact on an elastic plate.
+    """Return force, place, size and speed of an impact on an elastic plate, identified from records of its sensors.
 
     Parameters
     ----------

@@ -60,7 +60,7 @@ class Measured:
     @property
     def band(self) -> float:
         """Highest frequency that the sensors pass [Hz]."""
-        return min(0.45 * self.rate if one.filter == "sigma-delta" else one.corner or 0.4 * self.rate for one in self.sensors)
+        return min(sensor.passed for sensor in self.sensors)
 
 
 def measured_of(sensors: Sequence[Sensor], records: Sequence[Record], window: float) -> Measured:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from os import PathLike
 from pathlib import Path
@@ -21,7 +20,7 @@ from vibroimpact.modes.charts import mode_charts
 from vibroimpact.modes.document import MODE_COLUMNS, POINT_COLUMNS, mode_rows, point_rows, summary_of_modes
 from vibroimpact.modes.page import modes_page
 from vibroimpact.results.csv_files import write_csv
-from vibroimpact.results.folder import SUMMARY, new_folder
+from vibroimpact.results.folder import new_folder, write_summary
 
 _SHAPES_WRITTEN = 50  # limits the size of the file for ParaView
 
@@ -75,7 +74,7 @@ def save_modes(
         if points:
             write_csv(points, list(POINT_COLUMNS), folder / "points.csv")
         summary = summary_of_modes(case, modes)
-        (folder / SUMMARY).write_text(json.dumps(summary, indent=2, allow_nan=False) + "\n", encoding="utf-8")
+        write_summary(summary, folder)
         charts = mode_charts(modes)
         (folder / "report.html").write_text(modes_page(case, modes, charts), encoding="utf-8")
         write_figures(charts, folder, figures)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from os import PathLike
@@ -19,7 +18,7 @@ from vibroimpact.recognition.labelled_signals import LabelledSignals
 from vibroimpact.recognition.read_dataset import read_labelled_signals
 from vibroimpact.recognition.recogniser import Recogniser, doubts_of_version, load_recogniser
 from vibroimpact.results.csv_files import write_csv
-from vibroimpact.results.folder import SUMMARY, new_folder
+from vibroimpact.results.folder import new_folder, write_summary
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +63,7 @@ class Recognised:
 
 
 def apply_recogniser(model: Recogniser | str | PathLike[str], dataset: str | PathLike[str] | LabelledSignals) -> Recognised:
-    """Recognise signals by a saved model, and estimate the fraction of each class in them.
+    """Return the classes that a saved classifier gives to signals, and the fraction of each class among them.
 
     Parameters
     ----------
@@ -170,5 +169,5 @@ def save_recognised(found: Recognised, directory: str | PathLike[str], *, force:
             for number, (name, values) in enumerate(zip(guessed, found.probabilities, strict=True))
         )
         write_csv(rows, ["signal", "class", *columns], folder / "predictions.csv")
-        (folder / SUMMARY).write_text(json.dumps(recognised_document(found), indent=2, allow_nan=False) + "\n", encoding="utf-8")
+        write_summary(recognised_document(found), folder)
     return Path(directory)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from os import PathLike
 from pathlib import Path
@@ -16,7 +15,7 @@ from vibroimpact.recognition.recogniser import FOLDER, save_recogniser
 from vibroimpact.recognition.tables import SCORE_HEADERS, TABLES, Row, confusion_cells, score_cells, sentences, summary_of_recognition
 from vibroimpact.report.page import render_page
 from vibroimpact.results.csv_files import write_csv
-from vibroimpact.results.folder import SUMMARY, new_folder
+from vibroimpact.results.folder import new_folder, write_summary
 
 _COLUMNS = {"unseen.csv": ["key", "range", "signals"], "fraction.csv": ["class", "fraction", "impacts"]}
 """First columns of tables that may have no rows."""
@@ -56,7 +55,7 @@ def save_recognition(found: Recognition, directory: str | PathLike[str], *, forc
     with new_folder(directory, force=force) as folder:
         for name, rows_of in TABLES.items():
             write_rows(rows_of(found), folder / name)
-        (folder / SUMMARY).write_text(json.dumps(summary_of_recognition(found), indent=2, allow_nan=False) + "\n", encoding="utf-8")
+        write_summary(summary_of_recognition(found), folder)
         (folder / FOLDER).mkdir()
         save_recogniser(found.recogniser, folder / FOLDER)
         charts = recognition_charts(found)

@@ -33,7 +33,7 @@ _BLOCK = 4096  # signals read at once
 
 
 def read_labelled_signals(dataset: str | PathLike[str], *, most: int | None = None, group: str = "rock", seed: int = 0) -> LabelledSignals:
-    """Read a data set.
+    """Return the signals of a data set with their classes and groups.
 
     Parameters
     ----------

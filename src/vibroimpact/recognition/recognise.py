@@ -118,7 +118,7 @@ def recognise(
     workers: int = 2,
     progress: Progress = silent,
 ) -> Recognition:
-    """Train classifiers on a data set, and validate them so that they can't fool themselves.
+    """Return how well classifiers recognise a data set, each trained and tested on separate groups of signals.
 
     Baselines (majority, peak alone, contact time alone), logistic regression, random forest, gradient boosting and a support vector
     machine are compared by nested cross-validation in which no group is both trained on and tested on; beside it stands the score of a

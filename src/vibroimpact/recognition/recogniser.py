@@ -153,7 +153,7 @@ def save_recogniser(recogniser: Recogniser, folder: Path) -> None:
 
 
 def load_recogniser(directory: str | PathLike[str]) -> Recogniser:
-    """Load a saved model; nothing in it can run code.
+    """Return a saved classifier; nothing in its files can run code.
 
     Parameters
     ----------

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.columns import impact_columns
 from vibroimpact.dynamics.sensors.recording import Signal
 from vibroimpact.files.plain_names import one_line, plain_names
@@ -53,6 +54,13 @@ def write_csv(rows: Iterable[dict[str, Any]], columns: list[str], path: Path) ->
         writer = csv.DictWriter(file, columns, lineterminator="\n")
         writer.writeheader()
         writer.writerows({name: "" if value is None else value for name, value in row.items()} for row in rows)
+
+
+def write_columns(columns: Mapping[str, Floats], path: Path) -> None:
+    """Write columns of equal lengths, by their names, as a CSV file."""
+    names = list(columns)
+    rows = np.stack(list(columns.values()), axis=1).tolist()
+    write_csv((dict(zip(names, row, strict=True)) for row in rows), names, path)
 
 
 class TableColumn(NamedTuple):

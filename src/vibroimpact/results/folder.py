@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import os
 import shlex
@@ -104,6 +105,11 @@ def check_free(directory: str | PathLike[str], *, force: bool = False) -> None:
     if force:
         raise InputError(f"{target}: the folder is there and is not a result folder, so --force does not replace it; name another one")
     raise InputError(f"{target}: the folder is there already; name another one, or replace it with --force")
+
+
+def write_summary(summary: Mapping[str, Any], folder: Path) -> None:
+    """Write `summary.json` of a folder other than that of a run or a study, whose summaries have checksums."""
+    (folder / SUMMARY).write_text(json.dumps(summary, indent=2, allow_nan=False) + "\n", encoding="utf-8")
 
 
 def write_result(result: Result, directory: Path) -> None:

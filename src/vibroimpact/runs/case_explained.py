@@ -14,9 +14,8 @@ from vibroimpact.cases.case import Case
 from vibroimpact.cases.costs import describe_costs
 from vibroimpact.cases.doubts import doubts
 from vibroimpact.cases.expected import expected_of, first_restitution
-from vibroimpact.cases.fields.air import air_words
+from vibroimpact.cases.fields.fluid import fluid_words
 from vibroimpact.cases.fields.instruments import INSTRUMENTS, AccelerometerTable
-from vibroimpact.cases.fields.liquid import liquid_words
 from vibroimpact.cases.fields.quantities import quantity_of
 from vibroimpact.cases.motion import motion_length
 from vibroimpact.cases.oblique import friction_law_of, is_oblique
@@ -61,7 +60,7 @@ def case_explained(case: Case, aside: Container[str] = ()) -> RenderableType:
         *_coupling_rows(case),
         ("effective modulus", f"{pair.effective_modulus:.6g} Pa"),
         ("first approach speed", f"{speed:.6g} m/s{' along the normal' if is_oblique(case) else ''}, gravity {gravity:g} m/s2"),
-        *([] if case.drop.air is None else [("air", air_words(case.drop.air.model_dump(exclude_none=True)))]),
+        *([] if case.drop.air is None else [("air", fluid_words(case.drop.air.model_dump(exclude_none=True)))]),
         ("contact law", f"{case.contact.law}: {laws[0].equation}"),
     ]
     # a list in the case gives one law per impact: parameters that differ are shown for each
@@ -76,7 +75,7 @@ def case_explained(case: Case, aside: Container[str] = ()) -> RenderableType:
     if (table := case.contact.local.liquid) is not None:
         stokes = table.liquid().stokes_number(speed, case.sphere.radius, case.sphere.material.density)
         left = f"at the first touch the Stokes number is {stokes:.4g}, and {restitution_kept(stokes):.5g} of the restitution is left"
-        rows.append(("liquid", f"{liquid_words(table.model_dump())}: {left}; flights are without it"))
+        rows.append(("liquid", f"{fluid_words(table.model_dump())}: {left}; flights are without it"))
     if (friction := friction_law_of(case)) is not None:
         rows.append(("friction law", f"{friction.name}: {friction.equation}"))
         rows += [(f"  {item.name}", f"{getattr(friction, item.name):.9g} {item.metadata['unit']}".rstrip()) for item in fields(friction)]

@@ -8,9 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from vibroimpact.cases.fields.air import air_words
+from vibroimpact.cases.fields.fluid import fluid_words
 from vibroimpact.cases.fields.instruments import INSTRUMENTS
-from vibroimpact.cases.fields.liquid import liquid_words
 from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.marks import Arrow, Label, Line, Mark, Outline
@@ -164,10 +163,10 @@ def setup_rows(result: Result) -> list[tuple[str, str]]:
     if (motion := plate.get("motion")) is not None:
         rows.append(("Motion of the supports", _motion_words(motion)))
     if (air := case["drop"].get("air")) is not None:
-        rows.append(("Air", air_words(air)))
+        rows.append(("Air", fluid_words(air)))
     rows.append(("Contact law", _law_words({key: value for key, value in case["contact"].items() if key not in ("friction", "liquid")})))
     if (liquid := case["contact"].get("liquid")) is not None:
-        rows.append(("Liquid", liquid_words(liquid)))
+        rows.append(("Liquid", fluid_words(liquid)))
     if (friction := case["contact"].get("friction")) is not None:
         rows.append(("Friction", _law_words(friction)))
     for one in case.get("sensors", ()):

@@ -25,7 +25,7 @@ _AT_ONCE = 2**15
 
 @dataclass(frozen=True)
 class FeatureTable:
-    """Features of signals.
+    """Features of signals, a row each.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def feature_table(
     dead_time: float = DEAD_TIME,
     progress: Callable[[int, int], None] | None = None,
 ) -> FeatureTable:
-    """Return features of signals.
+    """Return the features of signals, a row each.
 
     Parameters
     ----------

@@ -119,7 +119,7 @@ def record_table(
     dead_time: float = DEAD_TIME,
     progress: Callable[[int], None] | None = None,
 ) -> RecordTable:
-    """Return features of records; neighbours of one length and rate are computed together.
+    """Return the features of records, a row each; neighbours of one length and rate are computed together.
 
     Parameters
     ----------

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from os import PathLike
 from pathlib import Path
@@ -15,7 +14,7 @@ from vibroimpact.calibration.bounces.tables import contact_sentence, drop_senten
 from vibroimpact.charts.figures_folder import write_figures
 from vibroimpact.report.page import render_page
 from vibroimpact.results.csv_files import write_csv
-from vibroimpact.results.folder import SUMMARY, new_folder
+from vibroimpact.results.folder import new_folder, write_summary
 
 
 def save_rebounds(found: Rebounds, directory: str | PathLike[str], *, force: bool = False, figures: Sequence[str] = ()) -> Path:
@@ -56,7 +55,7 @@ def save_rebounds(found: Rebounds, directory: str | PathLike[str], *, force: boo
     rows, charts, record = bounce_rows(found), bounce_charts(found), found.bounces.record
     with new_folder(directory, force=force) as folder:
         write_csv(rows, list(rows[0]), folder / "bounces.csv")
-        (folder / SUMMARY).write_text(json.dumps(bounce_document(found), indent=2, allow_nan=False) + "\n", encoding="utf-8")
+        write_summary(bounce_document(found), folder)
         write_figures(charts, folder, figures)
         headers, cells = impact_cells(found)
         page = render_page(

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Annotated, Any
 
 from pydantic import BeforeValidator, model_validator
 
+from vibroimpact.cases.fields.fluid import read_fluid
 from vibroimpact.cases.fields.json_schema import JsonSchema
 from vibroimpact.cases.fields.quantities import Quantity
-from vibroimpact.cases.fields.section import Section, read_table
+from vibroimpact.cases.fields.section import Section
 from vibroimpact.dynamics.air import AIR_DENSITY, AIR_VISCOSITY, Air
 from vibroimpact.errors import InputError
 from vibroimpact.ranges import Range
-from vibroimpact.shown import shown
 
 
 class AirTable(Section):
@@ -37,27 +36,9 @@ class AirTable(Section):
         return Air(**self.model_dump(exclude_none=True))
 
 
-_UNITS = {"density": " kg/m3", "viscosity": " Pa s", "drag_coefficient": ""}
-
-
-def air_words(table: Mapping[str, Any]) -> str:
-    """Return what a resolved table of air holds, in words."""
-    return ", ".join(f"{name.replace('_', ' ')} {float(value):.4g}{_UNITS[name]}" for name, value in table.items())
-
-
-def _read_air(value: Any) -> AirTable | None:
-    if value is None or isinstance(value, AirTable):
-        return value
-    if isinstance(value, bool):
-        return read_table(AirTable, {}) if value else None
-    if isinstance(value, dict):
-        return read_table(AirTable, value)
-    raise InputError(f"{shown(value)} is not allowed; it must be true, false, or a table with {', '.join(AirTable.model_fields)}")
-
-
 AirField = Annotated[
     AirTable | None,
-    BeforeValidator(_read_air),
+    BeforeValidator(lambda value: read_fluid(AirTable, value)),
     JsonSchema(
         "air, whose drag slows the sphere down in flight: true for air at 20 C and sea level, or its numbers; none by default",
         lambda: {"anyOf": [{"type": "boolean"}, AirTable.model_json_schema()]},

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Annotated, Any
+from typing import Annotated
 
 from pydantic import BeforeValidator
 
+from vibroimpact.cases.fields.fluid import read_fluid
 from vibroimpact.cases.fields.json_schema import JsonSchema
 from vibroimpact.cases.fields.quantities import Quantity
-from vibroimpact.cases.fields.section import Section, read_table
+from vibroimpact.cases.fields.section import Section
 from vibroimpact.dynamics.liquid import WATER_DENSITY, WATER_VISCOSITY, Liquid
-from vibroimpact.errors import InputError
 from vibroimpact.ranges import Range
-from vibroimpact.shown import shown
 
 
 class LiquidTable(Section):
@@ -27,24 +25,9 @@ class LiquidTable(Section):
         return Liquid(**self.model_dump())
 
 
-def liquid_words(table: Mapping[str, Any]) -> str:
-    """Return what a resolved table of a liquid holds, in words."""
-    return f"density {float(table['density']):.4g} kg/m3, viscosity {float(table['viscosity']):.4g} Pa s"
-
-
-def _read_liquid(value: Any) -> LiquidTable | None:
-    if value is None or isinstance(value, LiquidTable):
-        return value
-    if isinstance(value, bool):
-        return read_table(LiquidTable, {}) if value else None
-    if isinstance(value, dict):
-        return read_table(LiquidTable, value)
-    raise InputError(f"{shown(value)} is not allowed; it must be true, false, or a table with {', '.join(LiquidTable.model_fields)}")
-
-
 LiquidField = Annotated[
     LiquidTable | None,
-    BeforeValidator(_read_liquid),
+    BeforeValidator(lambda value: read_fluid(LiquidTable, value)),
     JsonSchema(
         "liquid around the impact, which takes from the rebound: true for water at 20 C, or its numbers; none by default",
         lambda: {"anyOf": [{"type": "boolean"}, LiquidTable.model_json_schema()]},

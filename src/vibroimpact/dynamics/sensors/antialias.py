@@ -17,7 +17,7 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.sensors.pole_pairs import PolePairs, Section
-from vibroimpact.dynamics.sensors.sensor import CORNER, Sensor
+from vibroimpact.dynamics.sensors.sensor import Sensor
 
 HALF_LENGTH = 33
 """Half width of the converter's kernel in sampling periods."""
@@ -46,7 +46,7 @@ def antialias_of(sensor: Sensor) -> AntiAlias:
     if sensor.filter == "sigma-delta":
         return AntiAlias(half_length=HALF_LENGTH)
     if sensor.filter == "butterworth":
-        return AntiAlias(sections=butterworth(sensor.corner or CORNER * sensor.rate))
+        return AntiAlias(sections=butterworth(sensor.passed))
     return AntiAlias()
 
 
@@ -66,7 +66,7 @@ def gain_at(sensor: Sensor, frequency: float) -> float:
     (0.707107, 1.0)
     """
     if sensor.filter == "butterworth":
-        return 1.0 / math.sqrt(1.0 + (frequency / (sensor.corner or CORNER * sensor.rate)) ** (2 * _ORDER))
+        return 1.0 / math.sqrt(1.0 + (frequency / sensor.passed) ** (2 * _ORDER))
     if sensor.filter == "none":
         return 1.0
     x = np.arange(-HALF_LENGTH * FINENESS, HALF_LENGTH * FINENESS + 1) / FINENESS

@@ -15,7 +15,8 @@ from vibroimpact.errors import InputError, did_you_mean
 FILTERS = ("sigma-delta", "butterworth", "none")
 """The anti-alias filters that a sensor may have."""
 
-CORNER = 0.4  # default corner of a Butterworth filter, relative to the rate
+_CORNER = 0.4  # default corner of a Butterworth filter, relative to the rate
+_FLAT = 0.45  # end of the pass band of a converter's filter, relative to the rate
 
 
 @dataclass(frozen=True)
@@ -82,7 +83,7 @@ class Sensor:
             words = (
                 f"{self.corner:g} Hz is not allowed; it must be below half of the {self.rate:g} samples per second, since what is faster"
             )
-            raise InputError(f"{words} folds into the band; take {CORNER * self.rate:g} Hz or less, or a higher rate", "corner")
+            raise InputError(f"{words} folds into the band; take {_CORNER * self.rate:g} Hz or less, or a higher rate", "corner")
 
     @property
     def unit(self) -> str:
@@ -113,6 +114,11 @@ class Sensor:
     def steepness(self) -> float:
         """Power of the frequency by which what it sees grows in modes of the same deflection."""
         return 0.0 if self.instrument is None else self.instrument.steepness
+
+    @property
+    def passed(self) -> float:
+        """Highest frequency that its anti-alias filter passes [Hz]; without one, what the default Butterworth filter would pass."""
+        return _FLAT * self.rate if self.filter == "sigma-delta" else self.corner or _CORNER * self.rate
 
     def of_drop(self, number: int) -> Sensor:
         """Return the sensor with noise and hum of its own for a drop of a study, by its number."""

@@ -25,8 +25,8 @@ _LEAST_NOISE = 1e-4
 """Least noise, relative to the rms value of a record: no plate is linear beyond."""
 _WIDEST = 0.2
 """Largest damping ratio: what is damped more does not ring."""
-_TOLD = 0.25
-"""Standard deviation of the logarithm of a damping ratio from which on it is not told."""
+_VAGUE = 0.25
+"""Standard deviation of the logarithm of a damping ratio from which on it counts as unknown."""
 _APART = 3.0
 """Distance of modes that are close to each other: in bins, or in half-power bandwidths."""
 
@@ -44,7 +44,7 @@ class DecayMode:
     amplitude : tuple of float
         Its amplitude in each record at the first sample, in the unit of the record.
     doubt : str
-        Why its damping is not told; empty if it is.
+        Why its damping could not be determined; empty if it was.
 
     Examples
     --------
@@ -198,7 +198,7 @@ def _weighed(modes: Sequence[DecayMode], duration: float) -> Iterator[DecayMode]
     """Yield modes with the doubt about their damping."""
     places = np.array([mode.frequency.value for mode in modes])
     for number, mode in enumerate(modes):
-        if mode.damping_ratio.deviation < _TOLD:
+        if mode.damping_ratio.deviation < _VAGUE:
             yield mode
             continue
         distance = np.abs(places - places[number])

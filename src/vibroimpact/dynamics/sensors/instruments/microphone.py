@@ -11,7 +11,9 @@ from vibroimpact.dynamics.sensors.pole_pairs import Section
 
 @dataclass(frozen=True)
 class Microphone:
-    """A microphone beyond a face of the plate, small against the wavelengths that it hears; where it is, the modes of the plate know.
+    """A microphone beyond a face of the plate, small against the wavelengths that it hears.
+
+    Its place is part of the modes of the plate, as the paths of sound to it (`ModalBasis.sounds`).
 
     Parameters
     ----------
