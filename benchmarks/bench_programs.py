@@ -63,7 +63,7 @@ vibroimpact has the energy ledger, the located peaks and the table of impacts in
 EXUDYN are made for many bodies: what is measured is what five impacts cost in them, less what the program takes to start. The forces of
 SciPy's and EXUDYN's rows are functions in Python, as their users write them; compiled ones would be faster.
 
-Rows of some milliseconds vary with the load of the machine: in twelve sittings, all that were made, SciPy at 1e-9 took 1.3 to 2.5 times
+Rows of some milliseconds vary with the load of the machine: in fourteen sittings, all that were made, SciPy at 1e-9 took 1.3 to 2.6 times
 vibroimpact's time, and at 1e-6 0.7 to 1.3 times.
 
 ## {drops:,} drops, one impact

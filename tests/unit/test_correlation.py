@@ -152,6 +152,14 @@ def test_channels_that_were_not_sampled_together_are_told() -> None:
     assert "samples after what the force lets expect" in " ".join(found.doubts)
 
 
+def test_a_force_that_is_upside_down_is_suspected() -> None:
+    force, value = hammered((0.02, 0.24), 0.45)
+    found = vi.correlate(a_case(damping=0.008), records(value), force=Record("hammer", -force, RATE, "N"), window=0.1)
+    assert found.polarity.tolist() == [-1.0, -1.0]
+    assert "it may be the force that is" in " ".join(found.doubts)
+    assert "it may be the force that is" not in " ".join(struck().doubts)
+
+
 def test_rates_that_differ_by_rounding_are_one_rate() -> None:
     first, *others = records(hammered()[1])
     sensors = [one.sensor() for one in a_case().sensors]
