@@ -47,7 +47,7 @@ PAGE = """# Benchmarks
 <!-- made by benchmarks/bench_programs.py -->
 
 What the same impacts cost in other programs, and how exact they are. A speed without its error says nothing, so each row has both.
-Times are CPU times of the computation, medians of {runs} runs in one sitting on one core of a shared machine; quote the ratios. `python
+Times are CPU times of the computation, medians of {runs} runs in one sitting on one core of a shared, loaded machine: not exact. `python
 benchmarks/bench_programs.py docs/benchmarks.md` makes this page again; programs that are not installed are left out.
 
 Run with Python {python}, {versions}{missing}.
@@ -61,8 +61,11 @@ against DOP853 with a relative tolerance of 1e-13.
 {one}
 
 vibroimpact has the energy ledger, the located peaks and the table of impacts in that time; the others have motion alone. LAMMPS and
-EXUDYN are made for many bodies: what is measured is what five impacts cost in them, less what the program takes to start. The contact
-force of the EXUDYN model is a function in Python, as its users write it; a compiled one would be faster.
+EXUDYN are made for many bodies: what is measured is what five impacts cost in them, less what the program takes to start. The forces of
+SciPy's and EXUDYN's rows are functions in Python, as their users write them; compiled ones would be faster.
+
+Rows of some milliseconds vary with the load of the machine: in fourteen sittings, all that were made, SciPy at 1e-9 took 1.3 to 2.6 times
+vibroimpact's time, and at 1e-6 0.7 to 1.3 times.
 
 ## {drops:,} drops, one impact
 
@@ -91,14 +94,20 @@ class Row(NamedTuple):
     error: float
 
 
-def by_scipy(mass: float, radius: float, height: float, law: vi.ContactLaw, tolerance: float) -> float:
-    """Return the fifth rebound height [m]: flight in closed form, DOP853 from touch to zero indentation."""
+def coefficients(law: vi.ContactLaw) -> tuple[float, float]:
+    """Return K [N/m^1.5] and c [N s/m^1.25] of Tsuji's law, whose force is K x^1.5 + c x^0.25 v."""
+    return float(law.forces(1.0, 0.0, 1.0)[0]), float(law.forces(1.0, 1.0, 1.0)[1])
+
+
+def by_scipy(mass: float, radius: float, height: float, stiffness: float, damping: float, tolerance: float) -> float:
+    """Return the fifth rebound height [m]: flight in closed form, DOP853 from touch to zero indentation, the law in plain floats."""
     gravity = 9.80665
     speed = math.sqrt(2.0 * gravity * (height - radius))
 
     def motion(_: float, state: np.ndarray) -> tuple[float, float]:
-        elastic, dissipative = law.forces(max(state[0], 0.0), state[1], speed)
-        return state[1], gravity - (elastic + dissipative) / mass
+        x, v = state.tolist()
+        root = math.sqrt(max(x, 0.0))
+        return v, gravity - (stiffness * x * root + damping * math.sqrt(root) * v) / mass
 
     def apart(_: float, state: np.ndarray) -> float:
         return float(state[0])
@@ -189,8 +198,8 @@ def one_drop(runs: int, folder: Path) -> list[Row]:
     """Return the rows of one drop with five impacts."""
     case = vi.read_case(CASE)
     problem = case.to_problem()
-    law, mass, radius = problem.law_of(0), float(problem.sphere.mass), float(problem.sphere.contact_offset)
-    exact = by_scipy(mass, radius, 4.0, law, 1e-13)
+    drop = float(problem.sphere.mass), float(problem.sphere.contact_offset), 4.0, *coefficients(problem.law_of(0))
+    exact = by_scipy(*drop, 1e-13)
 
     def off(height: float) -> float:
         return abs(height / exact - 1.0)
@@ -201,8 +210,8 @@ def one_drop(runs: int, folder: Path) -> list[Row]:
         found = float(vi.simulate(stated).impacts["rebound_height_m"][4])
         rows.append(Row(f"vibroimpact, tolerance {tolerance:.0e}", "", cpu_ms(lambda stated=stated: vi.simulate(stated), runs), off(found)))
     for tolerance in (1e-9, 1e-6):
-        took = cpu_ms(lambda tolerance=tolerance: by_scipy(mass, radius, 4.0, law, tolerance), max(runs // 3, 3))
-        rows.append(Row(f"SciPy, DOP853, rtol {tolerance:.0e}", "", took, off(by_scipy(mass, radius, 4.0, law, tolerance))))
+        took = cpu_ms(lambda tolerance=tolerance: by_scipy(*drop, tolerance), max(runs // 3, 3))
+        rows.append(Row(f"SciPy, DOP853, rtol {tolerance:.0e}", "", took, off(by_scipy(*drop, tolerance))))
     exported = folder / "run"
     vi.save_result(vi.simulate(case), exported)
     if has("lammps"):
@@ -243,8 +252,7 @@ def many_drops(runs: int) -> tuple[list[Row], float]:
         return rows, math.nan
     begin = time.process_time()
     rebounds = numba_loop()
-    stiffness = float(law.forces(1.0, 0.0, 1.0)[0])
-    damping = float(law.forces(1.0, 1.0, 1.0)[1])
+    stiffness, damping = coefficients(law)
     speeds = np.sqrt(2.0 * 9.80665 * (heights - radius))
     rebounds(speeds[:1], mass, stiffness, damping, 1e-6)
     compiled = time.process_time() - begin

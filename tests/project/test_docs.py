@@ -46,6 +46,10 @@ NOT_RUN = {
     "python3 -m venv .venv": "installs",
     "source .venv/bin/activate": "changes the shell",
     "python -m pip install .": "installs",
+    "pipx install .": "installs",
+    "uvx --from . vibroimpact demo": "installs",
+    "podman build -t vibroimpact -f packaging/Containerfile .": "builds an image",
+    'podman run --rm -v "$PWD":/work vibroimpact demo': "runs that image",
     "vibroimpact serve mine.toml": "runs until it is ended; tests/page tries it",
     "vibroimpact dataset signals:coal-gangue -o all-falls": "minutes",
     "vibroimpact recognise all-falls -o recognised": "of what the last one makes",
@@ -55,10 +59,6 @@ NOT_RUN = {
     "vibroimpact recognise grains -o recognised --group rock": "of the same",
     "vibroimpact reproduce -o paper-whole": "minutes; tests/published has the page",
     'pip install "vibroimpact[app]"': "installs",
-    "pipx install .": "installs",
-    "uvx --from . vibroimpact demo": "installs; make package tries the command",
-    "podman build -t vibroimpact -f packaging/Containerfile .": "needs a container engine",
-    'podman run --rm -v "$PWD":/work vibroimpact demo': "needs a container engine",
     "vibroimpact serve": "runs until it is ended; tests/page tries it",
 }
 """Commands of the pages that no test here runs, and why."""

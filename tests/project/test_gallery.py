@@ -24,6 +24,7 @@ def test_example_runs(file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(plt, "show", lambda: None)
     plt.switch_backend("agg")
+    plt.close("all")  # what other tests left open
     try:
         with plt.rc_context():
             runpy.run_path(str(file), run_name="__main__")

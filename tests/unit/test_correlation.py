@@ -17,6 +17,7 @@ import tomli_w
 
 import vibroimpact as vi
 from hammered import RATE, TABLE, a_case, hammered, records
+from vibroimpact.correlation.acquired import acquired_of
 from vibroimpact.correlation.correlate import Correlation
 from vibroimpact.signals.record import Record
 
@@ -147,6 +148,33 @@ def test_channels_that_were_not_sampled_together_are_told() -> None:
     found = vi.correlate(a_case(), late, force=Record("hammer", force, RATE, "N"), band=(300.0, 1100.0))
     assert found.delay * RATE == pytest.approx(3.0, abs=0.01)
     assert "samples after what the force lets expect" in " ".join(found.doubts)
+
+
+def test_a_force_that_is_upside_down_is_suspected() -> None:
+    force, value = hammered((0.02, 0.24), 0.45)
+    found = vi.correlate(a_case(damping=0.008), records(value), force=Record("hammer", -force, RATE, "N"), window=0.1)
+    assert found.polarity.tolist() == [-1.0, -1.0]
+    assert "it may be the force that is" in " ".join(found.doubts)
+    assert "it may be the force that is" not in " ".join(struck().doubts)
+
+
+def test_rates_that_differ_by_rounding_are_one_rate() -> None:
+    first, *others = records(hammered()[1])
+    sensors = [one.sensor() for one in a_case().sensors]
+    found = acquired_of(sensors, [replace(first, rate=RATE * (1.0 + 1e-9)), *others], None)
+    np.testing.assert_array_equal(found.value, acquired_of(sensors, [first, *others], None).value)
+    with pytest.raises(vi.InputError, match=f'"a2" has {RATE:g} samples per second, and "a1" 12801.28'):
+        acquired_of(sensors, [replace(first, rate=RATE * 1.0001), *others], None)
+
+
+def test_an_octave_of_few_frequencies_tells_nothing() -> None:
+    """Of a single frequency the criterion would be 1, of noise too."""
+    first, *others = fallen()[1]
+    noise = replace(first, value=np.random.default_rng(0).standard_normal(len(first.value)))
+    found = vi.correlate(vi.read_case({**TABLE, **DROP}), [noise, *others], window=0.15, band=(1408.0, 4000.0))
+    assert found.octaves[0] == (1408.0, pytest.approx(1414.2, abs=0.1))
+    assert np.isnan(found.octave_frac[:, 0]).all()
+    assert (found.octave_frac[0, 1:] < 0.3).all()
 
 
 def changed(**one: Any) -> list[Record]:

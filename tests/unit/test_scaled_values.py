@@ -106,3 +106,12 @@ def test_a_description_says_what_follows_what() -> None:
 def test_what_can_not_follow_is_refused(wrong: dict[str, Any], words: str) -> None:
     with pytest.raises(vi.InputError, match=words):
         vi.read_sweep(wrong)
+
+
+def test_a_place_below_zero_has_no_root() -> None:
+    place = {"from": "-60 mm", "to": "60 mm"}
+    speed = {**SPEED, "of": "drop.position.x"}
+    with pytest.raises(
+        vi.InputError, match=r'^sweep\.over\."drop\.speed": -\S+ to the power of 0\.5 is no finite number; it is drop\.position\.x over at$'
+    ):
+        vi.read_sweep(table({"drop.position.x": place, "drop.speed": speed}))

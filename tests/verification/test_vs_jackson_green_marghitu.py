@@ -19,7 +19,7 @@ AGAINST = Against(
     "Jackson, Green and Marghitu's fit to finite elements",
     "published computation",
     "elastic-plastic contact",
-    "Nonlinear Dynamics 60, 217, 2010, doi 10.1007/s11071-009-9591-z",
+    "Nonlinear Dynamics 60, 217, 2010",
 )
 LIMIT = Against(
     "limits of a power-law hardening sphere",

@@ -17,7 +17,7 @@ AGAINST = Against(
     "Thornton, an elastic-perfectly-plastic sphere",
     "published computation",
     "elastic-plastic contact",
-    "Thornton 1997, J. Appl. Mech. 64, 383, doi 10.1115/1.2787319",
+    "Thornton 1997, J. Appl. Mech. 64, 383",
 )
 
 

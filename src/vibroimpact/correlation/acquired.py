@@ -21,6 +21,8 @@ _SAME_HIT = 0.05
 """Pulses of force that follow each other within so long are one hit [s]."""
 _APART = 5e-4
 """Pulses of force that are further apart than so long are two [s]."""
+_DRIFT = 0.1
+"""Samples by which records of one rate may drift apart until their end, as rates differ by rounding."""
 LEAD = HALF_LENGTH + 1
 """Samples before an onset that belong to it: as early as a converter's filter lets it be heard."""
 
@@ -86,13 +88,14 @@ def acquired_of(sensors: Sequence[Sensor], records: Sequence[Record], force: Rec
     """
     every = [*records, *([] if force is None else [force])]
     for one in every:
-        if one.rate != every[0].rate:
-            words = f"the record {shown(one.name)} has {one.rate:g} samples per second, and {shown(every[0].name)} {every[0].rate:g}"
+        if abs(one.rate / every[0].rate - 1.0) * len(one.value) > _DRIFT:
+            words = f"the record {shown(one.name)} has {one.rate:.9g} samples per second, and {shown(every[0].name)} {every[0].rate:.9g}"
             raise InputError(f"{words}; give records of one acquisition, or resample one of them")
         if not np.isfinite(one.value).all():
             raise InputError(f"a sample of the record {shown(one.name)} is not a finite number; give it without gaps")
     rate = every[0].rate if every else 1.0
-    used = sensors_of([replace(sensor, rate=rate) for sensor in sensors], records)
+    every = [replace(one, rate=rate) for one in every]
+    used = sensors_of([replace(sensor, rate=rate) for sensor in sensors], every[: len(records)])
     if force is not None and force.unit != "N":
         raise InputError(f"the record {shown(force.name)} is in {force.unit}; the force of a hammer is in N")
     whole, start = on_common_time(every)

@@ -110,7 +110,7 @@ def _frac(found: Correlation) -> Chart:
     panel = Panel(Axis("Band", names=names), Axis("FRAC", range=(0.0, 1.0)), marks)
     caption = (
         f"Frequency response assurance criterion over each octave, of {what_frac_is_of(found)}. 1: alike but for a factor; "
-        "0: nothing in common."
+        "0: nothing in common. An octave with fewer than four frequencies has no bar."
     )
     return Chart("frac", "Frequency response assurance criterion", ((panel,),), caption, _HEIGHT)
 

@@ -29,6 +29,8 @@ _ALIGNED = 5e-3
 """Time from the first touch on by which records are aligned [s]: later, small errors of frequencies have added up."""
 _LEAST = 64
 """Least number of samples from the first touch on."""
+_FEW = 4
+"""Frequencies below which an octave has no criterion: of one it is 1 whatever the signals are, of n that are unrelated about 1/n."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,7 +67,7 @@ class Correlation:
     octaves : tuple of (float, float)
         The octaves of the band [Hz].
     frac, octave_frac : array, shape (S,) and (S, octaves)
-        Frequency response assurance criterion over the band, and over each octave.
+        Frequency response assurance criterion over the band, and over each octave; NaN with fewer than four frequencies in it.
     modes : tuple of ModePair
         The modes of the case and of the records.
     doubts : tuple of str
@@ -192,6 +194,7 @@ def correlate(
     inside = (frequency >= used[0]) & (frequency <= used[1])
     both = measured_response[:, inside], simulated_response[:, inside]
     octaves = _octaves(used)
+    untold = np.full(len(value), np.nan)
     parts = [(frequency[inside] >= low) & (frequency[inside] <= high) for low, high in octaves]
     decays = _decays(acquired, value, pieces, acting.over, used)
     return Correlation(
@@ -212,7 +215,7 @@ def correlate(
         hits=len(pieces) if acquired.force is not None else 0,
         octaves=octaves,
         frac=frac(*both),
-        octave_frac=np.stack([frac(both[0][:, part], both[1][:, part]) for part in parts], axis=1),
+        octave_frac=np.stack([frac(both[0][:, part], both[1][:, part]) if part.sum() >= _FEW else untold for part in parts], axis=1),
         modes=pairs_of(problem, acquired.sensors, decays, used),
         doubts=tuple(doubts_about(problem, acquired, delay, used, acting.over)),
     )

@@ -66,6 +66,8 @@ def _of_force(acquired: Acquired, delay: Delay, band: tuple[float, float], over:
     """Yield the doubts about the force of a hammer."""
     assert acquired.force is not None
     yield from _clipped("the force", acquired.force, acquired.rate)
+    if (delay.polarity < 0.0).all():
+        yield "all records are upside down: it may be the force that is"
     samples = delay.time * acquired.rate
     if abs(samples) > _TOGETHER:
         yield f"the records come {samples:.3g} samples after what the force lets expect: the channels were not sampled together"

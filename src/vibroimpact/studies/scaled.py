@@ -74,11 +74,25 @@ class Scaled:
 
 
 def scaled_columns(axes: Mapping[str, Axis], columns: Mapping[str, Values]) -> dict[str, Values]:
-    """Return values by key, in which those that follow another key are scaled by its values."""
-    return {
-        key: values * axis.ratio(columns[axis.of]) if isinstance(axis := axes.get(key), Scaled) else values
-        for key, values in columns.items()
-    }
+    """Return values by key, in which those that follow another key are scaled by its values.
+
+    Raises
+    ------
+    InputError
+        If one of its values has no such power.
+    """
+    found = dict(columns)
+    for key, values in columns.items():
+        if isinstance(axis := axes.get(key), Scaled):
+            with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+                ratio = axis.ratio(columns[axis.of])
+            if (wrong := np.flatnonzero(~np.isfinite(ratio))).size:
+                one = columns[axis.of][wrong[0]] / axis.at
+                raise InputError(
+                    f"{one:.6g} to the power of {axis.exponent:g} is no finite number; it is {axis.of} over at", f'over."{key}"'
+                )
+            found[key] = values * ratio
+    return found
 
 
 def drawn_for(key: str) -> Each:
