@@ -4,6 +4,8 @@ import re
 import sys
 from pathlib import Path
 
+from docutils import nodes
+from sphinx import addnodes
 from sphinx.application import Sphinx
 from sphinx_gallery.sorting import ExplicitOrder
 
@@ -96,7 +98,13 @@ html_theme_options = {
 }
 
 
-PAGES_OF_FILES = {"README.md#use": "use.md", "CHANGELOG.md": "changelog.md", "CONTRIBUTING.md": "contributing.md"}
+PAGES_OF_FILES = {
+    "README.md#use": "use.md",
+    "CHANGELOG.md": "changelog.md",
+    "CONTRIBUTING.md": "contributing.md",
+    "CODE_OF_CONDUCT.md": "code-of-conduct.md",
+    "SECURITY.md": "security.md",
+}
 LAWS = """
 ```{toctree}
 :hidden:
@@ -115,6 +123,13 @@ def complete(app: Sphinx, page: str, source: list[str]) -> None:
         source[0] += LAWS
 
 
+def lead_between_pages(app: Sphinx, tree: nodes.document) -> None:
+    """Lead links from one included file to another to the pages that include them."""
+    for link in tree.findall(addnodes.pending_xref):
+        if page := PAGES_OF_FILES.get(link["reftarget"]):
+            link.attributes |= {"refdomain": "doc", "reftarget": page.removesuffix(".md"), "reftargetid": None}
+
+
 def skip_fields_of_tuples(app: Sphinx, what: str, name: str, member: object, skip: bool, options: object) -> bool | None:
     """Leave out what Python says of the fields of named tuples, "Alias for field number 0": their docstrings have them as parameters."""
     return True if type(member).__name__ == "_tuplegetter" else None
@@ -123,3 +138,4 @@ def skip_fields_of_tuples(app: Sphinx, what: str, name: str, member: object, ski
 def setup(app: Sphinx) -> None:
     app.connect("autodoc-skip-member", skip_fields_of_tuples)
     app.connect("source-read", complete)
+    app.connect("doctree-read", lead_between_pages)
