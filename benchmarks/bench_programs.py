@@ -179,13 +179,17 @@ def _run(command: list[str], name: str, text: str) -> tuple[float, float]:
     return float(LAST_HEIGHT.findall(printed)[-1]), 1e3 * (after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
 
 
+def shown(value: float, digits: int) -> str:
+    """Return a number with so many digits, without an exponent."""
+    return f"{float(f'{value:.{digits}g}'):g}"
+
+
 def table(rows: list[Row], quantity: str) -> str:
     """Return rows as Markdown, with the ratio to the first."""
     lines = [f"| | steps a contact | CPU [ms] | of vibroimpact's | error in {quantity} |", "|---|---|---|---|---|"]
-    lines += [
-        f"| {one.program} | {one.steps} | {one.milliseconds:.3g} | {one.milliseconds / rows[0].milliseconds:.2g} | {one.error:.0e} |"
-        for one in rows
-    ]
+    for one in rows:
+        took, ratio = shown(one.milliseconds, 3), shown(one.milliseconds / rows[0].milliseconds, 2)
+        lines.append(f"| {one.program} | {one.steps} | {took} | {ratio} | {one.error:.0e} |")
     return "\n".join(lines)
 
 

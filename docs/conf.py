@@ -5,6 +5,7 @@ import sys
 from pathlib import Path
 
 from sphinx.application import Sphinx
+from sphinx_gallery.sorting import ExplicitOrder
 
 HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE / "_extensions"))
@@ -47,10 +48,20 @@ numpydoc_show_class_members = False
 # sections that are known and in order, a summary that ends in a full stop, and parameters that exist, in their order, with words
 numpydoc_validation_checks = {"GL06", "GL07", "SS01", "SS03", "SS05", "PR02", "PR03", "PR07", "PR09", "RT03", "RT05"}
 
-# gallery
+# gallery: one drop and its law, bodies that ring, sensors, what records tell, many drops, and other programs
+EXAMPLES = """
+    drop laws_phase restitution_in_dem own_law energy tolerance air
+    dent adhesion rolling oblique_measured
+    plate_modes plate_thickness elastic_bodies newtons_cradle shaken_table sprung_deck
+    instruments accelerometer features
+    bounces_heard identify bound recognition
+    sensitivity study_map
+    damping_for_adams export
+"""
 sphinx_gallery_conf = {
     "examples_dirs": ["../examples/gallery"],
     "gallery_dirs": ["gallery"],
+    "within_subsection_order": ExplicitOrder([f"plot_{name}.py" for name in EXAMPLES.split()]),  # an example that is not in it is an error
     "image_scrapers": ("matplotlib", "plotly_gallery.scrape"),
     "capture_repr": ("_repr_html_", "__repr__"),
     "ignore_repr_types": "NoneType|matplotlib",
@@ -72,6 +83,7 @@ html_title = f"vibroimpact {version}"
 html_static_path = ["_static"]
 html_css_files = ["site.css"]
 html_context = {"default_mode": "auto"}
+html_sidebars = {"first-steps": []}  # it has no pages below it
 html_copy_source = html_show_sourcelink = False
 html_theme_options = {
     "navbar_end": ["versions", "theme-switcher"],

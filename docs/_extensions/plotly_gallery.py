@@ -66,9 +66,10 @@ def describe_thumbnails(app: Sphinx, tree: nodes.document) -> None:
 
 
 def add_script(app: Sphinx, page: str, template: str, context: dict[str, Any], tree: nodes.document | None) -> None:
-    """Load plotly's script into pages that have a chart of it, and into no other."""
+    """Load plotly's script, and what fits charts to their columns, into pages that have a chart of it, and into no other."""
     if tree is not None and any(CLASS in raw.astext() for raw in tree.findall(nodes.raw)):
         app.add_js_file(SCRIPT.name)
+        app.add_js_file("chart-columns.js")
 
 
 def copy_script(app: Sphinx, fault: Exception | None) -> None:

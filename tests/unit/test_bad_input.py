@@ -14,6 +14,7 @@ from vibroimpact.cli import main
 NAN, INF = float("nan"), float("inf")
 FAULTS = [
     ({"sphere__raduis": 1}, 'sphere.raduis: unknown key "raduis"; [sphere] takes radius, material, model,'),
+    ({"sphere__diameter": "50 mm"}, "sphere.diameter: give radius, half the diameter, in its place"),
     ({"contakt": {}}, 'contakt: unknown key "contakt"; a case takes'),
     ({"contact__restitutoin": 0.5}, 'contact.restitutoin: unknown key "restitutoin"'),
     ({"contact__damping_max": 5}, 'contact.damping_max: unknown key "damping_max"; lankarani-nikravesh takes'),

@@ -161,7 +161,7 @@ def test_far_too_many_elements_are_refused_before_they_are_made(changes: dict, m
     [
         ({"element": "solid", "mesh": {"kind": "hex8"}}, "elements of first order, which are far too stiff in bending"),
         ({"damping": 2}, "the damping of the plate is critical or more; a ratio of 0.01 is 1 %"),
-        ({"size": [0.5, 0.4, 0.2]}, 'due to the theory of plates; take element = "solid"'),
+        ({"size": [0.5, 0.4, 0.2]}, 'due to the theory of plates; take plate.element = "solid"'),
         ({"size": [520, 420, 8]}, 'write "520 mm", as a bare number is in metres'),
     ],
 )

@@ -118,7 +118,7 @@ def test_a_contact_too_short_for_plate_elements_is_doubted_with_a_number() -> No
     assert 0.5 * 0.0054 < estimate < 1.5 * 0.0054
     shorter = result_of(vi.simulate(case(radius=0.00025))).doubts
     (doubt,) = (text for text in shorter if "waves through the thickness of the plate, which plate elements do not have" in text)
-    assert 'take element = "solid"' in doubt
+    assert 'take plate.element = "solid"' in doubt
     assert doubts({}, DropSummary(plate_theory=0.004, duration=1e-5)) == doubts({}, DropSummary()) == []
 
 
@@ -130,9 +130,9 @@ def test_bricks_lack_nothing_of_that() -> None:
 def test_how_far_plate_theory_is_off_in_frequency_is_said() -> None:
     (thick,) = vi.compute_modes(case({"modes": 20, "size": [0.12, 0.1, 0.03]}))["plate"].doubts
     assert "due to the theory of plates" in thick
-    assert 'take element = "solid"' in thick
+    assert 'take plate.element = "solid"' in thick
     (thin,) = vi.compute_modes(case({"modes": 20, "mesh": {"theory": "thin"}}))["plate"].doubts
-    assert 'take mesh.theory = "thick"' in thin
+    assert 'take plate.mesh.theory = "thick"' in thin
 
 
 def test_the_time_of_a_visit_of_several_contacts() -> None:

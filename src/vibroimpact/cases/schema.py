@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, Field, StrictBool, model_validator
@@ -71,6 +71,13 @@ class SphereSection(Section):
     mesh: SphereMeshField = None
     reduction: MethodField | None = Field(None, description="how the finite elements are reduced to modes; modal by default")
     attachment_mode: StrictBool = Field(False, description="add a residual attachment mode at the contact point")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _check_size(cls, given: Any) -> Any:
+        if isinstance(given, Mapping) and "diameter" in given:
+            raise InputError("give radius, half the diameter, in its place", "diameter")
+        return given
 
     @model_validator(mode="after")
     def _check_body(self) -> SphereSection:

@@ -121,10 +121,12 @@ def _damping(found: Correlation) -> Chart:
     places = np.array([mode.frequency.value for mode in measured])
     ratios = np.array([mode.damping_ratio.value for mode in measured])
     of_case = [pair for pair in found.modes if pair.number is not None]
+    computed = np.array([pair.damping_ratio for pair in of_case])
     marks = (
-        Points(np.array([pair.frequency for pair in of_case]), np.array([pair.damping_ratio for pair in of_case]), "case", "other mark"),
+        Points(np.array([pair.frequency for pair in of_case]), computed, "case", "other mark"),
         Points(places, ratios, "measured, with its 95 % interval", "matched", low=intervals[:, 0], high=intervals[:, 1]),
     )
-    panel = Panel(Axis("Frequency", "Hz", range=found.band), Axis("Damping ratio", range=(0.0, np.nan)), marks)
+    top = 1.1 * float(np.nanmax(np.append(computed, intervals)))  # room for the marks of the largest
+    panel = Panel(Axis("Frequency", "Hz", range=found.band), Axis("Damping ratio", range=(0.0, top)), marks)
     caption = "Damping ratios from the decay of the records, and those of the case."
     return Chart("damping", "Modal damping", ((panel,),), caption, _HEIGHT)

@@ -49,7 +49,7 @@ def _record_chart(found: Rebounds) -> Chart:
         marks.append(Points(bounces.others, level, "other sounds", "muted", bounces.reasons))
     label = f"{record.name[:1].upper()}{record.name[1:]}"
     panel = Panel(Axis("Time", "s"), Axis(label, "" if record.unit == "1" else record.unit), tuple(marks))
-    caption = "The record, the bounces of the ball at the value of largest magnitude, and crossed what else was heard."
+    caption = "The record, the bounces of the ball at the value of largest magnitude, and crosses at what else was heard."
     return Chart("record", "Bounces in the record", ((panel,),), caption, height=2.6)
 
 

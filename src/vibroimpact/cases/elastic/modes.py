@@ -139,24 +139,24 @@ def _doubts_of_frequencies(name: str, body: ElasticBody, model: ModalModel) -> I
     which = f"{off} of the {len(errors)} modes" if len(errors) > 1 else "the mode"
     yield (
         f"the frequencies of {which} of the {name} may be off by more than {100 * _FREQUENCY_OFF:g} %, most that of mode {worst + 1}, "
-        f"{model.frequencies[worst]:.4g} Hz, by about {100.0 * errors[worst]:.2g} %, due to {cause}; {_remedy(body.recipe, cause)}"
+        f"{model.frequencies[worst]:.4g} Hz, by about {100.0 * errors[worst]:.2g} %, due to {cause}; {_remedy(name, body.recipe, cause)}"
     )
 
 
-def _remedy(recipe: Recipe, cause: str) -> str:
+def _remedy(name: str, recipe: Recipe, cause: str) -> str:
     """Return the remedy for frequency errors by their main cause."""
     shape = recipe.shape
     if cause == THEORY and is_thin(recipe):
-        return 'take mesh.theory = "thick", or keep fewer modes'
+        return f'take {name}.mesh.theory = "thick", or keep fewer modes'
     if cause == REDUCTION:
-        return 'ask for more modes, or for reduction = "modal"'
+        return f'ask for more modes, or for {name}.reduction = "modal"'
     if cause in (THEORY, SUPPORTS):
-        return 'take element = "solid"'
+        return f'take {name}.element = "solid"'
     if isinstance(shape, SphereOfSolids):
-        return f"give mesh.elements_across = {2 * math.ceil(0.75 * shape.elements_across)}"
+        return f"give {name}.mesh.elements_across = {2 * math.ceil(0.75 * shape.elements_across)}"
     size = getattr(shape, "element_size", 0.0)
-    splits = f", or mesh.splits = {shape.splits + 1}" if isinstance(shape, PlateOfSolids) else ""
-    return f'give mesh.element_size = "{1e3 * size / 1.5:.3g} mm"{splits}'
+    splits = f", or {name}.mesh.splits = {shape.splits + 1}" if isinstance(shape, PlateOfSolids) else ""
+    return f'give {name}.mesh.element_size = "{1e3 * size / 1.5:.3g} mm"{splits}'
 
 
 def _doubts_of_mass(case: CaseTable, name: str, body: ElasticBody, model: ModalModel) -> Iterator[str]:

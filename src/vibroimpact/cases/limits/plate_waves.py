@@ -46,7 +46,7 @@ def _sentence(drop: Conditions, error: float) -> str:
     duration = float(drop.summary.duration)
     return (
         f"the contact lasts {duration:.3g} s, and waves through the thickness of the plate, which plate elements do not "
-        f'have, change the largest force by about {percent_less(error)}; take element = "solid"'
+        f'have, change the largest force by about {percent_less(error)}; take plate.element = "solid"'
     )
 
 
