@@ -209,7 +209,8 @@ def sentences(found: Recognition) -> Iterator[str]:
     if found.bayes_error is not None:
         least = f"{_percent(found.bayes_error)} %" if found.bayes_error >= _LEAST_SHOWN else "some hundredths of a per cent"
         yield (
-            f"No classifier can err less than {least} on this population (its Bayes error); the best errs in "
+            f"Whatever the sensor, no classifier can err less than {least} on this population (the lower bound of its Bayes error; "
+            "vibroimpact bound tells that of a band and a noise); the best errs in "
             f"{_percent(best.error.value)} % ({_percents(best.error)} %)."
         )
     hardest = [one for one in found.streams if one.impacts == max(row.impacts for row in found.streams)]
