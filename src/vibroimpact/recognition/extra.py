@@ -13,6 +13,8 @@ def needs_extra() -> Iterator[None]:
     """Turn a failed import of a library of the extra into an InputError that says how to install it."""
     try:
         yield
-    except ImportError as error:
+    except ModuleNotFoundError as error:
         name = {"sklearn": "scikit-learn"}.get(error.name or "", error.name)
         raise InputError(f'recognition needs {name}, which is not installed: pip install "vibroimpact[ml]"') from None
+    except ImportError as error:  # versions that do not fit together
+        raise InputError(f'recognition can\'t load its libraries ({error}): pip install --upgrade "vibroimpact[ml]"') from None
