@@ -14,9 +14,22 @@ FILES = sorted((Path(__file__).parents[2] / "examples" / "gallery").glob("*.py")
 
 # modes of elastic bodies, thousands of bounces, classifiers: more than 2 s of processor time
 LONG = {
-    f"plot_{name}" for name in ("accelerometer", "elastic_bodies", "features", "identify", "instruments", "plate_modes", "plate_thickness")
+    f"plot_{name}"
+    for name in (
+        "accelerometer",
+        "bound",
+        "elastic_bodies",
+        "energy",
+        "features",
+        "identify",
+        "instruments",
+        "plate_modes",
+        "plate_thickness",
+        "recognition",
+        "sensitivity",
+        "shaken_table",
+    )
 }
-LONG |= {"plot_recognition", "plot_shaken_table"}
 
 
 @pytest.mark.parametrize("file", [pytest.param(file, id=file.stem, marks=pytest.mark.slow if file.stem in LONG else ()) for file in FILES])

@@ -161,6 +161,7 @@ def test_a_force_of_no_contact_law_is_found_from_one_sensor_at_a_known_place() -
     assert found.impulse[0] == pytest.approx(np.trapezoid(force, time), rel=0.02)
 
 
+@pytest.mark.slow
 def test_too_few_modes_are_told() -> None:
     radius, speed, place = 0.02, 3.0, (0.06, 0.04)
     found = vi.identify(a_case(60), records_of(an_impact(radius, speed, place), 40.0, seed=1))

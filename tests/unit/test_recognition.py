@@ -394,6 +394,7 @@ def test_charts_are_drawn(found: vi.Recognition) -> None:
         assert matplotlib_figure(chart).axes
 
 
+@pytest.mark.slow
 def test_plates_that_were_never_trained_on(folder: Path) -> None:
     """Three plates are three folds; within the two that are trained on there are two."""
     found = vi.recognise(folder, group="plate", folds=3, seeds=1)

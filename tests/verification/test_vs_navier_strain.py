@@ -53,7 +53,8 @@ def matching(plate: SimplySupported, omega: Floats, spot: Floats, exact: Floats)
     return bends[mine], near[theirs]
 
 
-@pytest.mark.parametrize("side", [pytest.param("upper", marks=pytest.mark.slow), "lower"])
+@pytest.mark.slow
+@pytest.mark.parametrize("side", ["upper", "lower"])
 def test_modes(agrees: Agrees, side: Any) -> None:
     recipe = Recipe(PlateOfPlates(SIZE, 0.01, theory="thin"), DENSITY, MODULUS, POISSON, EDGES_HELD, Reduction(modes=20))
     plate = SimplySupported(SIZE, DENSITY, MODULUS, POISSON, 60e3)
