@@ -27,6 +27,21 @@ RANDOM: dict[str, Any] = {
 }
 
 
+def coal_on_steel() -> dict[str, Any]:
+    """Return the bodies of a small elastic study: coal on a steel plate of twelve modes."""
+    return {
+        "sphere": {"radius": 0.02, "material": {"density": 1380.0, "youngs_modulus": 2.3e9, "poissons_ratio": 0.28}},
+        "plate": {
+            "size": [0.4, 0.3, 0.008],
+            "material": "steel",
+            "model": "elastic",
+            "modes": 12,
+            "damping": 0.02,
+            "supports": "simply-supported",
+        },
+    }
+
+
 def study_table(sweep: object = None, **changes: object) -> dict[str, Any]:
     """Return a study as a mapping: a plain case, and a section that sweeps it."""
     return {**plain_case(**changes), "sweep": {"over": OVER} if sweep is None else sweep}

@@ -10,6 +10,7 @@ import pytest
 from scipy import stats
 
 import vibroimpact as vi
+from studies import coal_on_steel
 from vibroimpact.dynamics.first_touch import first_touch
 from vibroimpact.errors import ComputationError
 from vibroimpact.studies.axes import Listed, Normal, Spaced
@@ -83,15 +84,7 @@ def test_the_window_is_cut_at_the_last_sample_before_it() -> None:
 def table(**sweep: Any) -> dict[str, Any]:
     """A small population on an elastic plate."""
     return {
-        "sphere": {"radius": 0.02, "material": {"density": 1380.0, "youngs_modulus": 2.3e9, "poissons_ratio": 0.28}},
-        "plate": {
-            "size": [0.4, 0.3, 0.008],
-            "material": "steel",
-            "model": "elastic",
-            "modes": 12,
-            "damping": 0.02,
-            "supports": "simply-supported",
-        },
+        **coal_on_steel(),
         "drop": {"height": 0.1},
         "contact": {"law": "tsuji", "restitution": 0.5},
         "sensors": [{"name": "a1", "position": [0.1, 0.05], "rate": 20e3, "filter": "butterworth", "accelerometer": {"noise": 0.1}}],

@@ -9,6 +9,7 @@ import pytest
 from scipy import stats
 
 import vibroimpact as vi
+from studies import coal_on_steel
 from vibroimpact.cases.keys import with_values
 from vibroimpact.errors import InputError
 from vibroimpact.studies.axes import Listed, Normal
@@ -23,15 +24,7 @@ SENSORS = [
 def table(**over: Any) -> dict[str, Any]:
     """A grid over sensors of an elastic plate."""
     return {
-        "sphere": {"radius": 0.02, "material": {"density": 1380.0, "youngs_modulus": 2.3e9, "poissons_ratio": 0.28}},
-        "plate": {
-            "size": [0.4, 0.3, 0.008],
-            "material": "steel",
-            "model": "elastic",
-            "modes": 12,
-            "damping": 0.02,
-            "supports": "simply-supported",
-        },
+        **coal_on_steel(),
         "drop": {"speed": 2.0},
         "contact": {"law": "tsuji", "restitution": 0.5},
         "sensors": SENSORS,
