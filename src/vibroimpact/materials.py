@@ -72,7 +72,7 @@ class Material:
     name: str = ""
     description: str = ""
     note: str = ""
-    sources: Mapping[str, str] = field(default_factory=dict)
+    sources: Mapping[str, str] = field(default_factory=dict, hash=False)
 
     def __post_init__(self) -> None:
         for name, allowed in _RANGES.items():

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import tomllib
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, get_args
 
@@ -24,6 +25,7 @@ from vibroimpact.cases.fields.elastic_body import ElementKind
 from vibroimpact.cases.fields.supports import EdgeName
 from vibroimpact.cli import main
 from vibroimpact.structures.lattice import SOLID_KINDS, box_mesh, mesh_of_blocks
+from vibroimpact.structures.recipe import model_key
 from vibroimpact.structures.supports.bar import Bar
 from vibroimpact.structures.supports.edge import EDGES
 from vibroimpact.structures.supports.patch import Patch
@@ -247,8 +249,10 @@ def test_rigid_bodies_have_no_modes() -> None:
 )
 def test_supports_and_back(supports: Any, number: int, kind: type | None) -> None:
     case = vi.read_case(plate_case(supports=supports))
-    found = elastic_bodies(case)["plate"].recipe.supports
+    recipe = elastic_bodies(case)["plate"].recipe
+    found = recipe.supports
     assert len(found) == number
+    assert model_key(recipe) == model_key(replace(recipe))  # the modes have a place in the store
     assert kind is None or all(isinstance(support, kind) for support in found)
     again = vi.read_case(resolved_case(case))
     assert elastic_bodies(again)["plate"] == elastic_bodies(case)["plate"]

@@ -172,7 +172,7 @@ def test_a_dask_worker_that_is_killed_costs_nothing(
     study: vi.Study, scheduler: tuple[str, list[subprocess.Popen[bytes]], Path], tmp_path: Path
 ) -> None:
     address, workers, _ = scheduler
-    over = {"drop.position.x": [0.0, 0.1], "drop.speed": {"from": 1.0, "to": 3.0, "number": 16}}
+    over = {"drop.position.x": [0.0, 0.1], "drop.speed": {"from": 1.0, "to": 3.0, "number": 64}}  # several chunks
     sweep = vi.read_sweep(elastic_table(over=over))
     killed = threading.Event()
 
