@@ -48,7 +48,7 @@ numpydoc_show_class_members = False
 # sections that are known and in order, a summary that ends in a full stop, and parameters that exist, in their order, with words
 numpydoc_validation_checks = {"GL06", "GL07", "SS01", "SS03", "SS05", "PR02", "PR03", "PR07", "PR09", "RT03", "RT05"}
 
-# gallery: one drop and its law, bodies that ring, sensors, what records tell, many drops, and other programs
+# gallery: one drop and its law, vibrating bodies, sensors, estimates from records, many drops, and other programs
 EXAMPLES = """
     drop laws_phase restitution_in_dem own_law energy tolerance air
     dent adhesion rolling oblique_measured

@@ -1,15 +1,15 @@
 """
-What an accelerometer makes of an impact
-========================================
+Accelerometer signal of an impact: resonance, range, anti-alias filter
+======================================================================
 
-A steel ball of 5 mm strikes a steel plate, and a sensor reads the motion at a point 70 mm away. Between the plate and the file stand the
-mounted resonance of the accelerometer, its range, a filter against aliasing and the converter: each changes what is seen.
+A steel ball of 5 mm in diameter strikes a steel plate, and an accelerometer measures the motion at a point 70 mm away. The recorded signal
+differs from this motion by the mounted resonance of the accelerometer, its range, the anti-alias filter and the sampling.
 """
 
 # %%
-# One impact, many instruments
-# ----------------------------
-# The impact is computed once; any instrument can listen to it afterwards, as no sensor changes the plate.
+# One impact, several measuring chains
+# ------------------------------------
+# The impact is computed once; the signals of any instrument follow from the result, as sensors do not affect the plate.
 from dataclasses import replace
 
 import matplotlib.pyplot as plt
@@ -36,25 +36,24 @@ response = vi.simulate(vi.read_case(case))
 bare = response.problem.sensors[0]
 
 
-def heard(**instrument):
+def recorded(**instrument):
     """Return what an accelerometer with these properties records of the impact."""
     chain = {name: instrument.pop(name) for name in ("filter", "rate") if name in instrument}
     sensor = replace(bare, instrument=vi.Accelerometer(**instrument), **chain)
     return response.signals(sensor)["a1"]
 
 
-ideal = heard(rate=400e3, filter="none")
-resonant = heard(rate=400e3, filter="none", resonance=30e3)
-filtered = heard()
-aliased = heard(filter="none")
-clipped = heard(resonance=30e3, range=1500.0)
+ideal = recorded(rate=400e3, filter="none")
+resonant = recorded(rate=400e3, filter="none", resonance=30e3)
+filtered = recorded()
+aliased = recorded(filter="none")
+clipped = recorded(resonance=30e3, range=1500.0)
 
 # %%
-# What goes wrong
-# ---------------
-# Without a filter the samples at 50 kHz are values of the fast signal: what lies above 25 kHz folds down into the band. The resonance
-# multiplies the peak, and the range cuts that off, which the signal says. The filter of a delta-sigma converter keeps what is below 22.5
-# kHz alone.
+# Aliasing, resonance and overload
+# --------------------------------
+# Without a filter, components above 25 kHz are aliased into the band of a signal sampled at 50 kHz. The resonance increases the peak, and
+# the range clips it, which the signal reports as overload. The filter of a delta-sigma converter passes only frequencies below 22.5 kHz.
 assert np.allclose(
     aliased.value, ideal.value[::8][: len(aliased.value)], atol=1e-6 * np.abs(ideal.value).max()
 )
@@ -80,8 +79,8 @@ assert (
 )
 
 # %%
-# In time and in frequency
-# ------------------------
+# Signals in time and frequency
+# -----------------------------
 plt.style.use("vibroimpact.charts.print")
 figure, (above, below) = plt.subplots(2, figsize=(6.6, 5.2), layout="constrained")
 for one, words, style in (
@@ -89,7 +88,7 @@ for one, words, style in (
     (ideal, "motion of the plate", {"color": "#00204d", "linewidth": 1.4}),
     (
         clipped,
-        "sampled at 50 kHz behind resonance, range and filter",
+        "sampled at 50 kHz after resonance, range and filter",
         {"color": "#b3400e", "marker": "o", "markersize": 3.5, "linewidth": 0.7},
     ),
 ):
@@ -105,7 +104,7 @@ above.legend(loc="lower left")
 for name, colour, words in (
     ("ideal", "#00204d", "motion"),
     ("aliased", "#c79000", "50 kHz without a filter"),
-    ("filtered", "#b3400e", "50 kHz with it"),
+    ("filtered", "#b3400e", "50 kHz with filter"),
 ):
     below.semilogy(
         1e-3 * frequency.get(name, frequency["filtered"]),
@@ -118,6 +117,6 @@ below.axvline(25.0, color="#6b6b6b", linestyle="--", linewidth=0.9)
 below.set(
     xlabel="Frequency [kHz]", ylabel="Spectrum [m/s² / Hz]", xlim=(0.0, 60.0), ylim=(1e-4, 20.0)
 )
-below.text(25.4, 0.7, "half the rate", color="#6b6b6b", fontsize=8)
+below.text(25.4, 0.7, "Nyquist frequency", color="#6b6b6b", fontsize=8)
 below.legend(loc="upper right", ncols=3)
 plt.show()

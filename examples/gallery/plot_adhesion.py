@@ -1,16 +1,17 @@
 """
-Dust that sticks
-================
+Sticking velocity of fine particles: JKR adhesion
+=================================================
 
-Below some speed a small particle does not bounce off: surface energy holds it. Under Johnson, Kendall and Roberts' law, with and without
-Krijt's loss in the bulk, grains of different sizes meet a wall; the smaller the grain, the faster it may come and still stick.
+Below a critical speed a small particle does not rebound but sticks, because of its surface energy. The restitution of grains of different
+sizes on a wall is computed with the law of Johnson, Kendall and Roberts, with and without Krijt's viscoelastic loss; the sticking velocity
+increases as the size decreases.
 """
 
 # %%
-# A contact that is torn apart
-# ----------------------------
-# Adhesion pulls the surfaces together at first touch, and a neck holds them until it tears at a negative indentation. The pull-off force is
-# :math:`\tfrac32 \pi w R`, whatever the stiffness.
+# Force and pull-off
+# ------------------
+# Adhesion attracts the surfaces at first touch, and a neck holds them together until it breaks at a negative indentation. The pull-off
+# force is :math:`\tfrac32 \pi w R`, independent of the stiffness.
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -20,7 +21,7 @@ modulus, surface_energy, density = 1.7e9, 0.1, 1050.0  # polystyrene on silica
 
 
 def laws_of(radius):
-    """Return the mass of a grain [kg] and its law without and with a loss in the bulk."""
+    """Return the mass of a grain [kg] and its law without and with a viscoelastic loss."""
     mass = 4.0 / 3.0 * np.pi * radius**3 * density
     pair = {
         "effective_modulus": modulus,
@@ -48,10 +49,10 @@ pull_off = 1.5 * np.pi * surface_energy * radius
 assert abs(history["force_N"].min() / -pull_off - 1.0) < 1e-3
 
 # %%
-# Stick or bounce
-# ---------------
-# Without other losses the energy that tearing takes is :math:`7.09\, (w^5 R^4 / E^{*2})^{1/3}` (Thornton and Ning 1998), which makes the
-# sticking speed.
+# Sticking velocity
+# -----------------
+# Without other losses the energy lost at separation is :math:`7.09\, (w^5 R^4 / E^{*2})^{1/3}` (Thornton and Ning 1998), which gives the
+# sticking velocity.
 radii = np.array([0.3e-6, 1e-6, 3e-6, 10e-6])
 sticks = np.sqrt(
     2.0
@@ -66,8 +67,8 @@ for one, limit in zip(radii, sticks, strict=True):
     assert abs(restitution[2] - np.sqrt(1.0 - 1.0 / 9.0)) < 2e-3
 
 # %%
-# The neck, and who bounces
-# -------------------------
+# Force-indentation curve and restitution against speed
+# -----------------------------------------------------
 plt.style.use("vibroimpact.charts.print")
 figure, (left, right) = plt.subplots(1, 2, figsize=(7.2, 3.8), layout="constrained")
 left.axhline(0.0, color="#6b6b6b", linewidth=0.7)
@@ -111,7 +112,7 @@ for one, colour in zip(
 right.set(
     xlabel="Approach speed [m/s]",
     ylabel="Restitution [-]",
-    title="Dotted: with a loss in the bulk",
+    title="Dotted: with viscoelastic loss",
     ylim=(-0.02, 1.02),
 )
 right.xaxis.set_major_formatter("{x:g}")

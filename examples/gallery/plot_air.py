@@ -1,15 +1,15 @@
 """
-Does air matter?
-================
+Air drag in a drop test
+=======================
 
-A grain of 0.1 mm that is dropped from 2 m arrives at its terminal velocity, a pebble does not notice the air. Between them lies every
-particle whose restitution is computed from rebound heights: neglected drag passes for a loss in the contact.
+A grain of 0.1 mm that is dropped from 2 m reaches its terminal velocity; for a pebble drag is negligible. For the particle sizes in
+between, neglected drag biases a restitution that is computed from rebound heights: it appears as a loss in the contact.
 """
 
 # %%
-# From dust to pebbles
-# --------------------
-# Spheres of quartz fall 2 m with and without air, sixty sizes at once.
+# Impact speed against size
+# -------------------------
+# Spheres of quartz of sixty sizes fall 2 m with and without air, computed as one batch.
 import matplotlib.pyplot as plt
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -41,9 +41,9 @@ vacuum, in_air = fallen(None), fallen(vi.Air())
 assert np.allclose(vacuum, np.sqrt(2.0 * gravity * height))
 
 # %%
-# The same by SciPy
-# -----------------
-# Gravity and the drag of Clift and Gauvin (1970), integrated to the ground. The smallest falls at Stokes' terminal velocity.
+# Comparison with SciPy
+# ---------------------
+# Gravity and the drag of Clift and Gauvin (1970), integrated until impact. The smallest sphere falls at Stokes' terminal velocity.
 
 
 def by_scipy(one):
@@ -67,12 +67,12 @@ stokes = 2.0 / 9.0 * quartz.density * gravity * radius[0] ** 2 / 1.81e-5
 assert 0.9 * stokes < in_air[0] < stokes
 
 # %%
-# What is lost
-# ------------
+# Loss of speed
+# -------------
 plt.style.use("vibroimpact.charts.print")
 figure, axes = plt.subplots(figsize=(6.4, 4.0), layout="constrained")
 diameter = 2e3 * radius
-axes.fill_between(diameter, in_air, vacuum, color="#b3400e", alpha=0.12, label="taken by the air")
+axes.fill_between(diameter, in_air, vacuum, color="#b3400e", alpha=0.12, label="lost to drag")
 axes.loglog(diameter, vacuum, "--", color="#6b6b6b", label="in a vacuum")
 axes.loglog(diameter, in_air, color="#00204d", linewidth=2.0, label="in air")
 axes.loglog(
@@ -91,7 +91,7 @@ axes.set(
     xlabel="Diameter [mm]",
     ylabel="Speed at first touch [m/s]",
     ylim=(0.06, 9.0),
-    title="Quartz that falls 2 m",
+    title="Impact speed of quartz spheres after a fall of 2 m",
 )
 axes.xaxis.set_major_formatter("{x:g}")
 axes.yaxis.set_major_formatter("{x:g}")

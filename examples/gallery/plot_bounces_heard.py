@@ -2,15 +2,15 @@
 Restitution from the sound of bounces
 =====================================
 
-Let a ball bounce in front of a telephone. The times between bounces give its speeds and their ratios the restitution, whatever the
-microphone; of a record with noise, mains hum and clicks the bounces are found, with the restitution of each and its interval.
+The times between the bounces of a ball give its speeds, and their ratios the restitution, independent of the microphone. Bounces are
+detected in a sound record with noise, mains hum and clicks, and the restitution of each is estimated with its interval.
 """
 
 # %%
-# A record made by hand
-# ---------------------
-# Nine touches of a ball with a restitution of 0.85, each a short ring, in noise of the same mean power, with hum and three clicks. With a
-# file it is ``vi.one_record("bounces.wav")``.
+# A synthetic record
+# ------------------
+# Nine impacts of a ball with a restitution of 0.85, each a short decaying vibration, in noise of the same mean power, with hum and three
+# clicks. A file is read by ``vi.one_record("bounces.wav")``.
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -35,8 +35,8 @@ sound[random.integers(0, len(time), 3)] += 1.0
 record = vi.Record("telephone", sound, rate, "Pa")
 
 # %%
-# Listen
-# ------
+# Detection and restitution
+# -------------------------
 bounces = vi.find_bounces(record)
 rebounds = vi.rebounds_of(bounces, gravity=gravity)
 print(
@@ -50,13 +50,13 @@ assert np.abs(rebounds.restitution[known] - restitution).max() < 3e-4
 assert len(bounces.others) == 3  # the clicks
 
 # %%
-# Restitution over the speed, with intervals, and three fits: the chart of the report.
+# Restitution against speed, with intervals, and three fits: the chart of the report.
 record_chart, restitution_chart = vi.bounce_charts(rebounds)
 vi.plotly_figure(restitution_chart)
 
 # %%
-# What was heard
-# --------------
+# Record and estimates
+# --------------------
 plt.style.use("vibroimpact.charts.print")
 figure, (above, below) = plt.subplots(
     2, figsize=(6.6, 4.6), height_ratios=(3, 2), sharex=True, layout="constrained"
@@ -68,7 +68,7 @@ above.plot(
     "v",
     color="#b3400e",
     markersize=7,
-    label="bounces that are found",
+    label="detected bounces",
 )
 above.plot(
     bounces.others,
@@ -76,7 +76,7 @@ above.plot(
     "x",
     color="#6b6b6b",
     markersize=7,
-    label="clicks, which are not",
+    label="rejected clicks",
 )
 above.set(
     ylim=(-1.6, 1.5),

@@ -1,15 +1,17 @@
 """
-What can be told at all?
-========================
+Bayes error of coal and gangue classification
+=============================================
 
-Before a classifier of coal and gangue is trained, physics says how good it can become: an impact shows its impulse and its contact time,
-and rocks that share both cannot be told apart by any program. Drops of a whole population give that bound in seconds.
+The lowest possible error of a classifier of coal and gangue can be computed before any training: an impact gives its impulse and its
+contact time, and rocks that agree in both cannot be distinguished by any classifier. Simulated drops of the whole population give bounds on
+this error in seconds.
 """
 
 # %%
-# A population
-# ------------
-# Coal and gangue of 15 to 60 mm fall from 0.8 to 3 m; their densities, moduli and restitutions scatter as stated in the shipped study.
+# Population
+# ----------
+# Coal and gangue of 15 to 60 mm in radius fall from 0.8 to 3 m; their densities, moduli and restitutions have the distributions of the
+# shipped study.
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -17,11 +19,12 @@ import vibroimpact as vi
 
 bound = vi.bound_of(vi.load_sweep("signals:coal-gangue", samples=2048))
 for name, error in bound.errors.items():
-    print(f"{name:40} {100.0 * error.lower:5.1f} to {100.0 * error.upper:5.1f} % told wrong")
+    print(f"{name:40} {100.0 * error.lower:5.1f} to {100.0 * error.upper:5.1f} % misclassified")
 assert bound.errors["one impact"].upper < 0.01 < 0.2 < bound.errors["contact time"].lower
 
 # %%
-# The contact times are Hertz's, :math:`T = 2.87\, (m^2 / (E^{*2} R v))^{1/5}` (Johnson 1985, eq. 11.24), and longer by the damping.
+# The contact times are those of Hertz's theory, :math:`T = 2.87\, (m^2 / (E^{*2} R v))^{1/5}` (Johnson 1985, eq. 11.24), increased by the
+# damping.
 falls = bound.falls
 mass = 4.0 / 3.0 * np.pi * falls.radius**3 * falls.density
 effective = 1.0 / ((1.0 - 0.28**2) / falls.modulus + (1.0 - 0.3**2) / 210e9)  # against steel
@@ -30,8 +33,8 @@ longer = falls.duration / johnson
 assert np.all((longer > 1.0) & (longer < 1.25))
 
 # %%
-# What an impact shows
-# --------------------
+# Impulse, contact time and classification error
+# ----------------------------------------------
 plt.style.use("vibroimpact.charts.print")
 figure, (left, right) = plt.subplots(
     1, 2, figsize=(7.6, 4.0), width_ratios=(5, 4), layout="constrained"
@@ -52,7 +55,7 @@ left.set(
     yscale="log",
     xlabel="Impulse [N s]",
     ylabel="Duration of the contact [µs]",
-    title="2,048 falls, as one impact shows them",
+    title="Impulse and contact time of 2,048 falls",
 )
 left.legend(loc="upper left", markerscale=4)
 names = ("impulse", "contact time", "one impact, place unknown", "one impact")
@@ -67,14 +70,12 @@ right.axvline(100.0 * bound.majority, color="#b3400e", linestyle="--", linewidth
 right.text(
     100.0 * bound.majority + 0.7,
     3.6,
-    "always the\nfrequent one",
+    "majority\nclass",
     color="#b3400e",
     ha="left",
     va="top",
     fontsize=8,
 )
-right.set(
-    xlabel="Told wrong by the best classifier [%]", title="by what is measured", xlim=(0.0, 56.0)
-)
+right.set(xlabel="Bayes error, upper bound [%]", title="By measured quantities", xlim=(0.0, 56.0))
 right.grid(visible=False, axis="y")
 plt.show()

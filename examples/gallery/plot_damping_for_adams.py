@@ -1,16 +1,15 @@
 """
-What damping do I type into Adams?
-==================================
+Damping of Adams' IMPACT function from rebound heights
+======================================================
 
-Adams' IMPACT function wants a damping, which no one can measure; rebound heights can be measured with a ruler and a camera. From four of
-them follow the damping at each approach speed, its interval, and the numbers in the units of the dialogue: newtons, millimetres and
-seconds.
+The damping of Adams' IMPACT function cannot be measured directly, but rebound heights can, with a ruler and a camera. From four of them
+follow the damping at each approach speed, its interval, and the values in the units of the dialog: newtons, millimetres and seconds.
 """
 
 # %%
 # The measurement
 # ---------------
-# A rock of 25 mm was dropped from 4 m; its first four rebounds are known to 2 mm.
+# A rock of 25 mm radius was dropped from 4 m; its first four rebounds are known to 2 mm.
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -33,9 +32,10 @@ question = vi.read_calibration(case)
 found = vi.calibrate_case(question)
 
 # %%
-# What to type
-# ------------
-# A stiffness in N/m\ :sup:`1.5` is not a thousandth in N/mm\ :sup:`1.5`: the unit of the length is raised to the exponent too.
+# Values for the dialog
+# ---------------------
+# The conversion of a stiffness from N/m\ :sup:`1.5` to N/mm\ :sup:`1.5` is not a factor of 1000: the unit of length is raised to the
+# exponent.
 law = found.problem.laws[0]
 stiffness = vi.convert_units(float(law.stiffness), "N/m^1.5", "N/mm^1.5")
 print(f"Stiffness          {stiffness:.0f} N/mm^{law.exponent}")
@@ -45,14 +45,14 @@ for speed, damping in zip(found.observations.speeds, found.values, strict=True):
     print(f"Damping            {1e-3 * damping:.4f} N s/mm for an impact at {speed:.2f} m/s")
 
 # %%
-# The paper found 179.75, 172.8, 166.3 and 160.9 N s/m by trial, for rebounds that are those of its own theory: the intervals hold them.
+# The paper found 179.75, 172.8, 166.3 and 160.9 N s/m by trial, for the rebounds of its own theory: the intervals contain these values.
 printed = np.array([179.75, 172.8, 166.3, 160.9])
 assert np.all((found.intervals[:, 0] < printed) & (printed < found.intervals[:, 1]))
 
 # %%
-# Check, and draw
+# Check and chart
 # ---------------
-# The calibrated case runs as any other, and rebounds as high as was measured.
+# The calibrated case runs as any other, and reproduces the measured rebound heights.
 response = vi.simulate(vi.calibrated_case(question.case, found))
 assert np.allclose(
     response.impacts["rebound_height_m"][:4], [2.411, 1.457, 0.885, 0.541], atol=2e-3
@@ -68,14 +68,14 @@ axes.fill_between(
     1e-3 * (line + band),
     color="#0072b2",
     alpha=0.15,
-    label="95 % band of the line",
+    label="95 % band of the fit",
 )
 axes.plot(
     speeds,
     1e-3 * line,
     color="#0072b2",
     linewidth=1.8,
-    label="line over the speed: one input for all impacts",
+    label="linear fit over the speed: one input for all impacts",
 )
 axes.errorbar(
     found.observations.speeds,
@@ -99,7 +99,7 @@ axes.plot(
 axes.set(
     xlabel="Approach speed [m/s]",
     ylabel="Damping of IMPACT [N s/mm]",
-    title="The damping to type into Adams",
+    title="Damping of Adams' IMPACT function against approach speed",
 )
 axes.legend(loc="upper left")
 plt.show()

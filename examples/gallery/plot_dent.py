@@ -1,16 +1,17 @@
 """
-The dent that stays
-===================
+Restitution coefficient against impact speed: elastic-plastic contact laws
+==========================================================================
 
-A ball that yields leaves a dent and loses energy to it. Three elastic-plastic laws are driven from below the yield speed to a thousand
-times of it, and held to Thornton's closed form; one loop of force over indentation shows where the energy went.
+A ball that yields leaves a permanent dent and loses energy to plastic deformation. Elastic-plastic contact laws are evaluated from below
+the yield speed to a thousand times this speed, and Thornton's law is compared with its closed form; the area of the loop of force against
+indentation is the energy lost.
 """
 
 # %%
 # Thornton's closed form
 # ----------------------
-# An elastic-perfectly-plastic sphere (J. Appl. Mech. 64:383, 1997) has the restitutions below at multiples of the speed at which it first
-# yields.
+# An elastic-perfectly-plastic sphere (J. Appl. Mech. 64:383, 1997) has the following restitutions at multiples of the speed at which it
+# first yields.
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -40,9 +41,9 @@ for ratio, restitution in {
     assert abs(vi.achieved_restitution(thornton, mass, ratio * yields) - restitution) < 1e-6
 
 # %%
-# One impact
-# ----------
-# At 3 m/s each law loads up, yields, and unloads along a steeper way. What lies between is the work of the dent.
+# Force-indentation hysteresis
+# ----------------------------
+# At 3 m/s the contact of each law is loaded, yields, and is unloaded along a steeper curve. The enclosed area is the plastic work.
 loops = {}
 for name, law in {
     "thornton": thornton,
@@ -74,8 +75,8 @@ for name, law in {
     )
 
 # %%
-# Loops and restitutions
-# ----------------------
+# Hysteresis and restitution
+# --------------------------
 plt.style.use("vibroimpact.charts.print")
 figure, (left, right) = plt.subplots(1, 2, figsize=(7.2, 3.8), layout="constrained")
 speeds = np.geomspace(0.3 * yields, 1000.0 * yields, 80)
@@ -109,11 +110,11 @@ right.text(
     va="top",
     fontsize=8,
 )
-left.set(xlabel="Indentation [µm]", ylabel="Force [kN]", title="One impact at 3 m/s leaves a dent")
+left.set(xlabel="Indentation [µm]", ylabel="Force [kN]", title="One impact at 3 m/s")
 right.set(
     xlabel="Approach speed [m/s]",
     ylabel="Restitution [-]",
-    title="Faster is less elastic",
+    title="Restitution against speed",
     ylim=(0.0, 1.03),
 )
 left.legend(loc="upper left")

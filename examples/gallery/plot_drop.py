@@ -1,16 +1,17 @@
 """
-Drop a rock on a plate
-======================
+Contact force and rebound of a rock dropped on a steel plate
+============================================================
 
-A rock of 25 mm falls 4 m onto a steel plate and bounces five times: Type 1 of the paper from which this project started, with Adams' IMPACT
-and a damping for each bounce. The rebound is the printed one; the largest force is larger, as the program of the paper stepped over it.
+A rock of 25 mm radius falls 4 m onto a steel plate and bounces five times: Type 1 of the paper from which this project started, with Adams'
+IMPACT and a damping for each bounce. The rebound agrees with the printed one; the largest force is larger, since the output steps of the
+paper's program missed the peak.
 """
 
 # %%
 # Run a shipped case
 # ------------------
-# A case is a file, a dictionary, or one of those that are shipped. Five seconds of flight and five contacts of a quarter of a millisecond
-# take some milliseconds. At the end of a cell a response shows its impacts, and what of the theory its drop exceeds.
+# A case is a file, a dictionary, or a shipped case. Five seconds of flight and five contacts of a quarter of a millisecond are computed in
+# some milliseconds. At the end of a cell a response shows its impacts, and the limits of the theory that the drop exceeds.
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -22,24 +23,23 @@ response
 # %%
 # The chart of the report
 # -----------------------
-# Every chart of the report is also a figure of plotly, by its name.
+# Every chart of the report is also available by its name as a figure of plotly.
 response.plot("force")
 
 # %%
-# Compare with the paper
-# ----------------------
+# Comparison with the paper
+# -------------------------
 # The paper prints a first rebound of 2.41132 m and a largest force of 9583.984 N. Its program wrote 20,000 outputs in 5 s, one in 0.25 ms,
-# which is as long as a contact: its largest force is the largest of those that an output happened to hit.
+# which is as long as a contact: its largest force is the largest of the values that were output.
 force, rebound = response.impacts["max_force_N"], response.impacts["rebound_height_m"]
 assert abs(rebound[0] - 2.41132) < 1e-4
 assert force[0] > 9583.984
 assert abs(response.energy["closure_relative"]) < 1e-9
 
 # %%
-# Five contacts
-# -------------
-# The history can be asked at any time, however short the contacts are: above the path, below the force of each bounce from its first touch
-# on.
+# Contact forces
+# --------------
+# The history can be evaluated at any time, however short the contacts are: height above, force of each impact from first touch on below.
 plt.style.use("vibroimpact.charts.print")
 figure, (above, below) = plt.subplots(
     2, figsize=(6.4, 5.0), height_ratios=(2, 3), layout="constrained"
@@ -67,7 +67,7 @@ for colour, touch, duration, rise in zip(
         pulse,
         color=colour,
         linewidth=1.8,
-        label=f"{pulse.max():.2f} kN, rises to {rise:.2f} m",
+        label=f"{pulse.max():.2f} kN, rebound {rise:.2f} m",
     )
     above.plot(touch, 0.025, "o", color=colour, markersize=7, clip_on=False)
 below.axhline(9.583984, color="#b3400e", linestyle="--", linewidth=0.9)

@@ -1,9 +1,9 @@
 """
-A rock that rings on a plate that waves
-=======================================
+Impact of an elastic sphere on an elastic plate: bending waves
+==============================================================
 
-Sphere and plate are elastic: the paper's Type 3. The impact sends waves over a plate of 8 mm on four patches, and the plate is still
-bending long after the rock has left. First the sphere alone is held to full finite elements of two other programs.
+Sphere and plate are elastic: Type 3 of the paper. The impact excites bending waves in a plate of 8 mm on four patches, which continue long
+after the sphere has left. First the elastic sphere on a rigid plane is compared with full finite-element solutions of two other programs.
 """
 
 # %%
@@ -33,9 +33,9 @@ assert abs(elastic / 12166.0 - 1.0) < 0.005
 assert abs(rigid / 12166.0 - 0.926) < 0.002
 
 # %%
-# Both elastic
-# ------------
-# The plate lies on four patches, as in the paper. Its modes are computed once and kept.
+# Elastic sphere and plate
+# ------------------------
+# The plate is supported on four patches, as in the paper. Its modes are computed once and stored.
 plate = {
     "size": ["520 mm", "420 mm", "8 mm"],
     "material": "steel-paper",
@@ -51,14 +51,14 @@ assert abs(response.energy["closure_relative"]) < 1e-6
 assert response.impacts["max_force_N"][0] < elastic  # the plate gives way
 
 # %%
-# Where the energy goes, from the first touch on.
+# Energy balance from first touch on.
 response.plot("energy")
 
 # %%
-# The plate under the impact
-# --------------------------
-# Deflections on a grid at 61 times come with the result. The plate stands still at first but for the place of the contact; the waves reach
-# the edges when the rock has just left, 0.26 ms after it came.
+# Deflection of the plate
+# -----------------------
+# The result contains deflections on a grid at 61 times. At first the plate moves only near the contact; the waves reach the edges just
+# after the rock has left, 0.26 ms after first touch.
 deflection = vi.result_of(response).deflection
 plt.style.use("vibroimpact.charts.print")
 figure, panels = plt.subplots(2, 3, figsize=(7.0, 4.2), layout="constrained")
@@ -81,7 +81,10 @@ for axes, moment in zip(
     for spine in axes.spines.values():
         spine.set_visible(True)
 figure.suptitle(
-    "The plate bends: blue down, red up, on four patches", x=0.02, ha="left", fontweight="bold"
+    "Deflection of the plate on four patches: blue down, red up",
+    x=0.02,
+    ha="left",
+    fontweight="bold",
 )
 # sphinx_gallery_thumbnail_number = -1
 plt.show()

@@ -1,9 +1,9 @@
 """
-Take the drop to LAMMPS and Adams
-=================================
+Export of a contact model to Adams, LAMMPS, YADE, MuJoCo and EXUDYN
+===================================================================
 
-A calibrated contact is of use where the rest of the model is. The drop is written for five programs here, each with the laws that it
-has; the file of Adams is read back, integrated by SciPy in its own units, and rebounds as the run does.
+A calibrated contact is exported to five programs, each with the contact laws that it supports. The file for Adams is read back and
+integrated by SciPy in its own units; the rebounds agree with those of the run.
 """
 
 # %%
@@ -38,9 +38,9 @@ with TemporaryDirectory() as folder:
 print({name: f"{len(text.splitlines())} lines" for name, text in texts.items()})
 
 # %%
-# What Adams gets
-# ---------------
-# Units are millimetres: the stiffness is that in N/m\ :sup:`1.5` over 1000\ :sup:`1.5`.
+# The file for Adams
+# ------------------
+# The unit of length is the millimetre: the stiffness is that in N/m\ :sup:`1.5` divided by 1000\ :sup:`1.5`.
 dataset = next(text for name, text in texts.items() if name.endswith(".adm"))
 words = re.search(r"IMPACT\(DZ\([^)]*\), VZ\([^)]*\), ([^)]*)\)", dataset.replace("\n,", ""))
 print(words[0])
@@ -49,9 +49,9 @@ mass = float(re.search(r"MASS = ([\d.]+)", dataset)[1])
 gravity = -float(re.search(r"KGRAV = (\S+)", dataset)[1])
 
 # %%
-# Read back
-# ---------
-# The equation of the file, integrated by SciPy from each touch to the release; the flights between are closed.
+# Integration of the exported model
+# ---------------------------------
+# The equation in the file is integrated by SciPy from each first touch to release; the flights in between have a closed form.
 
 
 def motion(_, state):
@@ -90,8 +90,8 @@ for _ in range(4):
     assert abs(1e-3 * height / response.impacts["rebound_height_m"][len(contacts) - 1] - 1.0) < 1e-6
 
 # %%
-# The same contacts twice
-# -----------------------
+# Comparison of the contacts
+# --------------------------
 plt.style.use("vibroimpact.charts.print")
 figure, axes = plt.subplots(figsize=(6.4, 4.0), layout="constrained")
 for number, (touch, contact) in enumerate(zip(response.impacts["time_s"], contacts, strict=True)):

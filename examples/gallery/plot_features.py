@@ -1,15 +1,15 @@
 """
-Packets, onsets and features
-============================
+Signal features of geophone packets
+===================================
 
-A recorder beside a river bed hears one grain after another. Packets divide the record as geophone people do, and some sixty features
-describe each by numbers: its peak grows as the mass of the grain.
+The record of a geophone on a river bed contains the impacts of several grains. It is divided into packets, as in bedload measurement, and
+some sixty features describe each packet: the peak amplitude grows with the mass of the grain.
 """
 
 # %%
 # A record of several grains
 # --------------------------
-# Seven grains of quartz of different sizes strike the plate of a river bed, each at its time; what a plate hears adds up.
+# Seven grains of quartz of different sizes strike the plate of a river bed one after another; their signals are superposed.
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -21,7 +21,7 @@ quartz = {"density": 2650, "youngs_modulus": "72 GPa", "poissons_ratio": 0.17}
 
 
 def struck(diameter):
-    """Return what the geophone reads of one grain [V]."""
+    """Return the geophone signal of one grain [V]."""
     case = {
         "sphere": {"radius": f"{0.5 * diameter} mm", "material": quartz},
         "plate": {
@@ -59,7 +59,7 @@ record = vi.Record("geophone", value + 1e-4 * random.standard_normal(len(value))
 # %%
 # Packets
 # -------
-# A packet begins where the envelope reaches a threshold, and is over when it has stayed below it for the dead time.
+# A packet begins where the envelope reaches a threshold, and ends when it has stayed below the threshold for the dead time.
 packets = vi.find_packets(record, threshold=0.02, dead_time=5e-3)
 assert len(packets.onset) == len(diameters)
 assert np.abs(packets.onset / rate - (0.02 + pause * np.arange(len(diameters)))).max() < 3e-3
@@ -67,8 +67,8 @@ assert np.abs(packets.onset / rate - (0.02 + pause * np.arange(len(diameters))))
 # %%
 # Features of each
 # ----------------
-# A row for each packet, a column for each feature. At one speed the impulse of a grain grows with its mass, and so does what the plate
-# answers as long as the contact is shorter than its periods.
+# The table has a row for each packet and a column for each feature. At a given speed the impulse of a grain is proportional to its mass,
+# and so is the response of the plate as long as the contact is shorter than its periods.
 table = vi.record_table(vi.packet_records(record, threshold=0.02))
 peak = table["peak"]
 power = np.polyfit(np.log(diameters), np.log(peak), 1)[0]
@@ -77,8 +77,8 @@ assert np.allclose(peak, packets.peak)
 assert 2.8 < power < 3.05
 
 # %%
-# What was heard
-# --------------
+# Packets and peak amplitudes
+# ---------------------------
 plt.style.use("vibroimpact.charts.print")
 figure, (above, below) = plt.subplots(2, figsize=(6.6, 5.0), layout="constrained")
 colours = plt.get_cmap("cividis")(np.interp(diameters, (10.0, 38.0), (0.0, 0.85)))
@@ -112,7 +112,7 @@ below.loglog(
     "--",
     color="#b3400e",
     linewidth=0.9,
-    label="as the mass",
+    label="proportional to the mass",
 )
 below.set(xlabel="Diameter of the grain [mm]", ylabel="Peak of the packet [V]", xlim=(9.0, 48.0))
 below.set_xticks([10, 15, 20, 30, 40], ["10", "15", "20", "30", "40"])

@@ -1,16 +1,16 @@
 """
-What hit the plate?
-===================
+Identification of an impact from accelerometer signals
+======================================================
 
-Three accelerometers record an impact that nobody saw. From their signals and a model of the plate come back the place, the force, and the
-radius and the speed of the lump of coal that fell, with intervals that hold the truth.
+From the signals of three accelerometers and a model of the plate, the position and the force of an impact and the radius and the speed of
+the sphere are estimated, with 95 % intervals.
 """
 
 # %%
-# An impact that nobody saw
-# -------------------------
-# The records are simulated here with noise 40 dB below the signal; the case that is used to explain them knows nothing of radius, speed and
-# place.
+# Synthetic records
+# -----------------
+# The records are simulated with noise 40 dB below the signal; the case used for the identification does not contain the true radius, speed
+# and position.
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -58,8 +58,8 @@ for name, signal in response.signals().items():
     records.append(vi.Record(name, signal.value + noise, rate, "m/s2"))
 
 # %%
-# Back from the records
-# ---------------------
+# Estimates
+# ---------
 found = vi.identify(vi.read_case(case), records)
 for name, key in (
     ("radius_m", "radius"),
@@ -70,19 +70,19 @@ for name, key in (
     one = found.estimates[name]
     low, high = one.interval
     print(f"{name:10} {one.value:.5f}, {low:.5f} to {high:.5f}; true {truth[key]:g}")
-    # twice the interval: it has to hold the truth nineteen times in twenty only
+    # twice the interval, since its coverage is 95 % only
     assert abs(one.value - truth[key]) < high - low
 assert abs(found.estimates["max_force_N"].value / response.impacts["max_force_N"][0] - 1.0) < 0.01
 
 # %%
-# The records and what explains them, as in the report.
+# The records and the fit, as in the report.
 charts = {chart.name: chart for chart in vi.identification_charts(found)}
 vi.plotly_figure(charts["records"])
 
 # %%
-# Place and force
-# ---------------
-# What the best pulse at each place explains of the records; and the force, which needs no contact law.
+# Position and force
+# ------------------
+# The fraction of the records explained by the best pulse at each position; and the force, estimated without a contact law.
 plt.style.use("vibroimpact.charts.print")
 figure, (left, right) = plt.subplots(
     1, 2, figsize=(7.4, 3.6), width_ratios=(5, 4), layout="constrained"
@@ -113,19 +113,19 @@ left.plot(
     markersize=13,
     markerfacecolor="none",
     markeredgewidth=2.0,
-    label="where it fell",
+    label="true position",
 )
 left.plot(
     *(1e3 * found.estimates[name].value for name in ("place_x_m", "place_y_m")),
     "+",
     color="#b3400e",
     markersize=9,
-    label="found",
+    label="estimated",
 )
-left.set(xlabel="x [mm]", ylabel="y [mm]", aspect="equal", title="Where was the plate hit?")
+left.set(xlabel="x [mm]", ylabel="y [mm]", aspect="equal", title="Position of the impact")
 left.grid(visible=False)
 left.legend(loc="upper center", bbox_to_anchor=(0.5, -0.18), ncols=3)
-figure.colorbar(picture, ax=left, label="Part explained [-]", shrink=0.7)
+figure.colorbar(picture, ax=left, label="Fraction explained [-]", shrink=0.7)
 since = found.force.time - found.sphere.parameters[4]
 force, spread = found.force.found.force, 1.96 * found.force.found.deviation
 right.fill_between(
@@ -134,7 +134,7 @@ right.fill_between(
     1e-3 * (force + spread),
     color="#56a8d8",
     alpha=0.4,
-    label="95 %",
+    label="95 % interval",
 )
 right.plot(
     1e6 * since, 1e-3 * force, color="#0072b2", linewidth=1.6, label="from the records alone"
@@ -150,7 +150,7 @@ right.plot(
 right.set(
     xlabel="Time since first touch [µs]",
     ylabel="Contact force [kN]",
-    title="With what force?",
+    title="Contact force",
     xlim=(-200, 700),
     ylim=(-0.3, 2.2),
 )

@@ -1,14 +1,14 @@
 """
-One impact, three instruments
-=============================
+Geophone, strain gauge and microphone signals of an impact
+==========================================================
 
-A grain strikes a steel plate, and a geophone, a strain gauge and a microphone tell of it: volts, strain and pressure of the same vibration.
-The microphone hears it later, by the way of sound through the air; the geophone reads velocity; the gauge what bends.
+A grain strikes a steel plate, and a geophone, a strain gauge and a microphone measure the vibration. The signal of the microphone is
+delayed by the travel time of sound in air; the geophone measures velocity, the strain gauge the strain of the surface.
 """
 
 # %%
-# The impact and its listeners
-# ----------------------------
+# Impact and instruments
+# ----------------------
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -67,10 +67,10 @@ response = vi.simulate(vi.read_case(case))
 signals = response.signals()
 
 # %%
-# What they must agree on
-# -----------------------
-# Far above its natural frequency a geophone reads its sensitivity times the velocity, and a microphone hears nothing before sound has come
-# from the plate.
+# Checks
+# ------
+# Far above its natural frequency the voltage of a geophone is its sensitivity times the velocity, and the signal of a microphone is zero
+# until sound arrives from the plate.
 velocity, volts, pressure = (signals[name] for name in ("velocity", "geophone", "microphone"))
 early = velocity.time < 2e-3
 assert np.allclose(
@@ -79,12 +79,12 @@ assert np.allclose(
 way = distance / 343.2
 silent = (
     pressure.time < way - 33 / 100e3
-)  # but for 33 samples of the filter, which rings before as well as after
+)  # except for 33 samples of the linear-phase filter, which also rings before an event
 assert np.abs(pressure.value[silent]).max() < 1e-3 * np.abs(pressure.value).max()
 
 # %%
-# Side by side
-# ------------
+# Signals
+# -------
 plt.style.use("vibroimpact.charts.print")
 figure, panels = plt.subplots(3, figsize=(6.4, 5.2), sharex=True, layout="constrained")
 for axes, name, factor, unit, colour in zip(
@@ -103,7 +103,7 @@ panels[2].axvspan(0.0, 1e3 * way, color="#b3400e", alpha=0.08, linewidth=0)
 panels[2].text(
     0.5e3 * way,
     0.05,
-    "sound is\non its way",
+    "travel\ntime of\nsound",
     transform=panels[2].get_xaxis_transform(),
     ha="center",
     va="bottom",
@@ -112,6 +112,9 @@ panels[2].text(
 )
 panels[2].set(xlabel="Time since first touch [ms]", xlim=(-0.2, 10.0))
 figure.suptitle(
-    "One grain on a steel plate, three instruments", x=0.02, ha="left", fontweight="bold"
+    "Signals of three instruments after an impact on a steel plate",
+    x=0.02,
+    ha="left",
+    fontweight="bold",
 )
 plt.show()

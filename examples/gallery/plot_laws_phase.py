@@ -1,16 +1,17 @@
 """
-All contact laws in one picture
-===============================
+Phase portraits of all contact laws
+===================================
 
-Every contact law of the library meets the same grain at the same speed. In the plane of indentation and velocity an elastic impact is
-symmetric, a damped one returns slower, a yielding one leaves a dent, and an adhesive one is stretched before it lets go.
+The impact of a grain is computed with every contact law of the library at the same speed. In the plane of indentation and velocity an
+elastic impact is symmetric, a damped one has a lower rebound velocity, a plastic one leaves a dent, and an adhesive one has a tensile phase
+before separation.
 """
 
 # %%
 # One impact under each law
 # -------------------------
-# A grain of 20 µm in diameter hits a plate of the same polymer at 0.3 m/s: small enough to stick a little, fast enough to yield. A case
-# completes a law with Hertz's stiffness and the effective mass; what else a law needs is given here.
+# A grain of 20 µm in diameter hits a plate of the same polymer at 0.3 m/s: small enough for adhesion, fast enough to yield. The case
+# supplies Hertz's stiffness and the effective mass; the other parameters of the laws are specified here.
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -53,16 +54,16 @@ for name in vi.contact_laws():
     assert abs(response.energy["closure_relative"]) < 1e-9
 
 # %%
-# Hunt and Crossley's restitution follows from :math:`D (1 + e) = \ln[(1 + D)/(1 - e D)]` with a damping factor D = 0.75, Tsuji's is the one
-# asked.
+# Hunt and Crossley's restitution follows from :math:`D (1 + e) = \ln[(1 + D)/(1 - e D)]` with a damping factor D = 0.75; Tsuji's is the
+# specified one.
 e = bounced["hunt-crossley"]
 assert abs(0.75 * (1 + e) - np.log(1.75 / (1 - 0.75 * e))) < 1e-6
 assert abs(bounced["tsuji"] - 0.5) < 1e-6
 
 # %%
-# Side by side
-# ------------
-# Velocity over indentation, each law in front of Hertz's elastic impact: inwards at the bottom, outwards at the top.
+# Comparison
+# ----------
+# Velocity against indentation for each law, with Hertz's elastic impact as a grey area: approach at the bottom, rebound at the top.
 plt.style.use("vibroimpact.charts.print")
 figure, panels = plt.subplots(
     5, 5, figsize=(7.0, 7.0), sharex=True, sharey=True, layout="constrained"
@@ -79,7 +80,9 @@ for axes, (name, (indentation, velocity)) in zip(panels.flat, paths.items(), str
     axes.plot(indentation / deepest, velocity / speed, color=colour, linewidth=1.8)
     axes.set_title(name, fontsize=7.5, color=colour, pad=2)
     axes.grid(visible=False)
-figure.suptitle(f"One impact under {len(paths)} contact laws", x=0.02, ha="left", fontweight="bold")
+figure.suptitle(
+    f"Phase portraits of {len(paths)} contact laws", x=0.02, ha="left", fontweight="bold"
+)
 figure.supxlabel("Indentation over that of Hertz [-]")
 figure.supylabel("Velocity over the approach speed [-]")
 plt.show()

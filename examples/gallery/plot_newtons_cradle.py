@@ -1,16 +1,16 @@
 """
-Newton's cradle, as it really is
-================================
+Newton's cradle with Hertz contacts
+===================================
 
-One ball hits four that touch, and the last one flies off: the textbook says with all of the speed. Hertz's contacts overlap in time, so
-that the last ball takes 98.9 % and the first bounces back, as Hinch and Saint-Jean found in 1999; a gap of a tenth of a millimetre restores
-the textbook.
+One ball hits four that touch, and according to textbooks the last one leaves with the full speed. Hertz's contacts overlap in time, so that
+the last ball has 98.9 % of the speed and the first rebounds, as Hinch and Saint-Jean found in 1999; with a gap of a tenth of a millimetre
+the textbook result holds.
 """
 
 # %%
 # Five balls in a row
 # -------------------
-# A system has any number of bodies and contacts, which may act at the same time.
+# A system has any number of bodies and of contacts, which may be closed at the same time.
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -47,7 +47,7 @@ def speeds(response, time):
 
 
 # %%
-# Momentum and energy are kept; the first ball does not stay where it is.
+# Momentum and energy are conserved; the first ball does not stop.
 for response in (touching, apart):
     assert abs(speeds(response, 1.2e-3).sum() - 1.0) < 1e-9
     assert abs((speeds(response, 1.2e-3) ** 2).sum() - 1.0) < 1e-9
@@ -55,8 +55,8 @@ assert np.allclose(speeds(touching, 1.2e-3)[[0, -1]], [-0.071, 0.989], atol=5e-4
 assert np.allclose(speeds(apart, 1.2e-3), [0.0, 0.0, 0.0, 0.0, 1.0], atol=1e-5)
 
 # %%
-# How the speed travels
-# ---------------------
+# Speeds over time
+# ----------------
 plt.style.use("vibroimpact.charts.print")
 figure, panels = plt.subplots(2, figsize=(6.4, 5.0), sharex=True, sharey=True, layout="constrained")
 time = np.linspace(0.0, 1.2e-3, 800)

@@ -1,17 +1,17 @@
 """
-Oblique impact against a measurement
-====================================
+Tangential restitution against impact angle, measured and computed
+==================================================================
 
-Kharaz, Gorham and Salman let spheres of alumina fall on thick glass at eight angles and measured what each keeps of its velocity along the
-plate. Friction that knows how the rim of a contact slips, ``mdr``, meets them within a hundredth; the single springs of most
+Kharaz, Gorham and Salman dropped alumina spheres on thick glass at eight angles and measured their tangential restitution. The friction law
+``mdr``, which models the microslip at the rim of the contact, agrees with the measurements within a hundredth; the single springs of most
 discrete-element programs do not.
 """
 
 # %%
-# The measurement
-# ---------------
-# Powder Technology 120:281 (2001): angle from the normal [deg], and the velocity along the plate after the impact over that before. The
-# coefficient of friction is theirs, from steep impacts; nothing is fitted.
+# Measured data
+# -------------
+# Powder Technology 120:281 (2001): angle from the normal [deg], and the tangential velocity after the impact over that before. The
+# coefficient of friction is that of the authors, from impacts at large angles; nothing is fitted.
 from dataclasses import replace
 
 import matplotlib.pyplot as plt
@@ -44,13 +44,13 @@ case = {
 }
 
 # %%
-# All angles at once
-# ------------------
-# The solver takes arrays in place of numbers: one call is a batch of as many oblique impacts as there are angles.
+# Computation
+# -----------
+# The solver accepts arrays in place of numbers: one call computes a batch with an oblique impact for each angle.
 
 
-def kept(law, degrees):
-    """Return the part of the velocity along the plate that is kept under a friction law."""
+def tangential_restitution(law, degrees):
+    """Return the tangential restitution with a friction law."""
     contact = {**case["contact"], "friction": {"law": law, "coefficient": friction}}
     problem = vi.read_case({**case, "contact": contact}).to_problem()
     along, down = speed * np.sin(np.radians(degrees)), speed * np.cos(np.radians(degrees))
@@ -59,13 +59,18 @@ def kept(law, degrees):
 
 
 laws = {"mdr": "-", "mindlin": "--", "mindlin-rescale": "-.", "mindlin-force": ":"}
-error = {law: np.abs(kept(law, angles) - measured).mean() for law in laws}
+error = {law: np.abs(tangential_restitution(law, angles) - measured).mean() for law in laws}
 assert error["mdr"] < 0.01 < 4 * error["mdr"] < min(error[law] for law in laws if law != "mdr")
 
 # %%
-# Sliding all the way, a sphere loses the friction coefficient times its normal impulse, whatever the law.
+# If it slides throughout the contact, a sphere loses the friction coefficient times its normal impulse in tangential momentum, whatever the
+# law.
 steep = np.radians(angles[-1])
-assert np.allclose(kept("mdr", angles[-1:]), 1 - friction * (1 + 0.9824) / np.tan(steep), atol=1e-3)
+assert np.allclose(
+    tangential_restitution("mdr", angles[-1:]),
+    1 - friction * (1 + 0.9824) / np.tan(steep),
+    atol=1e-3,
+)
 
 # %%
 # Measured and computed
@@ -79,7 +84,7 @@ for (law, style), colour in zip(
     width = 2.4 if law == "mdr" else 1.4
     axes.plot(
         fine,
-        kept(law, fine),
+        tangential_restitution(law, fine),
         style,
         color=colour,
         linewidth=width,
@@ -93,7 +98,7 @@ axes.annotate("it slips throughout", (42, 0.565), ha="left", color="#5a5a5a")
 axes.axvspan(0.0, 31.0, color="#0072b2", alpha=0.06, linewidth=0)
 axes.set(
     xlabel="Angle from the normal [°]",
-    ylabel="Velocity along the plate, after over before [-]",
+    ylabel="Tangential restitution [-]",
     xlim=(0, 65),
     ylim=(0.55, 1.02),
 )

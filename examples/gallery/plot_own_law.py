@@ -1,17 +1,16 @@
 """
-A contact law of your own
-=========================
+A user-defined contact law
+==========================
 
-A law is a frozen dataclass that returns a force. Here it is that of a rubber lining on a chute, a spring that stiffens with the cube of the
-indentation and has a relaxation time; events, energy balance and charts come by themselves, and the deepest indentation is checked in
-closed form.
+A contact law is a frozen dataclass that returns a force. The example is a rubber lining of a chute, a spring whose force has a cubic term
+and a relaxation time; events, energy balance and charts need no further code, and the largest indentation is compared with its closed form.
 """
 
 # %%
 # The law
 # -------
-# The elastic and the dissipative part of the force are returned apart, for arrays: so the ledger knows what is lost. Installed as a package
-# with an entry point, the law also has a name in cases and on the command line.
+# The elastic and the dissipative part of the force are returned separately, for arrays, so that the dissipated energy can be computed. If
+# it is installed as a package with an entry point, the law can also be used by its name in cases and on the command line.
 from dataclasses import dataclass
 
 import matplotlib.pyplot as plt
@@ -48,9 +47,9 @@ class Lining(CompliantLaw):
 
 
 # %%
-# A rock on the lining
-# --------------------
-# It goes into a problem like any other law.
+# Impact of a rock on the lining
+# ------------------------------
+# The law is used in a problem like any other.
 rock = vi.rigid_sphere(25e-3, vi.find_material("granite"))
 
 
@@ -65,7 +64,7 @@ def dropped(speed, relaxation):
 
 
 # %%
-# Without relaxation the energy gives the deepest indentation: :math:`\tfrac12 m v^2 = \tfrac12 k d^2 + \tfrac14 q d^4`.
+# Without relaxation the largest indentation follows from the energy: :math:`\tfrac12 m v^2 = \tfrac12 k d^2 + \tfrac14 q d^4`.
 mass, speed, k, q = float(rock.mass), 3.0, 2e5, 4e10
 deepest = np.sqrt((-k + np.sqrt(k**2 + 2.0 * q * mass * speed**2)) / q)
 elastic = dropped(speed, 0.0)
@@ -73,12 +72,12 @@ assert abs(elastic.impacts["max_indentation_m"][0] / deepest - 1.0) < 1e-9
 assert abs(elastic.impacts["restitution_achieved"][0] - 1.0) < 1e-9
 
 # %%
-# The chart of force over indentation is there too.
+# The chart of force against indentation is available too.
 dropped(speed, 1e-4).plot("force_indentation")
 
 # %%
-# Three speeds
-# ------------
+# Force against indentation at three speeds
+# -----------------------------------------
 plt.style.use("vibroimpact.charts.print")
 figure, axes = plt.subplots(figsize=(6.4, 4.2), layout="constrained")
 for one, colour in zip((1.0, 2.0, 3.0), ("#56a8d8", "#0072b2", "#00204d"), strict=True):
@@ -106,7 +105,7 @@ axes.plot(
 axes.set(
     xlabel="Indentation [mm]",
     ylabel="Force [kN]",
-    title="A rock on a rubber lining: a law of one's own",
+    title="A rock on a rubber lining: a user-defined law",
 )
 axes.legend(loc="upper left")
 # sphinx_gallery_thumbnail_number = -1

@@ -1,14 +1,14 @@
 """
-The modes of a plate on its supports
-====================================
+Natural frequencies and mode shapes of a supported plate
+========================================================
 
-Frequencies and shapes of a steel plate in seconds, without a mesher or a finite-element program. Simply supported they are Navier's closed
-form; on the four patches of the paper's test rig they are what no closed form gives.
+Frequencies and mode shapes of a steel plate are computed in seconds, without a mesher or a finite-element program. For simple supports they
+agree with Navier's closed form; for the four patches of the paper's test rig there is no closed form.
 """
 
 # %%
-# Navier's plate
-# --------------
+# Simply supported: comparison with Navier
+# ----------------------------------------
 # Kirchhoff's plate, simply supported on all edges, has the frequencies
 # :math:`f_{mn} = \frac{\pi}{2} \sqrt{D / \rho h}\, [(m/a)^2 + (n/b)^2]`.
 import matplotlib.pyplot as plt
@@ -42,8 +42,8 @@ navier = np.sort((0.5 * np.pi * np.sqrt(rigidity / steel.density / thickness) * 
 assert np.abs(computed / navier - 1.0).max() < 1e-3
 
 # %%
-# On four patches
-# ---------------
+# Support on four patches
+# -----------------------
 # Thick plate elements on the paper's patches of 20 mm; two independent meshes of curved tetrahedra give 171.3 and 268.8 Hz within 0.2 %.
 plate = {
     **case["plate"],
@@ -54,9 +54,9 @@ modes = vi.compute_modes(vi.read_case({**case, "plate": plate}))
 assert np.allclose(modes["plate"].basis.frequencies[:2], [171.3, 268.8], rtol=5e-3)
 
 # %%
-# The first twelve shapes
-# -----------------------
-# The chart of the report, drawn by matplotlib into a figure of one's own.
+# The first twelve mode shapes
+# ----------------------------
+# The chart of the report, drawn by matplotlib into a given figure.
 (chart,) = vi.mode_charts(modes)
 vi.matplotlib_figure(chart, plt.figure())
 plt.show()

@@ -1,17 +1,17 @@
 """
-How thick must the plate be?
-============================
+Restitution coefficient against plate thickness
+===============================================
 
-A plate takes energy from a bounce: its waves carry it away. The paper's rock of 25 mm falls on steel from 7 to 20 mm here, and Zener's
-theory of a plate without edges says the same: at 8 mm a quarter of the speed is lost without any damping.
+A plate takes energy from an impact, which its bending waves carry away. The restitution of the paper's rock of 25 mm radius on steel plates
+from 7 to 20 mm agrees with Zener's theory of an infinite plate: at 8 mm a quarter of the speed is lost without any damping.
 """
 
 # %%
-# Zener's sphere on a large plate
-# -------------------------------
-# An infinite plate gives way at a speed in proportion to the force, which leaves one parameter,
-# :math:`\lambda = m / (8 \sqrt{D \rho h}\, T)`, and one equation, :math:`\sigma'' + (1 + \lambda\, d/d\tau)\, \sigma^{3/2} = 0`
-# (Phys. Rev. 59:669, 1941). SciPy integrates it.
+# Zener's theory of an infinite plate
+# -----------------------------------
+# The velocity of an infinite plate at the contact is proportional to the force, so that one parameter remains, :math:`\lambda = m / (8
+# \sqrt{D \rho h}\, T)`, and one equation, :math:`\sigma'' + (1 + \lambda\, d/d\tau)\, \sigma^{3/2} = 0` (Phys. Rev. 59:669, 1941). SciPy
+# integrates it.
 import matplotlib.pyplot as plt
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -46,10 +46,10 @@ def zener(thickness):
 
 
 # %%
-# Plates with edges
-# -----------------
-# The plate of the paper in other thicknesses, simply supported, with all modes up to 6 kHz. Its edges are so far away that hardly a wave
-# comes back before the rock has left.
+# Finite plates
+# -------------
+# The plate of the paper with other thicknesses, simply supported, with all modes up to 6 kHz. Its edges are so far away that hardly any
+# wave returns before the rock has left.
 
 
 def dropped(thickness):
@@ -77,9 +77,9 @@ assert abs(zener(0.008) - 0.74196) < 1e-4  # for the parameter 0.1768 of the pap
 assert np.abs(computed - theory).max() < 0.01
 
 # %%
-# Thick enough
-# ------------
-# To lose less than a hundredth of the speed to its waves, this plate would have to be 44 mm thick.
+# Required thickness
+# ------------------
+# For a loss of less than a hundredth of the speed to bending waves, this plate would have to be 44 mm thick.
 fine = np.geomspace(4e-3, 60e-3, 60)
 curve = np.array([zener(one) for one in fine])
 enough = np.interp(0.99, curve, fine)
@@ -88,7 +88,7 @@ print(f"restitution of 0.99 from {1e3 * enough:.0f} mm on")
 plt.style.use("vibroimpact.charts.print")
 figure, axes = plt.subplots(figsize=(6.4, 4.0), layout="constrained")
 axes.fill_between(
-    1e3 * fine, curve, 1.0, color="#b3400e", alpha=0.12, label="lost to the waves of the plate"
+    1e3 * fine, curve, 1.0, color="#b3400e", alpha=0.12, label="lost to waves in the plate"
 )
 axes.plot(1e3 * fine, curve, color="#00204d", linewidth=2.0, label="infinite plate (Zener 1941)")
 axes.plot(
@@ -113,6 +113,6 @@ axes.set(
     xlim=(4.0, 60.0),
     ylim=(0.3, 1.0),
 )
-axes.set_title("A thin steel plate takes the bounce away")
+axes.set_title("Restitution of a rock on a steel plate")
 axes.legend(loc="lower right")
 plt.show()

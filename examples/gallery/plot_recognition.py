@@ -1,17 +1,18 @@
 """
-Coal or gangue, and who fools whom
-==================================
+Leakage in cross-validation of impact classifiers
+=================================================
 
-Classifiers are trained on knocks of coal and of gangue whose best possible score is known in closed form. Tested on rocks that they have
-never heard they keep within it; with signals split at random they appear to beat what none can, because they recognise the rocks.
+Classifiers are trained on signals of coal and gangue for which the Bayes error is known in closed form. Tested on rocks that are not in the
+training data they stay within this bound; with signals split at random they appear to exceed it, because they recognise the individual
+rocks.
 """
 
 # %%
-# Knocks with a known bound
-# -------------------------
-# Half-sine forces strike a plate of four modes. The classes differ by the contact time alone, whose logarithm is normal; each rock adds a
-# tone of its own, which says who it is, and nothing of what it is. Two hundred and forty knocks of thirty rocks are few: the intervals are
-# wide.
+# Signals with a known Bayes error
+# --------------------------------
+# Half-sine forces act on a plate of four modes. The classes differ by the contact time alone, whose logarithm is normal; each rock adds a
+# characteristic tone, which identifies the rock but carries no information on its class. The intervals are wide, as there are only two
+# hundred and forty signals of thirty rocks.
 import matplotlib.pyplot as plt
 import numpy as np
 from scipy.signal import fftconvolve
@@ -60,8 +61,8 @@ knocks = vi.LabelledSignals(
 )
 
 # %%
-# Both ways of testing
-# --------------------
+# Grouped and random splits
+# -------------------------
 found = vi.recognise(knocks, folds=3, seeds=1, workers=1)
 classifiers = (
     "logistic regression",
@@ -73,23 +74,24 @@ best = 1.0 - bayes_error
 for name in classifiers:
     apart, mixed = (scores[name].balanced_accuracy for scores in (found.scores, found.random))
     print(
-        f"{name}: rocks apart {apart.value:.3f}, split at random {mixed.value:.3f}, possible {best:.3f}"
+        f"{name}: grouped {apart.value:.3f}, random {mixed.value:.3f}, highest possible {best:.3f}"
     )
     assert np.percentile(apart.draws, 2.5) < best < mixed.value
 
 # %%
-# Confusion, noise, calibration and the features that matter are charts of the same result; here are the errors of all that were tried.
+# Charts of the result show the confusion matrix, the effect of noise, the calibration and the importance of features; this one shows the
+# errors of all classifiers.
 charts = {chart.name: chart for chart in vi.recognition_charts(found)}
 vi.plotly_figure(charts["scores"])
 
 # %%
-# The optimism of a split at random
+# Optimistic bias of a random split
 # ---------------------------------
 plt.style.use("vibroimpact.charts.print")
 figure, axes = plt.subplots(figsize=(6.6, 3.8), layout="constrained")
 places = np.arange(len(classifiers))[::-1]
 for scores, side, colour, words in (
-    (found.scores, 0.14, "#00204d", "rocks kept apart"),
+    (found.scores, 0.14, "#00204d", "grouped by rock"),
     (found.random, -0.14, "#c79000", "split at random"),
 ):
     value = np.array([scores[name].balanced_accuracy.value for name in classifiers])
@@ -109,14 +111,12 @@ for scores, side, colour, words in (
     )
 axes.axvspan(100.0 * best, 100.0, color="#b3400e", alpha=0.1, linewidth=0)
 axes.axvline(100.0 * best, color="#b3400e", linewidth=1.2)
-axes.text(
-    100.0 * best + 0.5, 3.45, "no classifier can be here", color="#b3400e", va="center", fontsize=9
-)
+axes.text(100.0 * best + 0.5, 3.45, "not attainable", color="#b3400e", va="center", fontsize=9)
 axes.set(
     xlabel="Balanced accuracy [%]",
     xlim=(50.0, 100.0),
     ylim=(-1.2, 3.8),
-    title="The same classifiers, tested in two ways",
+    title="Balanced accuracy with grouped and random splits",
 )
 axes.set_yticks(places, classifiers)
 axes.legend(loc="lower left")

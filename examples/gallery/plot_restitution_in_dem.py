@@ -1,15 +1,15 @@
 """
-Which restitution do I really get?
-==================================
+Specified and achieved restitution of contact laws in DEM
+=========================================================
 
-The restitution that is typed into a discrete-element program is a parameter of a contact law, not the rebound. Six laws are asked for the
-whole range of restitutions here: under some of them a sphere that should stop dead keeps two thirds of its speed.
+The restitution that is entered in a discrete-element program is a parameter of a contact law, not the ratio of the speeds. Six laws are
+evaluated over the whole range of this parameter: with some of them a sphere that should not rebound at all keeps two thirds of its speed.
 """
 
 # %%
-# What is asked and what comes out
-# --------------------------------
-# `achieved_restitution` takes the closed form where there is one, and integrates the contact otherwise, for arrays of parameters at once.
+# Achieved restitution
+# --------------------
+# `achieved_restitution` uses a closed form where there is one, and integrates the contact otherwise, for arrays of parameters.
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -33,15 +33,15 @@ achieved = {
 }
 
 # %%
-# A published check: EXUDYN, a multibody program, records an outgoing speed of 6.629838 m/s for a sphere that comes with 10 m/s under
-# Hunt and Crossley's law with a restitution of 0.5.
+# A published value for comparison: the multibody program EXUDYN gives a rebound speed of 6.629838 m/s for a sphere with an approach speed
+# of 10 m/s, for Hunt and Crossley's law with a restitution of 0.5.
 hunt = vi.find_contact_law("hunt-crossley")(stiffness=1e6, exponent=1.0, restitution=0.5)
 assert abs(vi.achieved_restitution(hunt, mass=1.0, speed=10.0) - 0.6629838) < 1e-4
 
 # %%
-# The parameter that does what you want
-# -------------------------------------
-# `law_achieving` goes the other way: it returns the law under which the sphere rebounds as wanted.
+# Parameter for a required restitution
+# ------------------------------------
+# `law_achieving` is the inverse: it returns the law that achieves a required restitution.
 wanted = 0.7
 typed = {}
 for name in laws:
@@ -56,9 +56,9 @@ for name in laws:
 typed
 
 # %%
-# All of them
-# -----------
-# On the dashed diagonal a program does what it is told. The dots are what has to be typed in for a restitution of 0.7.
+# Comparison of the laws
+# ----------------------
+# On the dashed diagonal the achieved restitution is the specified one. The dots are the parameters that achieve a restitution of 0.7.
 plt.style.use("vibroimpact.charts.print")
 figure, axes = plt.subplots(figsize=(6.4, 4.4), layout="constrained")
 axes.plot([0, 1], [0, 1], "--", color="#9a9a9a")
@@ -73,15 +73,15 @@ for name, colour in zip(
         typed[name], wanted, "o", color=colour, markersize=6, markeredgecolor="white", zorder=3
     )
 axes.annotate(
-    "asked to stop,\nkeeps two thirds",
+    "parameter near 0:\ntwo thirds remain",
     (0.06, achieved["lankarani-nikravesh"][1]),
     (0.02, 0.84),
     color="#00204d",
 )
 axes.set(
-    xlabel="Restitution asked [-]",
+    xlabel="Restitution parameter [-]",
     ylabel="Restitution achieved [-]",
-    title="The restitution asked is not the one that comes out",
+    title="Achieved restitution against the restitution parameter",
 )
 axes.set(xlim=(0.0, 1.0), ylim=(0.0, 1.0), aspect="equal")
 axes.legend(loc="center left", bbox_to_anchor=(1.02, 0.5))

@@ -1,15 +1,15 @@
 """
-Slip, spin and the 5/7
-======================
+Transition from sliding to rolling after an oblique impact
+==========================================================
 
-A sphere that lands on a plate with a velocity along it slips first and rolls at the end. Friction takes two sevenths of its velocity,
-whatever the coefficient: a small one takes longer. The same holds bounce by bounce, and a sphere with backspin may come back.
+A sphere that lands on a plate with a tangential velocity slides first and rolls at the end. Friction reduces its velocity by two sevenths,
+whatever the coefficient; with a smaller coefficient this takes longer. With sufficient backspin the sphere returns.
 """
 
 # %%
 # Four coefficients of friction
 # -----------------------------
-# The sphere comes down at 1 m/s and along the plate at 2 m/s, without spin. It bounces, slips, and rolls.
+# The sphere has a normal velocity of 1 m/s and a tangential velocity of 2 m/s, without spin. It bounces, slides, and rolls.
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -37,10 +37,10 @@ slow = {coefficient: thrown(coefficient) for coefficient in coefficients}
 backspin = thrown(0.16, spin=-700.0)
 
 # %%
-# Two sevenths less
-# -----------------
-# All of them end at 5/7 of the velocity, rolling. With backspin the angular momentum about a point of the plate decides:
-# :math:`v = (5 v_0 + 2 R \omega_0)/7`, here a velocity backwards.
+# Final velocity
+# --------------
+# Without spin all of them finally roll at 5/7 of the initial velocity. With backspin the final velocity follows from the angular momentum
+# about a point of the plate: :math:`v = (5 v_0 + 2 R \omega_0)/7`, which is negative here.
 for response in slow.values():
     end = response.at(2.5)
     assert abs(end["velocity_x_m_s"] - 5.0 / 7.0 * 2.0) < 1e-9
@@ -48,9 +48,9 @@ for response in slow.values():
 assert abs(backspin.at(2.5)["velocity_x_m_s"] - (5.0 * 2.0 - 2.0 * 0.01 * 700.0) / 7.0) < 1e-9
 
 # %%
-# The way there
-# -------------
-# Steps while it bounces, a ramp while it lies and slips, and then a constant.
+# Velocity over time
+# ------------------
+# The velocity changes in steps while the sphere bounces, linearly while it slides in contact, and is then constant.
 plt.style.use("vibroimpact.charts.print")
 figure, axes = plt.subplots(figsize=(6.4, 4.2), layout="constrained")
 time = np.linspace(0.0, 2.5, 3000)
@@ -75,7 +75,7 @@ axes.axhline(10.0 / 7.0, color="#6b6b6b", linestyle="--", linewidth=0.9)
 axes.text(
     2.5,
     10.0 / 7.0 - 0.03,
-    "5/7 of the first velocity",
+    "5/7 of the initial velocity",
     ha="right",
     va="top",
     color="#6b6b6b",
@@ -85,7 +85,7 @@ axes.axhline(0.0, color="#6b6b6b", linewidth=0.7)
 axes.set(
     xlabel="Time [s]",
     ylabel="Velocity along the plate [m/s]",
-    title="A sphere slips until it rolls",
+    title="Sliding and rolling of a sphere",
     xlim=(0.0, 2.5),
 )
 axes.legend(loc="center right", bbox_to_anchor=(1.0, 0.52))

@@ -1,15 +1,15 @@
 """
-What matters most
-=================
+Global sensitivity analysis of a drop: Sobol indices
+====================================================
 
-Six numbers of a drop are known to some per cent. Sobol indices tell how much of the scatter of a result each of them explains, alone and
-together with others: the largest force hangs on the modulus and the size, the rebound on the restitution alone.
+Six inputs of a drop are known to some per cent. Sobol indices quantify how much of the variance of a result is explained by each of them,
+alone and in interaction with others: the largest force depends mainly on the modulus and the size, the rebound on the restitution alone.
 """
 
 # %%
-# A study of tolerances
-# ---------------------
-# The design of Saltelli takes ``samples`` times the number of keys plus two drops.
+# Study with random inputs
+# ------------------------
+# Saltelli's design needs ``samples`` times (number of keys + 2) drops.
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -50,11 +50,11 @@ with TemporaryDirectory() as folder:
     }
 
 # %%
-# The share of each key
-# ---------------------
-# A chart is data that any program can read: its bars are the total indices of the largest force. In Hertz's contact that force is a product
-# of powers, :math:`F \propto E^{*\,2/5} \rho^{3/5} R^2 h^{3/5}`, so that the shares of what the damping leaves follow from the exponents
-# and the relative scatter.
+# Total indices of the largest force
+# ----------------------------------
+# The data of a chart can be accessed; its bars are the total indices of the largest force. For Hertz's contact that force is a product of
+# powers, :math:`F \propto E^{*\,2/5} \rho^{3/5} R^2 h^{3/5}`, so that the shares of the variance that is not due to the damping follow from
+# the exponents and the relative standard deviations.
 chart = charts["sensitivity"]
 panel = next(panel for panel in chart.panels if panel.title == "Largest force")
 bars = next(mark for mark in panel.marks if getattr(mark, "name", "").startswith("in all"))

@@ -1,17 +1,17 @@
 """
-A lump on a sprung deck
-=======================
+Impact of a rock on a vibrating screen deck
+===========================================
 
-A lump of 20 kg falls on the deck of a screen, 80 kg on springs, whose frame shakes. Deck and lump move each other: it bounces, chatters,
-rides and is launched again, as SciPy's integration of both and of the contact between them has it, within a tenth of a micrometre over a
-second.
+A rock of 20 kg falls on the deck of a screen, 80 kg on springs, whose frame vibrates. The motions of deck and rock are coupled: the rock
+bounces, chatters, rides and is launched again, in agreement with SciPy's integration of both bodies and their contact within a tenth of a
+micrometre over a second.
 """
 
 # %%
-# Deck and lump
+# Deck and rock
 # -------------
-# A deck on springs is a plate with one mode of 12 Hz; its supports shake at 15 Hz. The contact is viscoelastic and
-# so soft that the lump sinks in by some millimetres.
+# A deck on springs is a plate with one mode of 12 Hz; its supports vibrate at 15 Hz. The contact is viscoelastic and so soft that the
+# indentation is some millimetres.
 import matplotlib.pyplot as plt
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -41,14 +41,14 @@ problem = vi.Problem(
 response = vi.simulate(problem)
 
 # %%
-# The same by SciPy
-# -----------------
-# Two bodies and the force between them, from the steady motion of the deck on.
+# Comparison with SciPy
+# ---------------------
+# Two bodies and the force between them, starting from the steady-state motion of the deck.
 driven, own = 2.0 * np.pi * frequency, 2.0 * np.pi * natural
 
 
 def motion(time, state):
-    """Return the velocities and accelerations of lump and deck."""
+    """Return the velocities and accelerations of rock and deck."""
     depth, rate = state[2] - state[0], state[3] - state[1]
     force = (
         max(0.0, 1e7 * (depth**1.5 + 1.5 * 2e-3 * np.sqrt(depth) * rate)) if depth > 0.0 else 0.0
@@ -76,8 +76,8 @@ assert away < 1e-7
 assert abs(response.energy["closure_relative"]) < 1e-9
 
 # %%
-# Up and down
-# -----------
+# Motion of deck and rock
+# -----------------------
 plt.style.use("vibroimpact.charts.print")
 figure, axes = plt.subplots(figsize=(6.6, 4.0), layout="constrained")
 fine = np.linspace(0.0, 1.0, 4000)
@@ -89,7 +89,7 @@ axes.plot(
     1e3 * (path["position_m"] - 0.1),
     color="#b3400e",
     linewidth=1.8,
-    label="lowest point of the lump",
+    label="lowest point of the rock",
 )
 axes.plot(
     time[::12],
@@ -103,7 +103,7 @@ axes.plot(
 axes.set(
     xlabel="Time [s]",
     ylabel="Height [mm]",
-    title="A lump of 20 kg on a sprung deck that shakes",
+    title="A rock of 20 kg on a vibrating deck",
     xlim=(0.0, 1.0),
     ylim=(-12.0, 19.0),
 )

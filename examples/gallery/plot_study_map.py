@@ -1,15 +1,15 @@
 """
-Two thousand drops on one map
-=============================
+Parameter study: contact force and yield against size and drop height
+=====================================================================
 
-Which rocks dent a plate? A study drops spheres of granite of fifty sizes from forty heights, all in a second, and keeps the largest force
-and the pressure over what the plate bears. The pressure under a sphere does not depend on its size, which the map shows at a glance.
+Which rocks dent a plate? A study computes drops of granite spheres of fifty sizes from forty heights in about a second, and records the
+largest force and the contact pressure relative to the yield limit of the plate. The pressure is independent of the size of the sphere.
 """
 
 # %%
 # The study
 # ---------
-# A study is a case with a section that says over which keys it goes, here a grid on logarithmic scales.
+# A study is a case with a section that specifies the swept keys, here a grid on logarithmic scales.
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -38,11 +38,11 @@ with TemporaryDirectory() as folder:
     overload = study.values("limit_plate_strength")
 
 # %%
-# Size does not matter
-# --------------------
-# Hertz's contact of a sphere that has fallen from a height is the same at all sizes: the force goes with the square of the radius, the
-# indentation with the radius, and the peak pressure over 1.6 times the yield strength, the limit of the plate, with neither. What is left
-# is the weight, which presses on in the contact.
+# Scaling with size and height
+# ----------------------------
+# Hertz's contact of a sphere that falls from a given height scales with its size: the force is proportional to the square of the radius,
+# the indentation to the radius, and the peak pressure over 1.6 times the yield strength, the limit of the plate, is independent of it. The
+# small deviation is due to the weight during the contact.
 dropped = height - radius[:, None]  # the height is that of the centre
 reference = force[0, 0] / radius[0] ** 2 / dropped[0, 0] ** 0.6
 assert np.allclose(force, reference * radius[:, None] ** 2 * dropped**0.6, rtol=5e-3)
@@ -50,10 +50,10 @@ reference = overload[0, 0] / dropped[0, 0] ** 0.2
 assert np.allclose(overload, reference * dropped**0.2, rtol=5e-3)
 
 # %%
-# The map
-# -------
-# Colours are the largest force; dashed is how many times the pressure exceeds what mild steel bears: granite dents it from every height
-# here.
+# Map of force and pressure
+# -------------------------
+# Colours show the largest force, dashed lines the ratio of the pressure to the yield limit of mild steel: granite dents it from all of
+# these heights.
 plt.style.use("vibroimpact.charts.print")
 figure, axes = plt.subplots(figsize=(6.4, 4.4), layout="constrained")
 map_of_force = axes.pcolormesh(
