@@ -15,7 +15,7 @@ from agreement import Against, Agrees
 from vibroimpact.calibration.differences import differences
 
 AGAINST = Against(
-    "the paper's damping of Adams' IMPACT",
+    "the paper, calibrated damping of the Adams IMPACT function",
     "published computation",
     "calibration, identification and studies",
     "Study on the Vibroimpact Response of the Particle Elastic Impact on the Metal Plate, Shock and Vibration, section 3.2",
@@ -31,17 +31,23 @@ SPEEDS = [8.8266641, 6.8386265, 5.2982339, 4.1046840, 3.1798731]  # m/s
 
 def test_dampings(agrees: Agrees, damping: vi.Calibration) -> None:
     assert damping.observations.speeds == pytest.approx(SPEEDS, rel=1e-7)
-    agrees("damping of each impact", "damping", damping.values, EXACT, unit="N s/m", relative=1e-5)
+    agrees("damping coefficient of each impact, recomputed", "damping coefficient", damping.values, EXACT, unit="N s/m", relative=1e-5)
     assert damping.outcomes["separation_speed"] == pytest.approx(damping.observations.wanted["separation_speed"], rel=1e-10)
 
 
 def test_function_of_the_speed(agrees: Agrees, damping: vi.Calibration) -> None:
-    agrees("function of the speed", "three coefficients", damping.fit.function.coefficients, EXACT_FIT, relative=1e-5)
+    agrees(
+        "damping as a quadratic function of the approach speed",
+        "polynomial coefficients",
+        damping.fit.function.coefficients,
+        EXACT_FIT,
+        relative=1e-5,
+    )
 
 
 def test_the_printed_ones_stand_beside_it(agrees: Agrees, damping: vi.Calibration) -> None:
     assert damping.given.tolist() == PRINTED
-    agrees("damping of each impact, as printed", "damping", damping.values, PRINTED, unit="N s/m", relative=1.1e-3)
+    agrees("damping coefficient of each impact, printed", "damping coefficient", damping.values, PRINTED, unit="N s/m", relative=1.1e-3)
     printed = vi.SpeedFunction(tuple(PRINTED_FIT), 3.0, 9.0)
     assert printed(damping.observations.speeds) == pytest.approx(damping.values, abs=0.22)  # N s/m, the hand's precision
 
@@ -72,7 +78,7 @@ def test_printed_penetration_does_not_go_with_the_printed_rebound(agrees: Agrees
     assert height == pytest.approx(2.3613, abs=5e-5)
     agrees(
         "full-damping penetration, printed as 1e-5 m",
-        "penetration that has the printed rebound",
+        "penetration depth that gives the printed rebound height",
         found.values[0],
         1e-4,
         unit="m",
@@ -95,5 +101,7 @@ def test_the_two_printed_errors_of_constant_damping_tell_the_same_penetration(ag
     for penetration in (1e-5, 1e-4):
         case["contact"]["full_damping_penetration"] = penetration
         heights[penetration] = vi.simulate(vi.read_case(case)).impacts["rebound_height_m"][-1]
-    agrees("constant damping", "fourth rebound, by its printed error", heights[1e-4], fourth, unit="m", relative=1e-4)
+    agrees(
+        "constant damping, fourth impact", "rebound height, from its printed relative error", heights[1e-4], fourth, unit="m", relative=1e-4
+    )
     assert heights[1e-5] < 0.9 * fourth

@@ -17,23 +17,24 @@ from agreement import Against, Agrees
 from vibroimpact.contact.laws.adams_impact import AdamsImpact
 
 AGAINST = Against(
-    "the paper, Type 1 with corrected equations",
+    "the paper, Type 1 (rigid sphere on a rigid plate), corrected equations",
     "published computation",
     "damping laws",
-    "Study on the Vibroimpact Response of the Particle Elastic Impact on the Metal Plate, Shock and Vibration; integrated at 1e-12",
+    "Study on the Vibroimpact Response of the Particle Elastic Impact on the Metal Plate, Shock and Vibration; tolerance 1e-12",
 )
 
 
-COLUMNS = (
-    "time_s",
-    "duration_s",
-    "approach_speed_m_s",
-    "separation_speed_m_s",
-    "restitution_achieved",
-    "max_indentation_m",
-    "max_force_N",
-    "rebound_height_m",
-)
+QUANTITIES = {
+    "time_s": ("time of impact", "s"),
+    "duration_s": ("contact duration", "s"),
+    "approach_speed_m_s": ("approach speed", "m/s"),
+    "separation_speed_m_s": ("separation speed", "m/s"),
+    "restitution_achieved": ("coefficient of restitution", ""),
+    "max_indentation_m": ("maximum indentation", "m"),
+    "max_force_N": ("maximum contact force", "N"),
+    "rebound_height_m": ("rebound height", "m"),
+}
+COLUMNS = tuple(QUANTITIES)
 TABLES = {
     "paper:type1-theory": [
         (0.90068002, 2.6970484e-4, 8.8266641, 6.8386265, 0.77476909, 7.1003313e-4, 10239.178, 2.4110619),
@@ -68,8 +69,15 @@ def run(request: pytest.FixtureRequest) -> tuple[vi.Response, np.ndarray]:
 def test_every_column(agrees: Agrees, run: tuple[vi.Response, np.ndarray], column: str) -> None:
     response, table = run
     tolerance = 1e-5 if column == "max_force_N" else 2e-6
-    expected = table[:, COLUMNS.index(column)]
-    agrees("theory, constant and variable damping", column, response.impacts[column], expected, relative=tolerance)
+    expected, (quantity, unit) = table[:, COLUMNS.index(column)], QUANTITIES[column]
+    agrees(
+        "theoretical, constant and variable damping, five impacts",
+        quantity,
+        response.impacts[column],
+        expected,
+        unit=unit,
+        relative=tolerance,
+    )
 
 
 def test_ledger_closes(run: tuple[vi.Response, np.ndarray]) -> None:
@@ -85,7 +93,7 @@ def test_inputs_of_the_paper() -> None:
 def test_printed_text_figures(agrees: Agrees) -> None:
     theory, constant = (vi.simulate(vi.load_case(f"paper:type1-{name}")).impacts for name in ("theory", "constant"))
     first = constant["rebound_height_m"][0]
-    agrees("constant damping, section 5.1", "first rebound, printed", first, 2.41132, unit="m", absolute=5e-6)
+    agrees("constant damping, section 5.1, first impact", "rebound height, printed", first, 2.41132, unit="m", absolute=5e-6)
     assert 100 * (1 - constant["rebound_height_m"][3] / theory["rebound_height_m"][3]) == pytest.approx(10.50, abs=0.01)  # section 3.2
     assert 100 * (1 - constant["max_indentation_m"][4] / theory["max_indentation_m"][4]) == pytest.approx(5.7, abs=0.05)
 
@@ -108,6 +116,6 @@ def test_without_the_clip_every_height_is_wrong(agrees: Agrees) -> None:
     pulling = tuple(UnclippedImpact(**dataclasses.asdict(law)) for law in problem.laws)
     clipped, unclipped = (vi.simulate(dataclasses.replace(problem, laws=laws)).impacts for laws in (problem.laws, pulling))
     after = unclipped["separation_speed_m_s"][0]  # by SciPy's RK45, rtol 1e-11, steps of 1 us
-    agrees("without the clip at zero", "separation speed", after, 6.724858761, unit="m/s", relative=1e-9)
+    agrees("first impact, without truncation of the force at zero", "separation speed", after, 6.724858761, unit="m/s", relative=1e-9)
     missing = 1 - unclipped["rebound_height_m"] / clipped["rebound_height_m"]
     assert missing == pytest.approx([0.0328, 0.0595, 0.0784, 0.0876, 0.0861], abs=1e-4)

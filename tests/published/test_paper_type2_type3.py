@@ -26,16 +26,16 @@ import vibroimpact as vi
 from agreement import Against, Agrees
 
 AGAINST = Against(
-    "the paper, Types 2 and 3",
+    "the paper, Types 2 and 3 (elastic sphere on a rigid and on an elastic plate)",
     "published computation",
     "impacts on vibrating bodies",
     "Study on the Vibroimpact Response of the Particle Elastic Impact on the Metal Plate, Shock and Vibration",
 )
 OTHER = Against(
-    "another program with the same local element",
+    "modal integration with the same local element",
     "own independent computation",
     "impacts on vibrating bodies",
-    "modal integration of the identified model: k = 1.20e6 N/m, c = 586 N s/m, patches of 20 mm",
+    "separate program with the identified model: k = 1.20e6 N/m, c = 586 N s/m, support patches of 20 mm radius",
 )
 
 
@@ -47,6 +47,14 @@ PRINTED = {
     "plate_velocity_m_s": 0.1,
     "plate_acceleration_m_s2": 200.0,
     "plate_strain_J": 0.13225,
+}
+QUANTITIES = {
+    "max_force_N": ("maximum contact force", "N"),
+    "rebound_height_m": ("rebound height", "m"),
+    "plate_displacement_m": ("maximum plate displacement", "m"),
+    "plate_velocity_m_s": ("maximum plate velocity", "m/s"),
+    "plate_acceleration_m_s2": ("maximum plate acceleration", "m/s²"),
+    "plate_strain_J": ("maximum plate strain energy", "J"),
 }
 IDENTIFIED = {
     "max_force_N": 3465.0,
@@ -82,20 +90,22 @@ def test_identified_meets_type_2(agrees: Agrees) -> None:
     assert problem.local_element is not None
     assert problem.local_element == pytest.approx((1.20e6, 586.0), rel=0.04)
     impacts = vi.simulate(problem).impacts
-    agrees("Type 2, a local element fitted to it", "largest force", impacts["max_force_N"], FORCE, unit="N", relative=1e-8)
-    agrees("Type 2, a local element fitted to it", "rebound", impacts["rebound_height_m"], REBOUND, unit="m", relative=1e-8)
+    agrees("Type 2, local element identified from it", "maximum contact force", impacts["max_force_N"], FORCE, unit="N", relative=1e-8)
+    agrees("Type 2, local element identified from it", "rebound height", impacts["rebound_height_m"], REBOUND, unit="m", relative=1e-8)
     acceleration = impacts["max_acceleration_m_s2"]
-    agrees("Type 2, a local element fitted to it", "largest acceleration", acceleration, 39656.0, unit="m/s²", relative=5e-4)
+    agrees("Type 2, local element identified from it", "maximum acceleration", acceleration, 39656.0, unit="m/s²", relative=5e-4)
 
 
 def test_type_3_is_predicted(agrees: Agrees) -> None:
     """Within 3 % of another program with the same model; force and rebound within 12 % of what is printed, the plate within 25 %."""
     found = identified()
     for name, value in IDENTIFIED.items():
-        agrees("Type 3, the same local element", name, found[name], value, against=OTHER, relative=0.03)
+        quantity, unit = QUANTITIES[name]
+        agrees("Type 3, same local element", quantity, found[name], value, unit=unit, against=OTHER, relative=0.03)
     for name, value in PRINTED.items():
+        quantity, unit = QUANTITIES[name]
         within = 0.12 if name in ("max_force_N", "rebound_height_m") else 0.25
-        agrees("Type 3, predicted from Type 2", name, found[name], value, relative=within)
+        agrees("Type 3, predicted with the local element of Type 2", quantity, found[name], value, unit=unit, relative=within)
     assert found["plate_potential_J"] < 0.015  # as printed
     assert found["plate_kinetic_J"] < 0.5 * 0.29412
 

@@ -31,10 +31,10 @@ from vibroimpact.exporting.formats import adams_solver, adams_view
 from vibroimpact.materials import find_material
 
 AGAINST = Against(
-    "a strict parser of Adams' datasets and commands, and SciPy's DOP853 on the model it reads",
+    "strict parser of Adams datasets and commands, and SciPy's DOP853 on the parsed model",
     "own independent computation",
     "programs and files",
-    "Adams Solver's manual of statements and functions; tests/oracles/adams.py. No Adams was run",
+    "Adams Solver manual, statements and functions; tests/oracles/adams.py; Adams itself was not run",
 )
 
 
@@ -48,6 +48,7 @@ COLUMNS = {
     "largest_force": "max_force_N",
     "rebound_height": "rebound_height_m",
 }
+QUANTITIES = {"duration": "contact duration", "largest_force": "maximum contact force"}
 HYSTERETIC = [law for law in vi.contact_laws().values() if issubclass(law, HystereticLaw)]
 
 
@@ -98,9 +99,9 @@ def same(agrees: Agrees, case: str, drop: Drop, bounces: list[Bounce]) -> None:
     assert len(bounces) == len(table["time_s"])
     for name, column in COLUMNS.items():
         theirs, unit = [getattr(bounce, name) for bounce in bounces], "m/s" if "speed" in name else column.rsplit("_", 1)[1]
-        agrees(case, name.replace("_", " "), table[column], theirs, unit=unit, relative=1e-7)
+        agrees(case, QUANTITIES.get(name, name.replace("_", " ")), table[column], theirs, unit=unit, relative=1e-7)
     restitution = [bounce.separation_speed / bounce.approach_speed for bounce in bounces]
-    agrees(case, "restitution", table["restitution_achieved"], restitution, relative=1e-7)
+    agrees(case, "coefficient of restitution", table["restitution_achieved"], restitution, relative=1e-7)
 
 
 # both files hold the same expression: each drop is read from one of them, and from the other where there is time
@@ -125,12 +126,12 @@ def test_the_papers_drops(agrees: Agrees, read, case: str) -> None:
     drop = drop_of(laws, impacts=5, function=function)
     model = read(drop)
     bounces = Motion(model).run()
-    same(agrees, "the paper's drop, constant, variable and as a function", drop, bounces)
+    same(agrees, "the paper's drop, damping constant, per impact and as a function of the approach speed", drop, bounces)
     assert model.end == pytest.approx(drop.end_time)
     assert bounces[0].rebound_height == pytest.approx({"function": 2.41124}.get(case, 2.411319), rel=1e-4)
     if case != "constant":
         # whether the sensor stores once or all the time makes no difference
-        same(agrees, "the paper's drop, a sensor that stores once", drop, Motion(model).run(always=False))
+        same(agrees, "the paper's drop, sensor triggered once per impact", drop, Motion(model).run(always=False))
 
 
 @pytest.mark.parametrize("read", one_in(2, [read.values[0] for read in READERS], lambda read: read.__name__))
@@ -146,7 +147,7 @@ def test_random_laws(agrees: Agrees, read) -> None:
             full_damping_penetration=random.uniform(2e-5, 5e-4),
         )
         drop = drop_of(law, start={"height": random.uniform(0.1, 5.0)}, impacts=2)
-        same(agrees, "ten random laws, exponents 1.2 to 2.2", drop, Motion(read(drop)).run())
+        same(agrees, "ten random contact laws, force exponents 1.2 to 2.2", drop, Motion(read(drop)).run())
 
 
 # by turns, every third: both files hold the same expression, and the others are for when there is time
@@ -161,35 +162,35 @@ def test_random_laws(agrees: Agrees, read) -> None:
 def test_hysteretic_laws(agrees: Agrees, read, law: type[HystereticLaw]) -> None:
     drop = drop_of(law(stiffness=K, restitution=0.65), impacts=3)
     model = read(drop)
-    same(agrees, "every law with hysteretic damping", drop, Motion(model).run())
-    same(agrees, "every law with hysteretic damping", drop, Motion(model).run(always=False))
+    same(agrees, "all laws with hysteretic damping", drop, Motion(model).run())
+    same(agrees, "all laws with hysteretic damping", drop, Motion(model).run(always=False))
 
 
 @pytest.mark.parametrize("read", READERS)
 def test_a_restitution_for_each_impact(agrees: Agrees, read) -> None:
     lankarani = vi.find_contact_law("lankarani-nikravesh")
     drop = drop_of(tuple(lankarani(stiffness=K, restitution=e) for e in (0.7, 0.8, 0.9)), impacts=4)
-    same(agrees, "a restitution for each impact", drop, Motion(read(drop)).run())
+    same(agrees, "different coefficient of restitution at each impact", drop, Motion(read(drop)).run())
 
 
 @pytest.mark.parametrize("read", READERS)
 def test_what_starts_at_first_touch(agrees: Agrees, read) -> None:
     drop = drop_of((impact(), impact(damping_max=100.0)), start={"speed": 3.0}, impacts=3)
-    same(agrees, "from first touch on", drop, Motion(read(drop)).run())
+    same(agrees, "start at first contact", drop, Motion(read(drop)).run())
     assert read(drop).parts[next(key for key, part in read(drop).parts.items() if not part.ground)].velocity == -3000.0
 
 
 @pytest.mark.parametrize("read", READERS)
 def test_hertz_loses_nothing(agrees: Agrees, read) -> None:
     drop = drop_of(Hertz(stiffness=K), start={"height": 0.5}, impacts=2)
-    same(agrees, "Hertz's contact", drop, Motion(read(drop)).run())
+    same(agrees, "Hertz contact", drop, Motion(read(drop)).run())
 
 
 @pytest.mark.parametrize("read", READERS)
 def test_a_sensor_that_never_fires_leaves_the_first_speed(agrees: Agrees, read) -> None:
     drop = drop_of(tuple(impact(damping_max=damping) for damping in (180.0, 20.0)), impacts=2)
     constant = drop_of(impact(damping_max=180.0), impacts=2)
-    same(agrees, "a sensor that never fires", constant, Motion(replace(read(drop), end=constant.end_time)).run(never=True))
+    same(agrees, "sensor that is never triggered", constant, Motion(replace(read(drop), end=constant.end_time)).run(never=True))
 
 
 @pytest.mark.parametrize("read", READERS)
@@ -351,12 +352,12 @@ def test_oblique_drops(agrees: Agrees, read, coefficient: float) -> None:
     drop = drop_of(impact(), start={"height": 0.5}, impacts=2, oblique=oblique)
     model = read(drop)
     bounces = Motion(model).run()
-    same(agrees, "oblique drops on an inclined plate", drop, bounces)
+    same(agrees, "oblique impacts on an inclined plate", drop, bounces)
     found = np.array([bounce.along for bounce in bounces]).T
     for values, column in zip(found, AFTER, strict=True):
         scale = RADIUS if "spin" in column else 1.0
-        quantity = "velocity of the surface by spin after" if "spin" in column else "velocity along the plate after"
-        agrees("oblique drops on an inclined plate", quantity, scale * drop.impacts[column], scale * values, unit="m/s", absolute=2e-5)
+        quantity = "angular velocity times radius after impact" if "spin" in column else "tangential velocity after impact"
+        agrees("oblique impacts on an inclined plate", quantity, scale * drop.impacts[column], scale * values, unit="m/s", absolute=2e-5)
     assert model.gravity == pytest.approx((500.0, 0.0, -9800.0))
 
 

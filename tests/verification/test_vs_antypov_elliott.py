@@ -18,7 +18,7 @@ from agreement import Against, Agrees
 from vibroimpact.contact.laws.tsuji import Tsuji
 
 AGAINST = Against(
-    "Antypov and Elliott, exact damping of Hertz's contact",
+    "Antypov and Elliott, analytical solution of the damped Hertz contact",
     "closed form",
     "damping laws",
     "Antypov and Elliott 2011, EPL 94, 50004, doi 10.1209/0295-5075/94/50004",
@@ -46,17 +46,17 @@ def achieved(law: type[Tsuji], restitution: float) -> float:
 
 def test_alpha(agrees: Agrees) -> None:
     _, dissipative = Tsuji(stiffness=4.0, restitution=0.5, effective_mass=9.0).forces(16.0, 1.0, 1.0)
-    agrees("restitution 0.5", "damping alpha", dissipative / (math.sqrt(4.0 * 9.0) * 2.0), 0.481769, absolute=5e-7)
+    agrees("coefficient of restitution 0.5", "damping parameter alpha", dissipative / (math.sqrt(4.0 * 9.0) * 2.0), 0.481769, absolute=5e-7)
 
 
 @pytest.mark.parametrize("restitution", [0.9, 0.8, 0.5])
 def test_zero_indentation_returns_what_was_asked(agrees: Agrees, restitution: float) -> None:
-    agrees("contact ends at zero indentation", "restitution", achieved(Tsuji, restitution), restitution, relative=1e-8)
+    agrees("contact ends at zero indentation", "coefficient of restitution", achieved(Tsuji, restitution), restitution, relative=1e-8)
 
 
 @pytest.mark.parametrize(("restitution", "expected"), [(0.9, 0.902026), (0.8, 0.808099), (0.5, 0.550283)])
 def test_zero_force_returns_more(agrees: Agrees, restitution: float, expected: float) -> None:
-    agrees("contact ends at zero force", "restitution", achieved(PushingTsuji, restitution), expected, absolute=5e-7)
+    agrees("contact ends at zero force", "coefficient of restitution", achieved(PushingTsuji, restitution), expected, absolute=5e-7)
 
 
 def test_zero_force_end_under_gravity_may_leave_the_sphere_in_its_indentation() -> None:

@@ -19,7 +19,7 @@ from vibroimpact.structures.supports.patch import Patch
 from vibroimpact.structures.supports.support import held_by
 
 AGAINST = Against(
-    "ARPACK, through SciPy",
+    "ARPACK eigenvalue solver, through SciPy",
     "other program",
     "plates, spheres and modes",
     "Lehoucq, Sorensen and Yang 1998, ARPACK Users' Guide; scipy.sparse.linalg.eigsh",
@@ -52,9 +52,7 @@ def test_modes_of_arpack(agrees: Agrees, body: str) -> None:
     modes = elastic.modes(number)
     ours, skip = modes.angular_frequencies**2, held.rigid.shape[1]
     theirs = eigsh(csc_array(held.stiffness), number + skip + 2, csc_array(held.mass), sigma=-0.3 * ours[0], return_eigenvectors=False)
-    agrees(
-        body, "squares of the lowest angular frequencies", ours, np.sort(theirs)[skip : skip + number], unit="rad²/s²", relative=tolerance
-    )
+    agrees(body, "lowest eigenvalues ω²", ours, np.sort(theirs)[skip : skip + number], unit="rad²/s²", relative=tolerance)
     np.testing.assert_allclose(modes.shapes.T @ (held.mass @ modes.shapes), np.eye(number), atol=1e-10)
     apart = np.flatnonzero(np.diff(modes.angular_frequencies) > 1e-3 * modes.angular_frequencies[:-1])[-1]  # between two multiplets
     between = 0.5 * (modes.angular_frequencies[apart] + modes.angular_frequencies[apart + 1])

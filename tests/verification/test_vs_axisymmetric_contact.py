@@ -21,10 +21,10 @@ from support import plain_case
 from vibroimpact.dynamics.vibrating.local import LocalContact
 
 AGAINST = Against(
-    "finite elements of an elastic sphere with contact",
+    "finite-element contact analysis of an elastic sphere",
     "own independent computation",
     "impacts on vibrating bodies",
-    "two independent codes; tests/oracles/axisymmetric_contact.py, undamped, small strain, frictionless",
+    "two independent programs, tests/oracles/axisymmetric_contact.py; undamped, small strain, frictionless",
 )
 
 
@@ -48,10 +48,10 @@ def impact_of(problem: vi.Problem) -> tuple[float, float, float]:
 
 def check_consistent(agrees: Agrees, modes: int, across: int, grading: float = 1.0, attachment: bool = False) -> None:
     force, duration, restitution = impact_of(problem("consistent", modes, across, grading, attachment))
-    case = "`consistent`, 10 to 150 modes, several meshes"
-    agrees(case, "largest force", force, FORCE, unit="N", relative=0.01)
-    agrees(case, "duration", duration, DURATION, unit="s", relative=0.01)
-    agrees(case, "restitution", restitution, RESTITUTION, absolute=8e-4)
+    case = "impact, local compliance `consistent`, 10 to 150 modes, several meshes"
+    agrees(case, "maximum contact force", force, FORCE, unit="N", relative=0.01)
+    agrees(case, "contact duration", duration, DURATION, unit="s", relative=0.01)
+    agrees(case, "coefficient of restitution", restitution, RESTITUTION, absolute=8e-4)
 
 
 @pytest.mark.parametrize("modes", [10, 60])
@@ -79,7 +79,14 @@ def test_consistent_against_the_oracle(agrees: Agrees) -> None:
     times = reference.time[reference.time < min(reference.contact_duration, float(response.end_time[0]))]
     found = response.at(times)
     history = reference.force[: len(times)]
-    agrees("`consistent`, 60 modes", "history of the force", found["force_N"], history, unit="N", absolute=0.015 * FORCE)
+    agrees(
+        "impact, local compliance `consistent`, 60 modes",
+        "contact force history",
+        found["force_N"],
+        history,
+        unit="N",
+        absolute=0.015 * FORCE,
+    )
 
 
 @pytest.mark.parametrize("radius", [1e-3, 2.5e-3, 4.5e-3])
@@ -93,7 +100,7 @@ def test_static_force_against_approach(agrees: Agrees, radius: float) -> None:
     force = float(local.law.forces(delta, np.zeros(1), SPEED)[0][0])
     approach = float(local.approach_at(delta)[0]) + force * float(((modes.contact / modes.angular_frequencies) ** 2).sum())
     expected = static_approach(RADIUS, MODULUS, RATIO, approach, 8.0).force
-    agrees("contact radii of 1, 2.5 and 4.5 mm", "static force at the same approach", force, expected, unit="N", relative=5e-3)
+    agrees("static contact, contact radii 1, 2.5 and 4.5 mm", "contact force at equal approach", force, expected, unit="N", relative=5e-3)
 
 
 def test_superposed_falls_with_the_modes() -> None:

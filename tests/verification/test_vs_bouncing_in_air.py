@@ -17,10 +17,10 @@ from vibroimpact.calibration.calibrate_case import calibrate_case, read_calibrat
 from vibroimpact.calibration.calibration import Calibration
 
 AGAINST = Against(
-    "SciPy, a sphere that bounces in air",
+    "numerical integration of a sphere bouncing in air (SciPy)",
     "own independent computation",
     "calibration, identification and studies",
-    "Newton's second law with Clift and Gauvin's drag coefficient (1970), tests/oracles/bouncing_in_air.py",
+    "Newton's second law with the drag coefficient of Clift and Gauvin 1970; tests/oracles/bouncing_in_air.py",
 )
 
 
@@ -58,9 +58,9 @@ def test_rebound_heights(agrees: Agrees, seen: Bounces) -> None:
     """Without drag the restitution is 0.9 % too small at the first impact, and that is doubted; with it, it is right to 1e-6."""
     target = {"rebound_heights": seen.tops.tolist()}
     right = evaluated(target, True)
-    agrees("from rebound heights in air", "restitution", right.values, TRUE, relative=1e-6)
+    agrees("calibration to rebound heights", "coefficient of restitution", right.values, TRUE, relative=1e-6)
     speeds = right.observations.speeds
-    agrees("from rebound heights in air", "approach speed", speeds, seen.before[: len(right.values)], unit="m/s", relative=1e-7)
+    agrees("calibration to rebound heights", "approach speed", speeds, seen.before[: len(right.values)], unit="m/s", relative=1e-7)
     assert not doubts(right)
     wrong = evaluated(target, None)
     np.testing.assert_allclose(wrong.values[0], np.sqrt((seen.tops[0] - RADIUS) / (HEIGHT - RADIUS)), rtol=1e-9)
@@ -100,19 +100,19 @@ def test_a_force_record(agrees: Agrees, tmp_path: Path) -> None:
         force[inside] = 0.5 * np.pi * impulse / contact * np.sin(np.pi * (time[inside] - touch) / contact)
     file = written(tmp_path / "force.csv", {"time_s": time, "force_N": force})
     right, wrong = evaluated(file, True), evaluated(file, False)
-    agrees("from a record of the force", "restitution", right.values[:4], TRUE, relative=3e-4)
+    agrees("calibration to a contact force record", "coefficient of restitution", right.values[:4], TRUE, relative=3e-4)
     assert wrong.values[0] < TRUE - 2e-3
 
 
 def test_the_first_impact_alone(agrees: Agrees, seen: Bounces) -> None:
     right = evaluated({"rebound_height": float(seen.tops[0])}, True, run={"impacts": 1})
-    agrees("from the first rebound alone", "restitution", right.values[0], TRUE, relative=1e-6)
+    agrees("calibration to the first rebound height", "coefficient of restitution", right.values[0], TRUE, relative=1e-6)
 
 
 def test_heights_at_known_speeds(agrees: Agrees, seen: Bounces, tmp_path: Path) -> None:
     file = written(tmp_path / "rows.csv", {"approach_speed_m_s": seen.before[:4], "rebound_height_m": seen.tops})
     found = evaluated({"file": file}, True)
-    agrees("from heights at known speeds", "restitution", found.values, TRUE, relative=1e-6)
+    agrees("calibration to rebound heights at known approach speeds", "coefficient of restitution", found.values, TRUE, relative=1e-6)
 
 
 def test_the_impacts_follow_one_another_through_air(seen: Bounces) -> None:
@@ -150,12 +150,19 @@ def test_flights(agrees: Agrees, radius: float, density: float, height: float) -
     ground.terminal, ground.direction = True, -1.0
     start = float(flights.speed_to_rise(np.array(height))[0])
     flight = solve_ivp(slope, (0.0, 100.0), [1e-15, start], method="DOP853", rtol=1e-11, atol=1e-14, events=(ground, top))
-    case = "flights of pebbles, table tennis balls, grains and steel"
-    agrees(case, "height", height, flight.y_events[1][0][0], unit="m", relative=1e-7)
-    agrees(case, "speed after a fall", flights.speed_after_fall(np.array(height))[0], -flight.y[1, -1], unit="m/s", relative=1e-7)
+    case = "flights of pebbles, table tennis balls, fine grains and steel spheres"
+    agrees(case, "apex height", height, flight.y_events[1][0][0], unit="m", relative=1e-7)
+    agrees(
+        case,
+        "approach speed after a fall from the apex",
+        flights.speed_after_fall(np.array(height))[0],
+        -flight.y[1, -1],
+        unit="m/s",
+        relative=1e-7,
+    )
     flown, lasted = flights.flight(np.array(start)), flights.end_speeds(np.array(flight.t[-1]))
-    agrees(case, "duration", flown.duration, flight.t[-1], unit="s", relative=1e-7)
-    agrees(case, "time to the top", flown.rise_time, flight.t_events[1][0], unit="s", relative=1e-6)
+    agrees(case, "flight duration", flown.duration, flight.t[-1], unit="s", relative=1e-7)
+    agrees(case, "rise time", flown.rise_time, flight.t_events[1][0], unit="s", relative=1e-6)
     assert flown.height == pytest.approx(height, rel=1e-7)
     assert (lasted.start, lasted.end) == (pytest.approx(start, rel=1e-6), pytest.approx(-flight.y[1, -1], rel=1e-6))
     depth, down = flights.depth_at(np.array([0.5 * float(flown.rise_time) - float(flown.rise_time), 0.01]))

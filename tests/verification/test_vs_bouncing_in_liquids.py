@@ -22,16 +22,16 @@ from vibroimpact.bodies.rigid import rigid_plate, rigid_sphere
 from vibroimpact.dynamics.liquid import CRITICAL_STOKES, restitution_kept
 
 AGAINST = Against(
-    "spheres that bounce in liquids",
+    "measured rebounds of spheres in liquids",
     "experiment",
     "flight, bounces and shaken plates",
-    "Legendre and others 2006, Chem. Eng. Sci. 61, 3543; Gondret and others 2002, Phys. Fluids 14, 643",
+    "Legendre et al. 2006, Chem. Eng. Sci. 61, 3543; Gondret et al. 2002, Phys. Fluids 14, 643",
 )
 CORRELATION = Against(
-    "Legendre's correlation e/e_air = exp(-35/St), written a second time",
+    "correlation of Legendre et al., e/e_air = exp(-35/St)",
     "closed form",
     "flight, bounces and shaken plates",
-    "Legendre and others 2006, Chem. Eng. Sci. 61, 3543",
+    "Legendre et al. 2006, Chem. Eng. Sci. 61, 3543; evaluated separately in the test",
 )
 
 
@@ -57,8 +57,8 @@ def test_achieved_restitutions_follow_the_correlation(agrees: Agrees, law: str) 
     impacts = drops(law, speeds).impacts
     expected = 0.9 * np.exp(-35.0 / stokes)
     np.testing.assert_allclose(impacts["restitution_asked"][:, 0], expected, rtol=1e-12)
-    case = "two laws, 0.05 to 5 m/s, the correlation with measurements"
-    agrees(case, "restitution", impacts["restitution_achieved"][:, 0], expected, against=CORRELATION, relative=1e-8)
+    case = "two contact laws, approach speeds 0.05 to 5 m/s"
+    agrees(case, "coefficient of restitution", impacts["restitution_achieved"][:, 0], expected, against=CORRELATION, relative=1e-8)
 
 
 def test_each_impact_has_the_restitution_of_its_own_speed() -> None:
@@ -93,7 +93,13 @@ def test_three_measured_bounces(agrees: Agrees, stokes: int, deviation: float) -
     law = vi.find_contact_law("newton")(restitution=0.97)
     drop = vi.Problem(sphere=sphere, plate=rigid_plate(), laws=(law,), speed=before, gravity=0.0, impacts=1, liquid=oil)
     computed = float(vi.simulate(drop).impacts["restitution_achieved"][0])
-    agrees("three bounces in silicone oil, places read off a figure", "restitution", computed, after / before, relative=deviation)
+    agrees(
+        "three rebounds in silicone oil, positions digitized from a figure",
+        "coefficient of restitution",
+        computed,
+        after / before,
+        relative=deviation,
+    )
 
 
 @pytest.mark.parametrize(

@@ -14,23 +14,29 @@ from vibroimpact.contact.laws.kuwabara_kono import KuwabaraKono
 from vibroimpact.dynamics.restitution import integrated_restitution
 
 AGAINST = Against(
-    "viscoelastic spheres, dimensionless equation",
+    "viscoelastic spheres, dimensionless equation of motion",
     "published computation",
     "damping laws",
-    "Kuwabara and Kono 1987, Jpn. J. Appl. Phys. 26, 1230; Brilliantov and others 1996, Phys. Rev. E 53, 5382",
+    "Kuwabara and Kono 1987, Jpn. J. Appl. Phys. 26, 1230; Brilliantov et al. 1996, Phys. Rev. E 53, 5382",
 )
 PADE = Against(
-    "Padé approximant of Müller and Pöschel",
+    "Müller and Pöschel, Padé approximant of the coefficient of restitution",
     "published computation",
     "damping laws",
-    "Phys. Rev. E 84, 021302, 2011, doi 10.1103/PhysRevE.84.021302; good to about 1e-3",
+    "Müller and Pöschel 2011, Phys. Rev. E 84, 021302, doi 10.1103/PhysRevE.84.021302; accurate to about 1e-3",
 )
 
 
 @pytest.mark.parametrize(("b", "expected"), [(0.1, 0.892859), (0.3, 0.722085), (1.0, 0.393931)])
 def test_dimensionless_equation(agrees: Agrees, b: float, expected: float) -> None:
     law = KuwabaraKono(stiffness=1.0, dissipation_time=b / 1.5)
-    agrees("three dampings", "restitution", integrated_restitution(law, 1.0, 1.0), expected, absolute=1e-6)
+    agrees(
+        "three dimensionless damping parameters",
+        "coefficient of restitution",
+        integrated_restitution(law, 1.0, 1.0),
+        expected,
+        absolute=1e-6,
+    )
 
 
 def test_pade_over_the_speed(agrees: Agrees) -> None:
@@ -40,5 +46,5 @@ def test_pade_over_the_speed(agrees: Agrees) -> None:
     top = np.polynomial.polynomial.polyval(star, [1, 1.07232, 0.574198, 0.141552])
     bottom = np.polynomial.polynomial.polyval(star, [1, 1.07232, 1.72765, 1.37842, 1.19449, 0.467273, 0.235585])
     found = integrated_restitution(KuwabaraKono(stiffness=stiffness, dissipation_time=time), mass, speed)
-    agrees("1 mm/s to 100 m/s", "restitution", found, top / bottom, against=PADE, absolute=2e-3)
+    agrees("approach speeds 1 mm/s to 100 m/s", "coefficient of restitution", found, top / bottom, against=PADE, absolute=2e-3)
     assert np.all(np.diff(found) < 0.0)

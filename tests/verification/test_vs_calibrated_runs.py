@@ -25,10 +25,10 @@ from vibroimpact.contact.pair import ContactPair
 from vibroimpact.contact.registry import contact_laws
 
 AGAINST = Against(
-    "the run of a calibrated case",
+    "simulation of the calibrated case",
     "consistency",
     "calibration, identification and studies",
-    "what is wanted of a calibration is achieved by a run; no opponent",
+    "target values of the calibration, compared with those of the simulation; no external reference",
 )
 
 
@@ -72,7 +72,7 @@ def check_round_trip(agrees: Agrees, table: dict) -> None:
     achieved = vi.simulate(calibrated_case(what.case, found)).impacts["restitution_achieved"]
     wanted = table["calibrate"]["target"]["restitution"]
     assert len(achieved) == table["run"]["impacts"]
-    agrees("every law with a free parameter, random cases", "restitution", achieved, wanted, absolute=WITHIN)
+    agrees("all laws with a free parameter, random cases", "coefficient of restitution", achieved, wanted, absolute=WITHIN)
 
 
 @pytest.mark.parametrize("law", one_in(8, sorted(FREE, key="meyer".__eq__)))
@@ -108,12 +108,12 @@ def test_the_calibrated_case_bounces_as_the_target_does(agrees: Agrees, name: st
     what = load_calibration(name)
     run = vi.simulate(calibrated_case(what.case, calibrate_case(what))).impacts
     theory = vi.simulate(vi.load_case("paper:type1-theory")).impacts
-    for column, quantity in (
-        ("approach_speed_m_s", "approach speed"),
-        ("separation_speed_m_s", "separation speed"),
-        ("rebound_height_m", "height of rebounds"),
+    for column, quantity, unit in (
+        ("approach_speed_m_s", "approach speed", "m/s"),
+        ("separation_speed_m_s", "separation speed", "m/s"),
+        ("rebound_height_m", "rebound height", "m"),
     ):
-        agrees("the paper's drop, another law as the target", quantity, run[column], theory[column], relative=1e-8)
+        agrees("the paper's drop, another contact law as the target", quantity, run[column], theory[column], unit=unit, relative=1e-8)
 
 
 def calibrated_run(**changes: object) -> tuple[dict, dict]:
@@ -126,7 +126,13 @@ def calibrated_run(**changes: object) -> tuple[dict, dict]:
 def test_a_target_with_another_restitution_at_each_impact(agrees: Agrees) -> None:
     wanted = [0.8, 0.5, 0.7]
     run, _ = calibrated_run(contact={"law": "adams-impact"}, calibrate={"target": {"law": "newton", "restitution": wanted}})
-    agrees("another restitution at each impact", "restitution", run["restitution_achieved"], wanted, absolute=WITHIN)
+    agrees(
+        "different coefficient of restitution at each impact",
+        "coefficient of restitution",
+        run["restitution_achieved"],
+        wanted,
+        absolute=WITHIN,
+    )
 
 
 def test_parameters_that_differ_from_impact_to_impact_stay_as_given() -> None:
@@ -142,7 +148,7 @@ def test_parameters_that_differ_from_impact_to_impact_stay_as_given() -> None:
 def test_measured_heights_are_those_of_the_calibrated_run(agrees: Agrees, law: str, heights: list[float]) -> None:
     """Of laws whose contact ends where the surfaces part, so that the sphere leaves from where it touched."""
     run, _ = calibrated_run(contact={"law": law}, calibrate={"target": {"rebound_heights": heights}}, run={"impacts": len(heights)})
-    agrees("to measured heights", "height of rebounds", run["rebound_height_m"], heights, unit="m", relative=1e-8)
+    agrees("calibration to measured rebound heights", "rebound height", run["rebound_height_m"], heights, unit="m", relative=1e-8)
 
 
 @pytest.mark.parametrize("outcome", ["max_force", "max_indentation", "duration"])
@@ -161,7 +167,14 @@ def test_other_parameters_to_other_outcomes(agrees: Agrees, law: str, parameter:
     what = read_calibration(plain_case(contact=contact, calibrate=target, run={"impacts": 1}))
     found = calibrate_case(what)
     if parameter == "stiffness":
-        agrees("from force, indentation and duration", "stiffness", found.values[0], truth, unit="N/m^n", relative=1e-8)
+        agrees(
+            "calibration to maximum force, maximum indentation and contact duration",
+            "contact stiffness",
+            found.values[0],
+            truth,
+            unit="N/m^n",
+            relative=1e-8,
+        )
     assert found.outcomes[outcome][0] == pytest.approx(wanted, rel=1e-9)
 
 
@@ -175,7 +188,13 @@ def test_without_gravity() -> None:
 @pytest.mark.parametrize("restitution", [0.02, 0.9999, 1.0])
 def test_restitutions_near_the_ends(agrees: Agrees, restitution: float) -> None:
     run, _ = calibrated_run(contact={"law": "adams-impact"}, run={"impacts": 1}, calibrate={"target": {"restitution": restitution}})
-    agrees("restitutions of 0.02, 0.9999 and 1", "restitution", run["restitution_achieved"], restitution, absolute=WITHIN)
+    agrees(
+        "coefficients of restitution 0.02, 0.9999 and 1",
+        "coefficient of restitution",
+        run["restitution_achieved"],
+        restitution,
+        absolute=WITHIN,
+    )
 
 
 def test_several_outcomes_are_as_near_as_they_can_be() -> None:
@@ -219,5 +238,5 @@ def test_damping_of_an_elastic_sphere(agrees: Agrees) -> None:
     seen = from_table(np.array([3.0]), {"separation_speed": run["separation_speed_m_s"][:1]}, None, ("impact 1",))
     found = calibrate(problem, seen, tunable=tunable)
     assert found.given.tolist() == [0.3]
-    agrees("from the rebound of an elastic sphere", "damping ratio", found.values[0], truth, relative=1e-6)
+    agrees("calibration to the rebound of an elastic sphere", "damping ratio", found.values[0], truth, relative=1e-6)
     assert found.drops["variable"]["restitution_achieved"][0] == pytest.approx(run["restitution_achieved"][0], abs=WITHIN)

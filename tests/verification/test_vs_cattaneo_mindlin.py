@@ -15,25 +15,25 @@ from vibroimpact.contact.friction.turning_points import TurningPoints
 from vibroimpact.dynamics.vibrating.rubbing import lost_in_microslip
 
 AGAINST = Against(
-    "a row of springs, one by one",
+    "array of independent friction springs",
     "own independent computation",
     "oblique impact and friction",
-    "4,000 springs in small steps of time, in the test itself",
+    "4,000 springs, explicit time integration in the test",
 )
 PUBLISHED = Against(
-    "Cattaneo, Mindlin and Deresiewicz's contact, published values",
+    "oblique impact with Cattaneo-Mindlin contact, published values",
     "published computation",
     "oblique impact and friction",
-    "Maw, Barber and Fawcett 1976, Wear 38, 101, and its followers: similar materials, Poisson's ratio 0.3, to the digits given",
+    "Maw, Barber and Fawcett 1976, Wear 38, 101, and later publications: similar materials, Poisson's ratio 0.3, to the digits given",
 )
 SLIDING = Against(
-    "sliding throughout, closed form",
+    "gross sliding, closed form",
     "closed form",
     "oblique impact and friction",
-    "impulse of friction = coefficient times that of the contact; Chung and Ooi 2011, test 6",
+    "friction impulse = coefficient of friction times normal impulse; Chung and Ooi 2011, Granular Matter 13, 643, test 6",
 )
 LOOP = Against(
-    "Mindlin and Deresiewicz, loop of microslip",
+    "Mindlin and Deresiewicz, hysteresis loop of microslip",
     "closed form",
     "oblique impact and friction",
     "Mindlin and Deresiewicz 1953; Johnson, Contact Mechanics, 1985, section 7.4",
@@ -76,7 +76,14 @@ def test_rebound_of_the_slip_of_similar_materials(agrees: Agrees) -> None:
     expected = np.array([-0.1665, -0.0957, 0.0597, 0.2853, 0.4186, 0.4649, 0.4599, 0.3591, 0.1529])
     found = impact(psi, HERTZ)
     rebound = -slip_after(found) / slip_before(found)
-    agrees("similar materials, ψ1 from 0.25 to 5", "rebound of the slip", rebound, expected, against=PUBLISHED, absolute=1e-4)
+    agrees(
+        "similar materials, dimensionless angle of incidence ψ1 = 0.25 to 5",
+        "tangential coefficient of restitution at the contact point",
+        rebound,
+        expected,
+        against=PUBLISHED,
+        absolute=1e-4,
+    )
 
 
 def test_gross_sliding_is_exact(agrees: Agrees) -> None:
@@ -85,7 +92,14 @@ def test_gross_sliding_is_exact(agrees: Agrees) -> None:
     found = impact(psi, HERTZ)
     expected = -1.0 + 14.0 * (1.0 - NU) / ((2.0 - NU) * psi)
     rebound = -slip_after(found) / slip_before(found)
-    agrees("sliding throughout, undamped", "rebound of the slip", rebound, expected, against=SLIDING, absolute=1e-7)
+    agrees(
+        "gross sliding, undamped",
+        "tangential coefficient of restitution at the contact point",
+        rebound,
+        expected,
+        against=SLIDING,
+        absolute=1e-7,
+    )
 
 
 @pytest.mark.parametrize("restitution", [1.0, 0.7, 0.3])
@@ -96,7 +110,14 @@ def test_gross_sliding_takes_the_coefficient_of_the_whole_normal_impulse(agrees:
     achieved = found.impacts["restitution_achieved"][:, 0]
     kappa = 3.5 * MU * (1.0 + achieved) * found.impacts["approach_speed_m_s"][:, 0] / slip_before(found)
     rebound = -slip_after(found) / slip_before(found)
-    agrees("sliding throughout, restitutions 1, 0.7, 0.3", "rebound of the slip", rebound, kappa - 1.0, against=SLIDING, relative=1e-6)
+    agrees(
+        "gross sliding, normal coefficients of restitution 1, 0.7 and 0.3",
+        "tangential coefficient of restitution at the contact point",
+        rebound,
+        kappa - 1.0,
+        against=SLIDING,
+        relative=1e-6,
+    )
 
 
 def test_friction_without_bound_sticks(agrees: Agrees) -> None:
@@ -107,7 +128,13 @@ def test_friction_without_bound_sticks(agrees: Agrees) -> None:
     ball = vi.Body(mass=0.02, contact_offset=0.01)
     problem = vi.Problem(sphere=ball, plate=vi.rigid_plate(), laws=(HERTZ,), speed=np.array([2.0]), gravity=0.0, impacts=1, oblique=oblique)
     expected = by_springs(1.0, DRIVE, bound=1e9)[0]
-    agrees("friction without bound", "slip after, over before", slip_after(vi.tabulate(problem)) / slip, expected, absolute=1e-4)
+    agrees(
+        "contact without sliding (unbounded friction)",
+        "ratio of contact-point velocity after to before impact",
+        slip_after(vi.tabulate(problem)) / slip,
+        expected,
+        absolute=1e-4,
+    )
 
 
 def springs(depth: Floats, displacement: Floats, number: int) -> Floats:
@@ -149,7 +176,9 @@ def test_turning_points_are_a_row_of_springs(agrees: Agrees, seed: int) -> None:
         integral, _, _ = memory.advance(one, Step(*ends, np.array([[found[-1]], inner * ends[1][1], swept])))
         found.append(float(integral[0]))
     expected = springs(depth, displacement, 4000)
-    agrees("random histories of straight steps", "integral of the displacements", found, expected, of_the_largest=2e-3)
+    agrees(
+        "random piecewise linear displacement histories", "integral of the tangential displacements", found, expected, of_the_largest=2e-3
+    )
 
 
 def by_springs(psi: float, drive: float, bound: float = 1.0, number: int = 4000, steps: int = 6000) -> tuple[float, float, float]:
@@ -191,7 +220,13 @@ def test_impacts_against_four_thousand_springs(agrees: Agrees, psi: float) -> No
     """The velocity after is within 1e-4 of that of the springs."""
     found = impact(np.array([psi]), HERTZ)
     after = slip_after(found) / slip_before(found)
-    agrees("impacts, ψ1 from 0.2 to 3.6", "slip after, over before", after, by_springs(psi, DRIVE)[0], absolute=1e-4)
+    agrees(
+        "oblique impacts, dimensionless angle of incidence ψ1 = 0.2 to 3.6",
+        "ratio of contact-point velocity after to before impact",
+        after,
+        by_springs(psi, DRIVE)[0],
+        absolute=1e-4,
+    )
 
 
 @pytest.mark.parametrize("psi", [0.2, 0.7, 1.4, 2.3, 3.6])
@@ -200,11 +235,21 @@ def test_losses_in_microslip_and_in_gross_slip_against_springs(agrees: Agrees, p
     found = impact(np.array([psi]), HERTZ)
     before = 0.5 * (2.0 / 7.0 * 0.02) * slip_before(found)[0] ** 2
     _, microslip, gross = by_springs(psi, DRIVE, number=1000, steps=24000)
-    case = "impacts, ψ1 from 0.2 to 3.6"
+    case = "oblique impacts, dimensionless angle of incidence ψ1 = 0.2 to 3.6"
     agrees(
-        case, "lost in microslip, over the energy of the slip", found.impacts["microslip_lost_J"][0, 0] / before, microslip, absolute=1e-4
+        case,
+        "energy dissipated by microslip, normalized by the tangential energy before impact",
+        found.impacts["microslip_lost_J"][0, 0] / before,
+        microslip,
+        absolute=1e-4,
     )
-    agrees(case, "lost in gross slip, over the energy of the slip", found.impacts["gross_slip_lost_J"][0, 0] / before, gross, absolute=1e-4)
+    agrees(
+        case,
+        "energy dissipated by gross slip, normalized by the tangential energy before impact",
+        found.impacts["gross_slip_lost_J"][0, 0] / before,
+        gross,
+        absolute=1e-4,
+    )
 
 
 @pytest.mark.parametrize("share", [0.3, 0.6, 0.9])
@@ -228,4 +273,12 @@ def test_a_cycle_of_tangential_force_is_lost_in_microslip(agrees: Agrees, share:
     rest = 1.0 - share
     loop = 1.0 - rest ** (5.0 / 3.0) - 5.0 / 6.0 * share * (1.0 + rest ** (2.0 / 3.0))
     exact = 3.6 * (MU * force) ** 2 / (shear * contact) * loop
-    agrees("a cycle at constant normal force", "lost in microslip", lost, exact, unit="J", against=LOOP, relative=2e-3)
+    agrees(
+        "cyclic tangential force at constant normal force",
+        "energy dissipated by microslip",
+        lost,
+        exact,
+        unit="J",
+        against=LOOP,
+        relative=2e-3,
+    )

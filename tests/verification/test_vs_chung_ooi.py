@@ -18,22 +18,23 @@ from agreement import Against, Agrees
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.pair import effective_modulus, effective_shear_modulus, hertz_stiffness
 
+PAPER = "Chung and Ooi 2011, Granular Matter 13, 643, doi 10.1007/s10035-011-0277-0"
 AGAINST = Against(
-    "Chung and Ooi: tests 1 and 2",
+    "Chung and Ooi, benchmark tests 1 and 2",
     "published computation",
     "Hertz and elastic contact",
-    "Granular Matter 13, 643, 2011, doi 10.1007/s10035-011-0277-0; values of Hertz's closed form, which their curves meet",
+    f"{PAPER}; values of Hertz's closed form, with which their curves coincide",
 )
 
 
 FINITE_ELEMENTS = Against(
-    "finite elements of Chung and Ooi, read from their figure",
+    "Chung and Ooi, finite-element results digitized from their figures",
     "published computation",
     "oblique impact and friction",
-    AGAINST.source,
+    PAPER,
 )
-SLIDING = Against("sliding throughout, closed form", "closed form", "oblique impact and friction", AGAINST.source)
-SYMMETRY = Against("symmetry of equal spheres", "closed form", "oblique impact and friction", AGAINST.source)
+SLIDING = Against("gross sliding, closed form", "closed form", "oblique impact and friction", PAPER)
+SYMMETRY = Against("symmetry of two equal spheres", "closed form", "oblique impact and friction", PAPER)
 
 
 def impact(mass: float, stiffness: float, speed: float) -> dict:
@@ -47,9 +48,11 @@ def test_1_two_identical_glass_spheres(agrees: Agrees) -> None:
     mass = 4 / 3 * math.pi * 0.01**3 * glass.density
     # two equal spheres at +-10 m/s: half the mass, half the radius, 20 m/s
     row = impact(mass / 2, hertz_stiffness(effective_modulus(glass, glass), 0.005), 20.0)
-    agrees("test 1, glass spheres, as a drop", "deepest indentation", row["max_indentation_m"], 274.113e-6, unit="m", relative=1e-5)
-    agrees("test 1, glass spheres, as a drop", "largest force", row["max_force_N"], 10696.9, unit="N", relative=1e-5)
-    agrees("test 1, glass spheres, as a drop", "duration", row["duration_s"], 40.3395e-6, unit="s", relative=1e-5)
+    agrees(
+        "test 1, glass spheres, modelled as a drop", "maximum indentation", row["max_indentation_m"], 274.113e-6, unit="m", relative=1e-5
+    )
+    agrees("test 1, glass spheres, modelled as a drop", "maximum contact force", row["max_force_N"], 10696.9, unit="N", relative=1e-5)
+    agrees("test 1, glass spheres, modelled as a drop", "contact duration", row["duration_s"], 40.3395e-6, unit="s", relative=1e-5)
 
 
 def test_1_as_it_is_meant(agrees: Agrees) -> None:
@@ -59,9 +62,11 @@ def test_1_as_it_is_meant(agrees: Agrees) -> None:
     spheres = {"left": vi.MovingBody(mass=mass, velocity=(10.0, 0, 0)), "right": vi.MovingBody(mass=mass, velocity=(-10.0, 0, 0))}
     contact = vi.PointContact(below="left", above="right", law=law, normal=(1.0, 0, 0))
     response = vi.simulate_system(vi.System(bodies=spheres, contacts={"contact": contact}), duration=1e-4)
-    agrees("test 1, as two bodies", "deepest indentation", response.impacts["max_indentation_m"], 274.113e-6, unit="m", relative=1e-5)
-    agrees("test 1, as two bodies", "largest force", response.impacts["max_force_N"], 10696.9, unit="N", relative=1e-5)
-    agrees("test 1, as two bodies", "duration", response.impacts["duration_s"], 40.3395e-6, unit="s", relative=1e-5)
+    agrees(
+        "test 1, modelled as two bodies", "maximum indentation", response.impacts["max_indentation_m"], 274.113e-6, unit="m", relative=1e-5
+    )
+    agrees("test 1, modelled as two bodies", "maximum contact force", response.impacts["max_force_N"], 10696.9, unit="N", relative=1e-5)
+    agrees("test 1, modelled as two bodies", "contact duration", response.impacts["duration_s"], 40.3395e-6, unit="s", relative=1e-5)
     for name, speed in (("left", -10.0), ("right", 10.0)):
         assert response.at(1e-4)[name].velocity[0] == pytest.approx(speed, rel=1e-12)
 
@@ -78,9 +83,11 @@ def test_1_from_a_case(agrees: Agrees) -> None:
         }
     )
     response = vi.simulate(case)
-    agrees("test 1, from a case", "deepest indentation", response.impacts["max_indentation_m"], 274.113e-6, unit="m", relative=1e-5)
-    agrees("test 1, from a case", "largest force", response.impacts["max_force_N"], 10696.9, unit="N", relative=1e-5)
-    agrees("test 1, from a case", "duration", response.impacts["duration_s"], 40.3395e-6, unit="s", relative=1e-5)
+    agrees(
+        "test 1, modelled by a case file", "maximum indentation", response.impacts["max_indentation_m"], 274.113e-6, unit="m", relative=1e-5
+    )
+    agrees("test 1, modelled by a case file", "maximum contact force", response.impacts["max_force_N"], 10696.9, unit="N", relative=1e-5)
+    agrees("test 1, modelled by a case file", "contact duration", response.impacts["duration_s"], 40.3395e-6, unit="s", relative=1e-5)
     end = response.at(response.end_time)  # equal spheres exchange their velocities
     assert end["velocity_m_s"] == pytest.approx([0.0], abs=1e-9)
     assert end["plate_velocity_m_s"] == pytest.approx([-20.0], rel=1e-12)
@@ -94,9 +101,11 @@ def test_2_as_it_is_meant(agrees: Agrees) -> None:
     bodies = {"ball": ball, "wall": vi.MovingBody(mass=math.inf)}
     contact = vi.PointContact(above="ball", below="wall", law=law)
     response = vi.simulate_system(vi.System(bodies=bodies, contacts={"contact": contact}), duration=1e-3)
-    agrees("test 2, as two bodies", "deepest indentation", response.impacts["max_indentation_m"], 49.7172e-6, unit="m", relative=1e-5)
-    agrees("test 2, as two bodies", "largest force", response.impacts["max_force_N"], 11369.9, unit="N", relative=1e-5)
-    agrees("test 2, as two bodies", "duration", response.impacts["duration_s"], 731.657e-6, unit="s", relative=1e-5)
+    agrees(
+        "test 2, modelled as two bodies", "maximum indentation", response.impacts["max_indentation_m"], 49.7172e-6, unit="m", relative=1e-5
+    )
+    agrees("test 2, modelled as two bodies", "maximum contact force", response.impacts["max_force_N"], 11369.9, unit="N", relative=1e-5)
+    agrees("test 2, modelled as two bodies", "contact duration", response.impacts["duration_s"], 731.657e-6, unit="s", relative=1e-5)
 
 
 def test_2_aluminium_sphere_on_a_rigid_wall(agrees: Agrees) -> None:
@@ -110,9 +119,9 @@ def test_2_aluminium_sphere_on_a_rigid_wall(agrees: Agrees) -> None:
         }
     )
     row = vi.simulate(case).impacts
-    agrees("test 2, from a case", "deepest indentation", row["max_indentation_m"], 49.7172e-6, unit="m", relative=1e-5)
-    agrees("test 2, from a case", "largest force", row["max_force_N"], 11369.9, unit="N", relative=1e-5)
-    agrees("test 2, from a case", "duration", row["duration_s"], 731.657e-6, unit="s", relative=1e-5)
+    agrees("test 2, modelled by a case file", "maximum indentation", row["max_indentation_m"], 49.7172e-6, unit="m", relative=1e-5)
+    agrees("test 2, modelled by a case file", "maximum contact force", row["max_force_N"], 11369.9, unit="N", relative=1e-5)
+    agrees("test 2, modelled by a case file", "contact duration", row["duration_s"], 731.657e-6, unit="s", relative=1e-5)
 
 
 FINITE_ELEMENTS_5 = (
@@ -152,7 +161,12 @@ def test_5_spin_of_a_sphere_that_hits_at_an_angle(agrees: Agrees, law: str, mean
     )
     found = radius * vi.tabulate(problem).impacts["spin_y_after_rad_s"][:, 0] / (friction * speed)
     apart = np.abs(found - spin) / spin.max()
-    parts = (f"test 5, {law}", "spin after, over the largest", found / spin.max(), spin / spin.max())
+    parts = (
+        f"test 5, oblique impact on a plate, friction law {law}",
+        "angular velocity after impact, normalized by its maximum",
+        found / spin.max(),
+        spin / spin.max(),
+    )
     agrees(*parts, against=FINITE_ELEMENTS, mean=mean)
     agrees(*parts, against=FINITE_ELEMENTS, absolute=largest)
     assert (law == "mdr") == (apart.mean() < 0.015)
@@ -181,9 +195,9 @@ def test_7_equal_spheres_with_opposite_spins(agrees: Agrees, law: str, material:
     )
     row = {name: values[:, 0] for name, values in vi.tabulate(problem).impacts.items()}
     np.testing.assert_allclose(row["separation_speed_m_s"], 0.5 * speed, rtol=0.03)  # the law meets the restitution asked to first order
-    case = f"test 7, equal spheres with opposite spins, {law}"
+    case = f"test 7, equal spheres with opposite spins, friction law {law}"
     after = row["spin_y_after_rad_s"]
-    agrees(case, "spin after", after[1:], spin[1:], unit="rad/s", against=SYMMETRY, relative=1e-14)
+    agrees(case, "angular velocity after impact", after[1:], spin[1:], unit="rad/s", against=SYMMETRY, relative=1e-14)
     assert after[0] == spin[0] == 0.0
     np.testing.assert_allclose(row["separation_velocity_x_m_s"] - radius * spin, 0.0, atol=1e-14)  # seen from where the plane is at rest
 
@@ -223,6 +237,8 @@ def test_8_a_spinning_sphere_on_a_larger_one(agrees: Agrees, law: str) -> None:
     row = {name: values[:, 0] for name, values in vi.tabulate(problem).impacts.items()}
     found = -(row["separation_velocity_x_m_s"] - radius * row["spin_y_after_rad_s"]) / slip
     achieved = 3.5 * friction * (1.0 + row["restitution_achieved"]) * speed / slip
-    case = f"test 8, a spinning sphere on a larger one, {law}"
-    agrees(case, "minus the slip after, over that before", found, achieved - 1.0, against=SLIDING, relative=1e-6)
-    agrees(case, "minus the slip after, over that before, read from the figure", found, beta, against=FINITE_ELEMENTS, absolute=0.02)
+    case = f"test 8, spinning sphere on a larger sphere, friction law {law}"
+    agrees(case, "tangential coefficient of restitution at the contact point", found, achieved - 1.0, against=SLIDING, relative=1e-6)
+    agrees(
+        case, "tangential coefficient of restitution at the contact point, digitized", found, beta, against=FINITE_ELEMENTS, absolute=0.02
+    )

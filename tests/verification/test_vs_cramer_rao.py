@@ -20,10 +20,10 @@ from vibroimpact.bounds.pulse_information import pulse_uncertainty
 from vibroimpact.signals.inverse.hertz_pulse import hertz_pulse
 
 AGAINST = Against(
-    "spectrum and contact times of Hertz's pulse, Bayes error of normal distributions",
+    "Hertz pulse, its spectrum, and the Cramér-Rao bound",
     "closed form",
     "calibration, identification and studies",
-    "Kay 1993; Fukunaga 1990, eq. 3.119; Hertz's pulse by quadrature",
+    "Kay 1993; Fukunaga 1990, eq. 3.119; Hertz pulse by quadrature",
 )
 
 
@@ -41,7 +41,7 @@ def test_the_pulse_is_that_of_a_simulated_impact(agrees: Agrees) -> None:
     part = np.linspace(0.01, 0.99, 99)
     force = response.at(part * duration)["force_N"]
     pulse = hertz_pulse(part) * 0.6 / duration  # impulse 2 m v
-    agrees("the pulse of a simulated impact", "force", pulse, force, unit="N", relative=1e-6)
+    agrees("pulse of a simulated Hertz impact", "contact force", pulse, force, unit="N", relative=1e-6)
 
 
 def test_the_spectrum_falls_where_it_is_known_to(agrees: Agrees) -> None:
@@ -53,7 +53,13 @@ def test_the_spectrum_falls_where_it_is_known_to(agrees: Agrees) -> None:
 
     falls = [brentq(lambda u, low=low: spectrum(u) - 10 ** (low / 20), *ends) for low, ends in ((-3, (0.1, 1.0)), (-10, (0.5, 1.5)))]
     found = [*falls, brentq(spectrum, 1.5, 2.0)]
-    agrees("spectrum of the pulse", "frequency of -3 dB, -10 dB and nothing, over 1/T", found, [0.67, 1.16, 1.80], absolute=0.005)
+    agrees(
+        "spectrum of the Hertz pulse",
+        "frequencies of -3 dB, -10 dB and the first zero, times contact duration",
+        found,
+        [0.67, 1.16, 1.80],
+        absolute=0.005,
+    )
 
 
 @pytest.mark.parametrize(("rate", "duration"), [pytest.param(200e3, 300e-6, marks=pytest.mark.slow), (20e3, 300e-6), (40e3, 1e-3)])
@@ -76,7 +82,13 @@ def test_maximum_likelihood_reaches_the_uncertainty(agrees: Agrees, rate: float,
         found.append(least_squares(lambda one, heard=heard: (model(one) - heard) / deviation, np.zeros(3)).x[:2])
     least = pulse_uncertainty(np.ones(1), np.array([duration]), 0.5 * rate, deviation**2 / (0.5 * rate))[:, 0]
     scatter = np.std(found, axis=0)  # of 200 estimates, which know it to 5 %
-    agrees("maximum likelihood, 200 estimates", "scatter of impulse and duration against the bound", scatter, least, relative=0.15)
+    agrees(
+        "maximum-likelihood estimation, 200 noise realizations",
+        "standard deviations of impulse and contact duration against the Cramér-Rao bound",
+        scatter,
+        least,
+        relative=0.15,
+    )
 
 
 @pytest.mark.parametrize("distance", [0.5, 1.0, 2.0, 3.0])
@@ -125,7 +137,7 @@ def test_coal_rings_like_gangue_of_twice_its_size(agrees: Agrees) -> None:
     falls = falls_of_sweep(vi.read_sweep(table))
     for name, radius, known in (("coal", 0.025, 261e-6), ("gangue", 0.025, 145e-6), ("gangue", 0.05, 291e-6)):
         there = (falls.classes == name) & (falls.radius == radius)
-        agrees("coal and gangue on steel", "contact time", falls.duration[there], known, unit="s", absolute=1e-6)
+        agrees("coal and gangue spheres on steel", "contact duration", falls.duration[there], known, unit="s", absolute=1e-6)
     np.testing.assert_allclose(falls.impulse, 2.0 * falls.mass * 8.8, rtol=1e-8)
 
 

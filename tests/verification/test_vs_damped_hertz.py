@@ -17,10 +17,10 @@ from agreement import Against, Agrees
 from vibroimpact.contact.hysteretic import hysteretic_restitution
 
 AGAINST = Against(
-    "D (1 + e) = ln[(1 + D)/(1 - e D)]",
+    "closed-form coefficient of restitution of hysteretic damping, D (1 + e) = ln[(1 + D)/(1 - e D)]",
     "closed form",
     "damping laws",
-    "restitution of F = K δ^n (1 + D v/v0) without gravity, whatever n is",
+    "force F = K δ^n (1 + D v/v0) without gravity, any exponent n",
 )
 
 
@@ -55,9 +55,9 @@ def test_the_printed_restitutions(agrees: Agrees, name: str, exponent: float) ->
         law = vi.find_contact_law(name)(stiffness=1e7, restitution=asked, exponent=exponent)
         ball = vi.Body(mass=0.3, contact_offset=0.1)
         row = vi.simulate(vi.Problem(sphere=ball, plate=vi.rigid_plate(), laws=(law,), speed=2.0, gravity=0.0, impacts=1)).impacts
-        case = f"{name}, six restitutions, three exponents"
-        agrees(case, "restitution", row["restitution_achieved"], exact(law.damping_factor), relative=1e-8)
-        agrees(case, "restitution, as printed", row["restitution_achieved"], expected, absolute=5e-6)
+        case = f"law {name}, six nominal coefficients of restitution, three force exponents"
+        agrees(case, "coefficient of restitution", row["restitution_achieved"], exact(law.damping_factor), relative=1e-8)
+        agrees(case, "coefficient of restitution, printed value", row["restitution_achieved"], expected, absolute=5e-6)
         assert row["restitution_asked"][0] == asked
         assert law.closed_form_restitution(0.3, 2.0) == pytest.approx(exact(law.damping_factor), rel=1e-12)
 
@@ -68,14 +68,22 @@ def test_the_laws_without_a_printed_restitution(agrees: Agrees, name: str) -> No
         law = vi.find_contact_law(name)(stiffness=1e7, restitution=asked)
         assert law.damping_factor == pytest.approx(FACTORS[name](asked), rel=1e-14)
         found = vi.integrated_restitution(law, 0.3, 2.0)
-        agrees(f"{name}, six restitutions", "restitution", found, exact(FACTORS[name](asked)), relative=1e-8)
+        agrees(
+            f"law {name}, six nominal coefficients of restitution",
+            "coefficient of restitution",
+            found,
+            exact(FACTORS[name](asked)),
+            relative=1e-8,
+        )
 
 
 @pytest.mark.parametrize("wanted", EXACT)
 def test_the_factor_that_achieves_a_restitution_exactly(agrees: Agrees, wanted: float) -> None:
     assert hysteretic_restitution(EXACT[wanted]) == pytest.approx(wanted, abs=1e-6)
     law = vi.law_achieving(vi.find_contact_law("flores")(stiffness=1e7, restitution=0.5), wanted, mass=0.3, speed=2.0)
-    agrees("six restitutions that are achieved", "damping factor", law.damping_factor, EXACT[wanted], absolute=5e-6)  # the digits printed
+    agrees(
+        "damping for six prescribed coefficients of restitution", "damping factor", law.damping_factor, EXACT[wanted], absolute=5e-6
+    )  # the digits printed
 
 
 def test_the_closed_form_where_its_two_formulas_meet() -> None:

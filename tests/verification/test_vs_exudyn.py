@@ -12,10 +12,10 @@ from vibroimpact.contact.laws.hunt_crossley import HuntCrossley
 from vibroimpact.dynamics.restitution import integrated_restitution
 
 AGAINST = Against(
-    "EXUDYN's record of contactSphereSphereTest",
+    "EXUDYN, reference results of contactSphereSphereTest",
     "published computation",
     "damping laws",
-    "EXUDYN, TestModels/contactSphereSphereTest.py; good to 1e-4",
+    "EXUDYN, TestModels/contactSphereSphereTest.py; accurate to 1e-4",
 )
 
 
@@ -23,4 +23,6 @@ AGAINST = Against(
 def test_outgoing_speed(agrees: Agrees, asked: float, speed: float) -> None:
     law = HuntCrossley(stiffness=1e5, restitution=asked, exponent=1.0)
     found = 10.0 * integrated_restitution(law, 0.1, 10.0)
-    agrees("Hunt and Crossley, n = 1, five restitutions", "outgoing speed", found, speed, unit="m/s", relative=1e-4)
+    agrees(
+        "Hunt-Crossley law, n = 1, five nominal coefficients of restitution", "separation speed", found, speed, unit="m/s", relative=1e-4
+    )

@@ -13,10 +13,10 @@ from vibroimpact.cases.limits.air_drag import drag_coefficient, drag_loss
 from vibroimpact.results.result import result_of
 
 AGAINST = Against(
-    "SciPy, a fall with the drag of every moment",
+    "numerical integration of a fall through air (SciPy)",
     "own independent computation",
     "flight, bounces and shaken plates",
-    "Clift and Gauvin 1970; Schiller and Naumann 1935",
+    "Newton's second law with the drag coefficients of Clift and Gauvin 1970 and of Schiller and Naumann 1935",
 )
 
 
@@ -56,10 +56,16 @@ def test_the_speed_lost(agrees: Agrees, radius: float, density: float, fall: flo
     """Within 5 % of itself of an integration with the same coefficient, and 15 % of one with another published one."""
     found = float(drag_loss(radius, density, fall, GRAVITY))
     same = loss(radius, density, fall, lambda reynolds: float(drag_coefficient(reynolds)))
-    agrees("20 μm to 50 mm, the doubt of a run, same coefficient", "part of the speed lost", found, same, relative=0.05)
     agrees(
-        "20 μm to 50 mm, the doubt of a run, Schiller and Naumann's",
-        "part of the speed lost",
+        "sphere radii 20 μm to 50 mm, error estimate of a run, same drag coefficient",
+        "relative loss of approach speed by drag",
+        found,
+        same,
+        relative=0.05,
+    )
+    agrees(
+        "sphere radii 20 μm to 50 mm, error estimate of a run, drag coefficient of Schiller and Naumann",
+        "relative loss of approach speed by drag",
         found,
         loss(radius, density, fall),
         relative=0.15,

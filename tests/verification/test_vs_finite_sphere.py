@@ -21,10 +21,10 @@ from support import plain_case
 from vibroimpact.cases.limits.finite_sphere import force_lacking
 
 AGAINST = Against(
-    "finite elements of a sphere on a rigid plane",
+    "finite-element analysis of an elastic sphere on a rigid plane",
     "own independent computation",
     "Hertz and elastic contact",
-    "tests/oracles/axisymmetric_contact.py",
+    "tests/oracles/axisymmetric_contact.py; axisymmetric, frictionless",
 )
 
 
@@ -68,7 +68,13 @@ def test_the_part_of_the_force_that_hertz_lacks(agrees: Agrees) -> None:
         given = 0.4 * hertz_force(part) * part**2 * RADIUS
         reach = brentq(lambda root, given=given: energy(root) - given, 1e-3 * part * RADIUS**0.5, part * RADIUS**0.5)
         exact = 1 - hertz_force(part) / (HERTZ * reach**3 * float(over(reach)))
-        agrees("static, a/R = 0.115 to 0.28", "part of the force that Hertz lacks", lacking(part), exact, relative=0.05)
+        agrees(
+            "static contact at equal energy, a/R = 0.115 to 0.28",
+            "relative underestimation of the force by Hertz theory",
+            lacking(part),
+            exact,
+            relative=0.05,
+        )
 
 
 @pytest.mark.parametrize(("part", "force"), IMPACTS)
@@ -80,7 +86,7 @@ def test_impacts_are_doubted_by_what_they_lack_and_corrected(agrees: Agrees, par
     assert plain == pytest.approx(hertz_force(part), rel=1e-8)
     assert plain / corrected == pytest.approx(1 - lacking(part), rel=1e-4)
     assert 0.0 < corrected / force - 1 < 0.3 * off
-    agrees(f"impact, a/R = {part}", "largest force, corrected", corrected, force, unit="N", relative=0.3 * off)
+    agrees(f"impact, a/R = {part}", "maximum contact force, with finite-size correction", corrected, force, unit="N", relative=0.3 * off)
 
 
 @pytest.mark.slow

@@ -13,16 +13,16 @@ from support import plain_case
 from vibroimpact.calibration.calibrate_case import calibrate_case, read_calibration
 
 AGAINST = Against(
-    "constant drag coefficient, closed form; Stokes' drag",
+    "flight with constant drag coefficient and with Stokes drag, closed form",
     "closed form",
     "flight, bounces and shaken plates",
-    "falls and rises by tanh, arctan and logarithms",
+    "vertical motion with quadratic drag; exponential decay of velocity under Stokes drag",
 )
 SCIPY = Against(
-    "SciPy, flights through air",
+    "numerical integration of flights through air (SciPy)",
     "own independent computation",
     "flight, bounces and shaken plates",
-    "Newton's second law with Clift and Gauvin's drag coefficient (1970) at 1e-13; tests/oracles/bouncing_in_air.py",
+    "Newton's second law with the drag coefficient of Clift and Gauvin 1970, tolerance 1e-13; tests/oracles/bouncing_in_air.py",
 )
 
 
@@ -46,16 +46,16 @@ def test_a_constant_drag_coefficient(agrees: Agrees, radius: float, density: flo
     found = vi.tabulate(drop(radius, density, vi.Air(drag_coefficient=coefficient), height=height + radius, impacts=2)).impacts
     fall = GRAVITY * height / terminal**2
     first = terminal * np.sqrt(-np.expm1(-2.0 * fall))
-    case = "four spheres, 0.01 to 8 terminal falls"
+    case = "four spheres, fall heights 0.01 to 8 times v²/g (v: terminal velocity)"
     agrees(case, "approach speed", found["approach_speed_m_s"][:, 0], first, unit="m/s", relative=1e-12)
-    agrees(case, "time of the fall", found["time_s"][:, 0], terminal / GRAVITY * np.arccosh(np.exp(fall)), unit="s", relative=1e-11)
+    agrees(case, "duration of the fall", found["time_s"][:, 0], terminal / GRAVITY * np.arccosh(np.exp(fall)), unit="s", relative=1e-11)
     start = 0.8 * first / terminal
     rise = 0.5 * np.log1p(start**2)
-    agrees(case, "height of the rebound", found["rebound_height_m"][:, 0] - radius, terminal**2 / GRAVITY * rise, unit="m", relative=1e-12)
+    agrees(case, "rebound height", found["rebound_height_m"][:, 0] - radius, terminal**2 / GRAVITY * rise, unit="m", relative=1e-12)
     again = terminal * np.sqrt(-np.expm1(-2.0 * rise))
-    agrees(case, "second approach speed", found["approach_speed_m_s"][:, 1], again, unit="m/s", relative=1e-12)
+    agrees(case, "approach speed of the second impact", found["approach_speed_m_s"][:, 1], again, unit="m/s", relative=1e-12)
     lasted = terminal / GRAVITY * (np.arctan(start) + np.arccosh(np.exp(rise)))
-    agrees(case, "time of the second flight", found["time_s"][:, 1] - found["time_s"][:, 0], lasted, unit="s", relative=1e-11)
+    agrees(case, "duration of the second flight", found["time_s"][:, 1] - found["time_s"][:, 0], lasted, unit="s", relative=1e-11)
 
 
 @pytest.mark.parametrize(("radius", "density", "height"), [(1e-4, 2600.0, 40.0), (2e-5, 2600.0, 4.0), (0.02, 84.0, 4000.0)])
@@ -64,7 +64,7 @@ def test_terminal_velocity(agrees: Agrees, radius: float, density: float, height
     response = vi.simulate(drop(radius, density, vi.Air(), height=height, impacts=1))
     speed = float(response.impacts["approach_speed_m_s"][0])
     drag = 0.375 * DENSITY / density * clift_gauvin(DENSITY * speed * 2.0 * radius / VISCOSITY) * speed**2 / radius
-    agrees("terminal velocity, three spheres", "drag over mass, against gravity", drag, GRAVITY, unit="m/s²", relative=1e-12)
+    agrees("terminal velocity, three spheres", "drag deceleration, against gravity", drag, GRAVITY, unit="m/s²", relative=1e-12)
     middle = response.at(np.array([0.5, 0.75]) * response.impacts["time_s"][0])
     np.testing.assert_allclose(middle["velocity_m_s"], -speed, rtol=1e-12)
     np.testing.assert_allclose(middle["acceleration_m_s2"], 0.0, atol=1e-11 * GRAVITY)
@@ -80,8 +80,17 @@ def test_stokes_drag_along_the_plate(agrees: Agrees) -> None:
     times = constant * np.array([0.1, 1.0, 3.0, 20.0])
     found = vi.simulate(stated).at(times)
     left = np.exp(-times / constant)
-    agrees("a grain that creeps", "velocity along the plate", found["velocity_x_m_s"], speed * left, unit="m/s", relative=3e-5)
-    agrees("a grain that creeps", "place", found["position_x_m"], speed * constant * (1.0 - left), unit="m", relative=1e-5)
+    agrees(
+        "sphere of 10 μm radius under Stokes drag", "tangential velocity", found["velocity_x_m_s"], speed * left, unit="m/s", relative=3e-5
+    )
+    agrees(
+        "sphere of 10 μm radius under Stokes drag",
+        "position along the plate",
+        found["position_x_m"],
+        speed * constant * (1.0 - left),
+        unit="m",
+        relative=1e-5,
+    )
     assert np.all(found["spin_z_rad_s"] == 3.0)
 
 
@@ -89,10 +98,10 @@ def test_bounces(agrees: Agrees) -> None:
     radius, density, height = 0.013, LIGHT["density"], 1.0
     seen = bounces(radius, density, height, lambda speed: 0.8, 4)
     found = vi.simulate(drop(radius, density, vi.Air(), height=height, impacts=4)).impacts
-    agrees("four bounces", "time of touch", found["time_s"], seen.touches[:4], unit="s", against=SCIPY, relative=1e-8)
+    agrees("four bounces", "time of impact", found["time_s"], seen.touches[:4], unit="s", against=SCIPY, relative=1e-8)
     agrees("four bounces", "approach speed", found["approach_speed_m_s"], seen.before[:4], unit="m/s", against=SCIPY, relative=1e-8)
     heights = found["rebound_height_m"][: len(seen.tops)]
-    agrees("four bounces", "height of rebounds", heights, seen.tops[:4], unit="m", against=SCIPY, relative=1e-8)
+    agrees("four bounces", "rebound height", heights, seen.tops[:4], unit="m", against=SCIPY, relative=1e-8)
 
 
 @pytest.mark.parametrize("coefficient", [None, 0.44])
@@ -129,7 +138,7 @@ def test_oblique_flights_on_an_inclined_plate(
         return time, solve_ivp(slope, (0.0, time), state, **accurate).y[:, -1]
 
     state, now = np.array([0.0, 0.0, 0.5 - radius, *along, 6.0, 0.0]), 0.0
-    case = "oblique, on an inclined plate, three impacts"
+    case = "oblique flights over an inclined plate, three impacts"
     names = ("position_x_m", "position_y_m", "approach_velocity_x_m_s", "approach_velocity_y_m_s")
     for impact in range(3):
         row = {name: float(values[impact]) for name, values in response.impacts.items()}
@@ -138,12 +147,12 @@ def test_oblique_flights_on_an_inclined_plate(
             now += lasted
             if what == 5 and impact:
                 height = response.impacts["rebound_height_m"][impact - 1]
-                agrees(case, "height of rebounds", height, radius + state[2], unit="m", against=SCIPY, relative=1e-11)
-        agrees(case, "time of touch", row["time_s"], now, unit="s", against=SCIPY, relative=1e-11)
+                agrees(case, "rebound height", height, radius + state[2], unit="m", against=SCIPY, relative=1e-11)
+        agrees(case, "time of impact", row["time_s"], now, unit="s", against=SCIPY, relative=1e-11)
         agrees(case, "approach speed", row["approach_speed_m_s"], -state[5], unit="m/s", against=SCIPY, relative=1e-11)
         np.testing.assert_allclose([row[name] for name in names], [*state[:2], *state[3:5]], rtol=1e-10, atol=1e-12)
         taken = float(response.problem.sphere.mass) * state[6]
-        agrees(case, "energy taken by air", row["air_lost_J"], taken, unit="J", against=SCIPY, relative=1e-10)
+        agrees(case, "energy dissipated by air drag", row["air_lost_J"], taken, unit="J", against=SCIPY, relative=1e-10)
         state[5], state[6] = -0.8 * state[5], 0.0
     assert response.energy["closure_relative"] < 1e-13
 

@@ -22,7 +22,7 @@ from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer
 from vibroimpact.dynamics.sensors.sensor import Sensor
 
 AGAINST = Against(
-    "Duhamel's integral, and the gain of a seismic mass",
+    "Duhamel's integral and the frequency response of a seismic accelerometer",
     "closed form",
     "sensors and signals",
     "Meirovitch, Elements of Vibration Analysis, 1986, sections 1.7 and 2.6",
@@ -124,9 +124,9 @@ def test_resonance_of_an_accelerometer(agrees: Agrees, frequency: float) -> None
     r = frequency / resonance
     gain = 1.0 / (1.0 - r**2 + 2j * ratio * r)
     found = np.conj(after) / np.conj(before)
-    case = "an accelerometer that resonates at 20 kHz, tones of 1 to 24 kHz"
+    case = "accelerometer with a resonance frequency of 20 kHz, harmonic excitation at 1 to 24 kHz"
     agrees(case, "gain", abs(found), abs(gain), relative=1e-4)
-    agrees(case, "phase", np.angle(found / gain), 0.0, unit="rad", absolute=1e-4)
+    agrees(case, "phase error", np.angle(found / gain), 0.0, unit="rad", absolute=1e-4)
 
 
 def test_range_noise_and_resolution() -> None:

@@ -18,16 +18,16 @@ from vibroimpact.dynamics.vibrating.bodies import slices_of
 from vibroimpact.structures.modal_model import ModalBasis
 
 AGAINST = Against(
-    "SciPy's DOP853 on sphere and modes in space",
+    "SciPy's DOP853, oblique impact on a vibrating plate",
     "own independent computation",
     "oblique impact and friction",
-    "fall, contact point, modes and spin at 1e-12, in the test itself",
+    "equations of motion of sphere, contact point, modes and rotation, tolerance 1e-12, in the test",
 )
 MOMENTUM = Against(
-    "conservation of momentum and angular momentum",
+    "conservation of linear and angular momentum",
     "consistency",
     "oblique impact and friction",
-    "sphere and free plate together",
+    "momentum of the sphere and the free plate; no external reference",
 )
 
 
@@ -131,15 +131,15 @@ def test_a_contact_that_sticks_in_two_directions(agrees: Agrees, seed: int) -> N
     found = integrated(plate, np.array(velocity), "stick", 0.0)
     row = {name: values[0] for name, values in response.impacts.items()}
     assert row["contacts"] == 1
-    case = "a contact that sticks, 12 modes"
-    agrees(case, "duration", row["duration_s"], found["time"], unit="s", relative=1e-7)
+    case = "sticking contact, 12 modes"
+    agrees(case, "contact duration", row["duration_s"], found["time"], unit="s", relative=1e-7)
     agrees(case, "separation speed", row["separation_speed_m_s"], -found["fall"], unit="m/s", relative=1e-7)
     rolled = np.array([-row["spin_y_after_rad_s"], row["spin_x_after_rad_s"]]) * RADIUS
     point = np.array([row["separation_velocity_x_m_s"], row["separation_velocity_y_m_s"]]) + rolled
     assert point == pytest.approx(found["point"], rel=1e-7, abs=1e-7 * 0.4)
     modes = 0.5 * (found["rate"] ** 2 + (plate.angular_frequencies * found["place"]) ** 2).sum()
     history = response.at([row["time_s"] + row["duration_s"]])
-    agrees(case, "energy of the modes", history["plate_kinetic_J"] + history["plate_strain_J"], modes, unit="J", relative=1e-7)
+    agrees(case, "vibration energy of the plate", history["plate_kinetic_J"] + history["plate_strain_J"], modes, unit="J", relative=1e-7)
 
 
 @pytest.mark.parametrize("name", ["mdr", "mindlin", "mindlin-force"])
@@ -153,8 +153,8 @@ def test_a_contact_that_slides(agrees: Agrees, name: str) -> None:
     found = integrated(straight, np.array([3.0, 0.0]), "slide", 0.1)
     point = row["separation_velocity_x_m_s"] - RADIUS * row["spin_y_after_rad_s"]
     assert row["contacts"] == 1
-    case = "a contact that slides, 12 modes"
-    agrees(case, "velocity of the contact point", point, found["point"][0], unit="m/s", relative=1e-7)
+    case = "sliding contact, 12 modes"
+    agrees(case, "tangential velocity of the contact point after impact", point, found["point"][0], unit="m/s", relative=1e-7)
     agrees(case, "separation speed", row["separation_speed_m_s"], -found["fall"], unit="m/s", relative=1e-7)
 
 
@@ -167,9 +167,23 @@ def test_a_sphere_that_rolls_onto_a_plate_that_vibrates(agrees: Agrees, seed: in
     found = integrated(plate, np.zeros(2), "stick", 0.0, rolling)
     row = {name: values[0] for name, values in response.impacts.items()}
     assert row["contacts"] == 1
-    agrees("rolling onto a plate", "separation speed", row["separation_speed_m_s"], -found["fall"], unit="m/s", relative=1e-7)
+    agrees(
+        "sphere with rolling resistance on a vibrating plate",
+        "separation speed",
+        row["separation_speed_m_s"],
+        -found["fall"],
+        unit="m/s",
+        relative=1e-7,
+    )
     point = row["separation_velocity_x_m_s"] - RADIUS * row["spin_y_after_rad_s"]
-    agrees("rolling onto a plate", "velocity of the contact point", point, found["point"][0], unit="m/s", absolute=1e-7 * 3.0)
+    agrees(
+        "sphere with rolling resistance on a vibrating plate",
+        "tangential velocity of the contact point after impact",
+        point,
+        found["point"][0],
+        unit="m/s",
+        absolute=1e-7 * 3.0,
+    )
     assert abs(response.energy["closure_relative"]) < 1e-9
 
 
@@ -225,7 +239,14 @@ def test_momentum_of_a_free_plate_that_moments_turn(agrees: Agrees, spin: tuple[
     spun = 0.4 * mass * radius**2 * np.array([row[f"spin_{axis}_after_rad_s"] - row[f"spin_{axis}_before_rad_s"] for axis in "xyz"])
     centre = np.array([0.06, -0.03, 0.005 + radius])
     balance = (turned + spun + np.cross(centre, impulse)) / (scale * radius)
-    agrees("a free plate that moments turn", "angular momentum, over m v R", balance, np.zeros(3), against=MOMENTUM, absolute=1e-9)
+    agrees(
+        "free plate rotated by contact moments",
+        "balance of angular momentum, normalized by m v R",
+        balance,
+        np.zeros(3),
+        against=MOMENTUM,
+        absolute=1e-9,
+    )
     # the moments are what friction at the place of contact does not explain
     moments = spun - np.cross([0.0, 0.0, -radius], impulse)
     rolls = np.hypot(*moments[:2]) / (0.1 * radius * impulse[2])
@@ -265,7 +286,14 @@ def test_momentum_of_a_free_plate(agrees: Agrees, place: tuple[float, float], la
     impulse = mass * np.append(after - before, rising + 2.0 * math.cos(math.radians(35.0)))
     scale = mass * 2.0
     found = (speed @ rigid.participation) / scale
-    agrees("a free plate, hit obliquely beside its centre", "momentum, over m v", found, -impulse / scale, against=MOMENTUM, absolute=1e-9)
+    agrees(
+        "free plate, oblique eccentric impact",
+        "momentum, normalized by m v (initial sphere momentum)",
+        found,
+        -impulse / scale,
+        against=MOMENTUM,
+        absolute=1e-9,
+    )
     # the plate turns about its centre by the impulse at the place of contact, half its thickness above
     arm = np.array([*place, 0.005])
     inertia = problem.models["plate"].properties.inertia
@@ -363,9 +391,16 @@ def test_a_contact_that_sticks_to_a_plate_that_is_shaken(agrees: Agrees, seed: i
     found = integrated(plate, np.array(velocity), "stick", 0.0, motion=motion)
     row = {name: values[0] for name, values in response.impacts.items()}
     assert row["contacts"] == 1
-    agrees("sticking to a shaken plate", "duration", row["duration_s"], found["time"], unit="s", relative=1e-7)
+    agrees("sticking contact on a shaken plate", "contact duration", row["duration_s"], found["time"], unit="s", relative=1e-7)
     history = response.at([row["time_s"] + row["duration_s"]])
-    agrees("sticking to a shaken plate", "velocity after", history["velocity_m_s"], -found["fall"], unit="m/s", relative=1e-7)
+    agrees(
+        "sticking contact on a shaken plate",
+        "normal velocity after impact",
+        history["velocity_m_s"],
+        -found["fall"],
+        unit="m/s",
+        relative=1e-7,
+    )
     rolled = np.array([-row["spin_y_after_rad_s"], row["spin_x_after_rad_s"]]) * RADIUS
     point = np.array([row["separation_velocity_x_m_s"], row["separation_velocity_y_m_s"]]) + rolled
     assert point == pytest.approx(found["point"], rel=1e-7, abs=1e-7 * 0.4)
@@ -388,5 +423,12 @@ def test_a_contact_that_slides_on_a_plate_that_is_shaken(agrees: Agrees, name: s
     found = integrated(straight, np.array([3.0, 0.0]), "slide", 0.1, motion=motion)
     assert row["contacts"] == 1
     point = row["separation_velocity_x_m_s"] - RADIUS * row["spin_y_after_rad_s"]
-    agrees("sliding on a shaken plate", "velocity of the contact point", point, found["point"][0], unit="m/s", relative=1e-7)
-    agrees("sliding on a shaken plate", "duration", row["duration_s"], found["time"], unit="s", relative=1e-7)
+    agrees(
+        "sliding contact on a shaken plate",
+        "tangential velocity of the contact point after impact",
+        point,
+        found["point"][0],
+        unit="m/s",
+        relative=1e-7,
+    )
+    agrees("sliding contact on a shaken plate", "contact duration", row["duration_s"], found["time"], unit="s", relative=1e-7)

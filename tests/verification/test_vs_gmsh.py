@@ -21,7 +21,7 @@ except (ImportError, OSError):  # not installed, or a system library that it nee
     pytest.skip("Gmsh can't be loaded", allow_module_level=True)
 
 AGAINST = Against(
-    "Gmsh's files and meshes",
+    "Gmsh, meshes and mesh files",
     "other program",
     "programs and files",
     "Geuzaine and Remacle 2009, Int. J. Numer. Methods Eng. 79, 1309; volumes of the shapes in closed form",
@@ -109,9 +109,9 @@ def test_files_of_gmsh(agrees: Agrees, model: None, shape: str, order: int, inco
     meshes = [read_mesh(file) for file in files]
     for file, mesh in zip(files, meshes, strict=True):
         assert [block.kind for block in mesh.blocks] == [kind]
-        agrees(f"{shape}, five kinds of elements, seven files", "volume", volume(mesh), exact, unit="m³", relative=tolerance)
+        agrees(f"{shape}, five element types, seven mesh files", "volume", volume(mesh), exact, unit="m³", relative=tolerance)
         kept = DIGITS.get(file.name, 1e-12)
-        case = f"{shape}, {'.bdf of three digits' if kept == 1e-3 else file.suffix} beside .msh"
+        case = f"{shape}, {'.bdf with three digits' if kept == 1e-3 else file.suffix} against .msh"
         agrees(case, "volume", volume(mesh), volume(meshes[0]), unit="m³", relative=kept)
         assert len(mesh.nodes) == len(meshes[0].nodes)
         if file.suffix != ".bdf":
@@ -156,10 +156,10 @@ def test_geometry_is_in_metres(agrees: Agrees, model: None, tmp_path: Path, capf
     capfd.readouterr()
     for mesh in (read_mesh(step, size=0.01), read_mesh(brep, unit_in_metres=1e-3, size=0.01)):
         assert [block.kind for block in mesh.blocks] == ["tet10"]
-        agrees("sphere of a STEP or BREP file", "volume", volume(mesh), 4 / 3 * np.pi * 0.025**3, unit="m³", relative=5e-4)
+        agrees("sphere from a STEP or BREP file", "volume", volume(mesh), 4 / 3 * np.pi * 0.025**3, unit="m³", relative=5e-4)
         radius = np.linalg.norm(mesh.nodes[mesh.node_sets["face1"]], axis=1)
         agrees(
-            "sphere of a STEP or BREP file", "distance of nodes from its centre", radius, 0.025, unit="m", relative=1e-6
+            "sphere from a STEP or BREP file", "distance of surface nodes from the centre", radius, 0.025, unit="m", relative=1e-6
         )  # of all orders
         corners = mesh.nodes[mesh.blocks[0].connectivity[:, :4]]
         assert np.linalg.norm(corners[:, :, None] - corners[:, None], axis=-1).max() < 2 * 0.01

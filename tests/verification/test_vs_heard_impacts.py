@@ -12,10 +12,10 @@ from agreement import Against, Agrees
 from support import plain_case
 
 AGAINST = Against(
-    "simulated bounces, through a WAV file",
+    "simulated bounces, identified from a WAV file",
     "consistency",
     "calibration, identification and studies",
-    "restitutions and times of the simulation that was heard; no opponent",
+    "coefficients of restitution and impact times of the recorded simulation; no external reference",
 )
 
 
@@ -53,8 +53,8 @@ def test_restitutions_of_a_simulated_record(agrees: Agrees, restitution: float, 
         found = vi.rebounds_of(vi.find_bounces(vi.Record("plate", value, RATE, record.unit)), height=0.295)
         number = len(found.restitution)
         assert number >= 4
-        case = f"restitutions 0.3 to 0.9, {'20 dB' if noise else 'no noise'}"
-        agrees(case, "time of bounces", found.bounces.time, response.impacts["time_s"][:number], unit="s", absolute=5e-4)
+        case = f"coefficients of restitution 0.3 to 0.9, {'signal-to-noise ratio 20 dB' if noise else 'no noise'}"
+        agrees(case, "time of impact", found.bounces.time, response.impacts["time_s"][:number], unit="s", absolute=5e-4)
         # what the contact lasts is added to a flight
         last = response.impacts["duration_s"][: number - 1]
         longer = (1.0 - true[: number - 1]) * last / np.append(0.5, found.bounces.flight[:-1])
@@ -62,6 +62,6 @@ def test_restitutions_of_a_simulated_record(agrees: Agrees, restitution: float, 
         errors = np.abs(found.restitution - true[:number])[:-1]
         assert np.all(errors <= 1.5 * longer + 3.0 * found.deviation[:-1])
         within = 2e-4 if noise == 0.0 else 0.01
-        agrees(case, "restitution", found.restitution[:-1], true[: number - 1], absolute=within)
+        agrees(case, "coefficient of restitution", found.restitution[:-1], true[: number - 1], absolute=within)
         speeds = response.impacts["approach_speed_m_s"][: number - 1]
         agrees(case, "approach speed", found.approach_speed[:-1], speeds, unit="m/s", relative=2e-3)

@@ -12,10 +12,10 @@ from vibroimpact.structures.bed import bed_stiffness, end_compliance
 from vibroimpact.structures.plate_element import shear_factor
 
 AGAINST = Against(
-    "an elastic half strip, held at its rim",
+    "elastic half strip supported at its edge, plane-strain finite elements",
     "own independent computation",
     "plates, spheres and modes",
-    "tests/oracles/held_strip.py",
+    "tests/oracles/held_strip.py, with scikit-fem",
 )
 
 
@@ -41,9 +41,9 @@ def test_a_straight_rim_gives_as_the_half_strip_does(agrees: Agrees, nu: float) 
     expected = rim_compliance(nu, "lower")
     unit = Material(1.0, 1 - nu**2, nu)
     found = rim_of_a_plate_on_a_bed(nu, *bed_stiffness(unit, 1.0))
-    case, (stretch, *others) = "rim of a plate on a bed, Poisson's ratio 0.05 to 0.45", np.diag(expected)
-    agrees(case, "compliance against sinking and turning", np.diag(found)[1:], others, relative=3e-3)
-    agrees(case, "compliance against stretching", found[0, 0], stretch, relative=0.15)
+    case, (stretch, *others) = "edge of a plate on an elastic foundation, Poisson's ratio 0.05 to 0.45", np.diag(expected)
+    agrees(case, "transverse and rotational compliance", np.diag(found)[1:], others, relative=3e-3)
+    agrees(case, "in-plane compliance", found[0, 0], stretch, relative=0.15)
     rigid = rim_of_a_plate_on_a_bed(nu, 1e7, 1e7)  # without a bed
     assert rigid[2, 2] < 0.7 * expected[2, 2]
 
@@ -51,4 +51,4 @@ def test_a_straight_rim_gives_as_the_half_strip_does(agrees: Agrees, nu: float) 
 @pytest.mark.parametrize("nu", [0.1, 0.3, 0.45])
 def test_a_held_end_is_stiffer_than_plate_theory(agrees: Agrees, nu: float) -> None:
     found, expected = end_compliance(Material(1.0, 1 - nu**2, nu), 1.0), rim_compliance(nu, "end")[2, 2]
-    agrees("a held end, Poisson's ratio 0.1 to 0.45", "compliance against turning", found, expected, relative=0.03)
+    agrees("clamped end, Poisson's ratio 0.1 to 0.45", "rotational compliance", found, expected, relative=0.03)

@@ -15,7 +15,7 @@ from agreement import Against, Agrees
 from vibroimpact.contact.laws.hertz import Hertz
 
 AGAINST = Against(
-    "Hertz, closed form",
+    "Hertz impact, closed form",
     "closed form",
     "Hertz and elastic contact",
     "Johnson, Contact Mechanics, 1985, section 11.4",
@@ -35,11 +35,11 @@ def test_closed_form(agrees: Agrees, exponent: float, speed: float) -> None:
     row = impact(stiffness, exponent, mass, speed).impacts
     depth = ((exponent + 1) * mass * speed**2 / (2 * stiffness)) ** (1 / (exponent + 1))
     duration = 2 / (exponent + 1) * beta(1 / (exponent + 1), 0.5) * depth / speed
-    case = "six exponents, 1 mm/s to 300 m/s"
-    agrees(case, "deepest indentation", row["max_indentation_m"], depth, unit="m", relative=1e-8)
-    agrees(case, "duration", row["duration_s"], duration, unit="s", relative=1e-8)
-    agrees(case, "largest force", row["max_force_N"], stiffness * depth**exponent, unit="N", relative=1e-8)
-    agrees(case, "restitution", row["restitution_achieved"], 1.0, relative=1e-8)
+    case = "six force exponents, approach speeds 1 mm/s to 300 m/s"
+    agrees(case, "maximum indentation", row["max_indentation_m"], depth, unit="m", relative=1e-8)
+    agrees(case, "contact duration", row["duration_s"], duration, unit="s", relative=1e-8)
+    agrees(case, "maximum contact force", row["max_force_N"], stiffness * depth**exponent, unit="N", relative=1e-8)
+    agrees(case, "coefficient of restitution", row["restitution_achieved"], 1.0, relative=1e-8)
 
 
 @pytest.mark.parametrize("exponent", [1.0, 1.2, 1.5, 2.0, 3.0])
@@ -50,23 +50,29 @@ def test_closed_form_of_a_table(agrees: Agrees, exponent: float) -> None:
     row = {name: column[:, 0] for name, column in vi.tabulate(problem).impacts.items()}
     depth = ((exponent + 1) * mass * speed**2 / (2 * stiffness)) ** (1 / (exponent + 1))
     duration = 2 / (exponent + 1) * beta(1 / (exponent + 1), 0.5) * depth / speed
-    case = "a table of drops, five exponents"
-    agrees(case, "deepest indentation", row["max_indentation_m"], depth, unit="m", relative=1e-8)
-    agrees(case, "duration", row["duration_s"], duration, unit="s", relative=1e-8)
-    agrees(case, "largest force", row["max_force_N"], stiffness * depth**exponent, unit="N", relative=1e-8)
-    agrees(case, "restitution", row["restitution_achieved"], 1.0, relative=1e-8)
+    case = "batch of drops, five force exponents"
+    agrees(case, "maximum indentation", row["max_indentation_m"], depth, unit="m", relative=1e-8)
+    agrees(case, "contact duration", row["duration_s"], duration, unit="s", relative=1e-8)
+    agrees(case, "maximum contact force", row["max_force_N"], stiffness * depth**exponent, unit="N", relative=1e-8)
+    agrees(case, "coefficient of restitution", row["restitution_achieved"], 1.0, relative=1e-8)
 
 
 def test_duration_factor_of_a_sphere(agrees: Agrees) -> None:
     row = impact(1e6, 1.5, 1.0, 1.0).impacts
-    agrees("exponent 1.5", "duration, in indentation over speed", row["duration_s"] / row["max_indentation_m"], 2.9432751843, relative=1e-8)
+    agrees(
+        "force exponent 1.5",
+        "contact duration, in units of maximum indentation over approach speed",
+        row["duration_s"] / row["max_indentation_m"],
+        2.9432751843,
+        relative=1e-8,
+    )
 
 
 def test_the_papers_sphere_undamped(agrees: Agrees) -> None:
     row = impact(5.1154524848e8, 1.5, 0.09032078879, 8.826664149).impacts
-    agrees("the paper's sphere", "deepest indentation", row["max_indentation_m"], 7.8372e-4, unit="m", relative=1e-5)
-    agrees("the paper's sphere", "largest force", row["max_force_N"], 11223.5, unit="N", relative=1e-5)
-    agrees("the paper's sphere", "duration", row["duration_s"], 261.335e-6, unit="s", relative=2e-6)
+    agrees("the paper's sphere, printed digits", "maximum indentation", row["max_indentation_m"], 7.8372e-4, unit="m", relative=1e-5)
+    agrees("the paper's sphere, printed digits", "maximum contact force", row["max_force_N"], 11223.5, unit="N", relative=1e-5)
+    agrees("the paper's sphere, printed digits", "contact duration", row["duration_s"], 261.335e-6, unit="s", relative=2e-6)
 
 
 def test_history_is_symmetric_in_time() -> None:

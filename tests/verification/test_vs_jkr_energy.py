@@ -16,7 +16,7 @@ from vibroimpact.contact.laws.jkr import JKR
 from vibroimpact.contact.quasi_static import QuasiStatic
 
 AGAINST = Against(
-    "energy of a JKR contact, by SciPy's quadrature",
+    "energy of a JKR contact, numerical quadrature (SciPy)",
     "own independent computation",
     "adhesion",
     "Johnson, Kendall and Roberts 1971, Proc. R. Soc. A 324, 301",
@@ -43,7 +43,7 @@ def torn() -> float:
 def test_the_speed_below_which_a_sphere_sticks(agrees: Agrees) -> None:
     mass = 4 / 3 * math.pi * RADIUS**3 * 2500
     found = float(sticking_speed(RADIUS, MODULUS, mass))
-    agrees("a sphere of 20 μm", "speed below which it sticks", found, math.sqrt(2 * torn() / mass), unit="m/s", relative=1e-3)
+    agrees("sphere of 20 μm", "sticking speed", found, math.sqrt(2 * torn() / mass), unit="m/s", relative=1e-3)
 
 
 def test_the_restitution_that_is_lost(agrees: Agrees) -> None:
@@ -55,7 +55,13 @@ def test_the_restitution_that_is_lost(agrees: Agrees) -> None:
     lost = 1 - float(vi.simulate(vi.read_case(case)).impacts["restitution_achieved"][0])
     mass = 4 / 3 * math.pi * RADIUS**3 * 2500
     speed = float(sticking_speed(RADIUS, MODULUS, mass))
-    agrees("a sphere of 20 μm at 0.1 m/s", "restitution lost, the doubt of a run", 1 - np.sqrt(1 - (speed / 0.1) ** 2), lost, relative=0.03)
+    agrees(
+        "sphere of 20 μm at 0.1 m/s, error estimate of a run",
+        "decrease of the coefficient of restitution by adhesion",
+        1 - np.sqrt(1 - (speed / 0.1) ** 2),
+        lost,
+        relative=0.03,
+    )
 
 
 def torn_in_series(compliance: float) -> float:
@@ -85,4 +91,11 @@ def test_the_energy_lost_with_a_compliance_in_series(agrees: Agrees) -> None:
         energy = vi.simulate(alone).energy
         assert energy["closure_relative"] < 1e-9
         lost.append(energy["contact_dissipated_J"])
-    agrees("with a compliance in series", "energy lost", lost, [torn_in_series(one) for one in compliances], unit="J", relative=2e-4)
+    agrees(
+        "JKR contact with a compliance in series",
+        "energy dissipated in one impact",
+        lost,
+        [torn_in_series(one) for one in compliances],
+        unit="J",
+        relative=2e-4,
+    )

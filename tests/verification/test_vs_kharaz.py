@@ -18,7 +18,7 @@ from vibroimpact.contact.pair import ContactPair, effective_modulus, effective_s
 from vibroimpact.contact.registry import find_friction_law
 
 AGAINST = Against(
-    "Kharaz, Gorham and Salman: alumina on glass",
+    "Kharaz, Gorham and Salman, oblique impacts of alumina spheres on glass",
     "experiment",
     "oblique impact and friction",
     "Kharaz, Gorham and Salman 2001, Powder Technol. 120, 281, doi 10.1016/S0032-5910(01)00283-2",
@@ -66,7 +66,13 @@ def test_mean_error_of_the_tangential_restitution(agrees: Agrees, friction: str,
     """That of Mindlin's contact is within the scatter of the measurements; single springs miss them by five to seven times as much."""
     found = np.abs(tangential_restitution(friction) - MEASURED).mean()
     computed = tangential_restitution(friction)
-    agrees(f"{friction}, 2 to 60 degrees", "tangential restitution", computed, MEASURED, mean=0.010 if friction == "mdr" else error + 2e-4)
+    agrees(
+        f"friction law {friction}, impact angles 2° to 60°",
+        "tangential coefficient of restitution",
+        computed,
+        MEASURED,
+        mean=0.010 if friction == "mdr" else error + 2e-4,
+    )
     assert found == pytest.approx(error, abs=2e-4)
     assert (found < 0.010) == (friction == "mdr")
 

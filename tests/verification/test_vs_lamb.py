@@ -25,7 +25,7 @@ from vibroimpact.structures.structure import solid_structure
 from vibroimpact.structures.supports.support import held_by
 
 AGAINST = Against(
-    "Lamb's elastic sphere",
+    "Lamb, free vibration of an elastic sphere",
     "closed form",
     "plates, spheres and modes",
     "Lamb 1882, Proc. London Math. Soc. 13, 189; Eringen and Suhubi, Elastodynamics 2, 1975, section 8.13",
@@ -86,16 +86,32 @@ def eta_of(angular: np.ndarray, material: Material = ROCK) -> np.ndarray:
     ],
 )
 def test_printed_numbers(agrees: Agrees, family: str, order: int, ratio: float, eta: float) -> None:
-    agrees("roots of the equations, as printed", "ω R/c_T", roots(order, ratio, family)[0], eta, relative=1e-6)
+    agrees(
+        "roots of the frequency equations, printed values",
+        "dimensionless natural frequency ω R/c_T",
+        roots(order, ratio, family)[0],
+        eta,
+        relative=1e-6,
+    )
 
 
 def test_the_papers_rock(agrees: Agrees) -> None:
     """Its default mesh, as a case makes it: T2 12735.4 Hz and S2 13461.6 Hz, five times each, and S1 three times, within 0.1 %."""
     model = computed_model(sphere_recipe(RADIUS, ROCK, Reduction(modes=13)))
     assert len(model.rigid_coefficients) == 6
-    agrees("the paper's rock, default mesh", "frequency of T2", model.frequencies[:5], 12735.4, unit="Hz", relative=1e-3)
-    agrees("the paper's rock, default mesh", "frequency of S2", model.frequencies[5:10], 13461.6, unit="Hz", relative=1e-3)
-    agrees("the paper's rock, default mesh", "ω R/c_T of 13 modes", eta_of(model.angular_frequencies), spectrum(0.28, 13), relative=1e-3)
+    agrees(
+        "the paper's rock sphere, default mesh", "natural frequency of mode T2", model.frequencies[:5], 12735.4, unit="Hz", relative=1e-3
+    )
+    agrees(
+        "the paper's rock sphere, default mesh", "natural frequency of mode S2", model.frequencies[5:10], 13461.6, unit="Hz", relative=1e-3
+    )
+    agrees(
+        "the paper's rock sphere, default mesh",
+        "dimensionless natural frequencies ω R/c_T, 13 modes",
+        eta_of(model.angular_frequencies),
+        spectrum(0.28, 13),
+        relative=1e-3,
+    )
     np.testing.assert_allclose(model.participation, 0.0, atol=1e-9)  # free modes carry no momentum
 
 
@@ -114,14 +130,20 @@ def test_other_materials(agrees: Agrees, ratio: float) -> None:
     material = Material(2500.0, 60e9, ratio)
     modes = elastic("hex27", 8, material).modes(10)
     found = eta_of(modes.angular_frequencies, material)
-    agrees("Poisson's ratio 0 to 0.45", "ω R/c_T of 10 modes", found, spectrum(ratio, 10), relative=1e-3)
+    agrees("Poisson's ratios 0 to 0.45", "dimensionless natural frequencies ω R/c_T, 10 modes", found, spectrum(ratio, 10), relative=1e-3)
 
 
 @pytest.mark.parametrize("kind", one_in(2, ["hex20", "tet10"]))
 def test_other_elements(agrees: Agrees, kind: str) -> None:
     """Within 0.2 %."""
     found = eta_of(elastic(kind, 8).modes(13).angular_frequencies)
-    agrees("other elements, 8 across", "ω R/c_T of 13 modes", found, spectrum(0.28, 13), relative=2e-3)
+    agrees(
+        "other element types, 8 elements across the diameter",
+        "dimensionless natural frequencies ω R/c_T, 13 modes",
+        found,
+        spectrum(0.28, 13),
+        relative=2e-3,
+    )
 
 
 def test_numbers_that_cut_a_multiplet() -> None:
@@ -138,8 +160,14 @@ def test_fine_mesh(agrees: Agrees) -> None:
     exact = spectrum(0.28, 41)
     assert np.isclose(exact, 4.752453, rtol=1e-6).sum() == 1  # S0 is among them, once
     found = eta_of(modes.angular_frequencies)
-    agrees("12 elements across", "ω R/c_T of T2, S2 and S1", found[:13], exact[:13], relative=1e-4)
-    agrees("12 elements across", "ω R/c_T of 41 modes", found, exact, relative=1e-3)
+    agrees(
+        "12 elements across the diameter",
+        "dimensionless natural frequencies ω R/c_T, modes T2, S2 and S1",
+        found[:13],
+        exact[:13],
+        relative=1e-4,
+    )
+    agrees("12 elements across the diameter", "dimensionless natural frequencies ω R/c_T, 41 modes", found, exact, relative=1e-3)
 
 
 @pytest.mark.slow

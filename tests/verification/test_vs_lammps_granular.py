@@ -18,16 +18,16 @@ from agreement import Against, Agrees
 from vibroimpact.arrays import Floats
 
 AGAINST = Against(
-    "closed forms of LAMMPS' tests of granular models",
+    "closed-form solutions of the LAMMPS tests of granular models",
     "closed form",
     "oblique impact and friction",
-    "LAMMPS, unittest/granular, 2026; Chung and Ooi 2011; Mohajeri, Coetzee and Schott 2024, Powder Technol. 447, 120136",
+    "LAMMPS, unittest/granular, 2026; Chung and Ooi 2011, Granular Matter 13, 643; Mohajeri et al. 2024, Powder Technol. 447, 120136",
 )
 LAMMPS = Against(
-    "LAMMPS, `rolling sds`",
+    "LAMMPS, rolling friction model `rolling sds`",
     "other program",
     "oblique impact and friction",
-    "LAMMPS 22 Jul 2025, doi 10.1016/j.cpc.2021.108171",
+    "LAMMPS 22 Jul 2025, Thompson et al. 2022, Comput. Phys. Commun. 271, 108171, doi 10.1016/j.cpc.2021.108171",
 )
 
 
@@ -69,8 +69,8 @@ def test_oblique_impact(agrees: Agrees, name: str) -> None:
     found = impact(friction(name, 0.2), 3.9, 12.0)
     impulse = 3.9 + found["separation_speed_m_s"][0]
     case = "oblique impact, six friction laws"
-    agrees(case, "velocity along the plate", found["separation_velocity_x_m_s"], 12.0 - 0.2 * impulse, unit="m/s", relative=1e-6)
-    agrees(case, "spin", found["spin_y_after_rad_s"], 2.5 * 0.2 * impulse / RADIUS, unit="rad/s", relative=1e-6)
+    agrees(case, "tangential velocity after impact", found["separation_velocity_x_m_s"], 12.0 - 0.2 * impulse, unit="m/s", relative=1e-6)
+    agrees(case, "angular velocity", found["spin_y_after_rad_s"], 2.5 * 0.2 * impulse / RADIUS, unit="rad/s", relative=1e-6)
 
 
 @pytest.mark.parametrize("name", FRICTIONS)
@@ -78,18 +78,18 @@ def test_spinning_impact(agrees: Agrees, name: str) -> None:
     """spin_impact: |vx'| = mu (1 + e) vn, omega' = omega0 - 5/2 mu (1 + e) vn / r."""
     found = impact(friction(name, 0.2), 2.0, 0.0, 6000.0)
     impulse = 2.0 + found["separation_speed_m_s"][0]
-    case = "spinning impact, six friction laws"
-    agrees(case, "velocity along the plate", found["separation_velocity_x_m_s"], 0.2 * impulse, unit="m/s", relative=1e-6)
-    agrees(case, "spin", found["spin_y_after_rad_s"], 6000.0 - 2.5 * 0.2 * impulse / RADIUS, unit="rad/s", relative=1e-6)
+    case = "impact of a spinning sphere, six friction laws"
+    agrees(case, "tangential velocity after impact", found["separation_velocity_x_m_s"], 0.2 * impulse, unit="m/s", relative=1e-6)
+    agrees(case, "angular velocity", found["spin_y_after_rad_s"], 6000.0 - 2.5 * 0.2 * impulse / RADIUS, unit="rad/s", relative=1e-6)
 
 
 @pytest.mark.parametrize("name", FRICTIONS)
 def test_impact_without_slip(agrees: Agrees, name: str) -> None:
     """spin_no_friction: where the contact point does not slip, spin and velocity stay."""
     found = impact(friction(name, 0.2), 2.0, 1.5, 1.5 / RADIUS)
-    case = "impact without slip, six friction laws"
-    agrees(case, "velocity along the plate", found["separation_velocity_x_m_s"], 1.5, unit="m/s", relative=1e-12)
-    agrees(case, "spin", found["spin_y_after_rad_s"], 1.5 / RADIUS, unit="rad/s", relative=1e-12)
+    case = "impact without sliding, six friction laws"
+    agrees(case, "tangential velocity after impact", found["separation_velocity_x_m_s"], 1.5, unit="m/s", relative=1e-12)
+    agrees(case, "angular velocity", found["spin_y_after_rad_s"], 1.5 / RADIUS, unit="rad/s", relative=1e-12)
 
 
 def test_sliding_ends_in_rolling(agrees: Agrees) -> None:
@@ -97,10 +97,24 @@ def test_sliding_ends_in_rolling(agrees: Agrees) -> None:
     law, speed = friction("coulomb", 0.2), 0.7
     time = 0.5 * 2.0 * speed / (7.0 * 0.2 * GRAVITY)
     slides, rolls = lain(law, time, velocity=speed), lain(law, 3.0 * time, velocity=speed)
-    agrees("sliding", "velocity", slides["velocity_x_m_s"], speed - 0.2 * GRAVITY * time, unit="m/s", relative=1e-6)
-    agrees("sliding", "spin", slides["spin_y_rad_s"], 2.5 * 0.2 * GRAVITY * time / RADIUS, unit="rad/s", relative=1e-6)
-    agrees("rolling after it", "velocity", rolls["velocity_x_m_s"], 5.0 / 7.0 * speed, unit="m/s", relative=1e-6)
-    agrees("rolling after it", "spin", rolls["spin_y_rad_s"], 5.0 / 7.0 * speed / RADIUS, unit="rad/s", relative=1e-6)
+    agrees("sliding on a horizontal plane", "velocity", slides["velocity_x_m_s"], speed - 0.2 * GRAVITY * time, unit="m/s", relative=1e-6)
+    agrees(
+        "sliding on a horizontal plane",
+        "angular velocity",
+        slides["spin_y_rad_s"],
+        2.5 * 0.2 * GRAVITY * time / RADIUS,
+        unit="rad/s",
+        relative=1e-6,
+    )
+    agrees("rolling after sliding on a horizontal plane", "velocity", rolls["velocity_x_m_s"], 5.0 / 7.0 * speed, unit="m/s", relative=1e-6)
+    agrees(
+        "rolling after sliding on a horizontal plane",
+        "angular velocity",
+        rolls["spin_y_rad_s"],
+        5.0 / 7.0 * speed / RADIUS,
+        unit="rad/s",
+        relative=1e-6,
+    )
 
 
 @pytest.mark.parametrize("rolling", [0.0, 0.05, 0.5])
@@ -111,7 +125,14 @@ def test_incline_with_rolling(agrees: Agrees, rolling: float) -> None:
     found = lain(friction("coulomb", 0.6, rolling), time, speed=1e-3, angle=angle)
     expected = 5.0 / 7.0 * GRAVITY * down * time
     within = max(1e-6 * expected, 1e-8)
-    agrees(f"incline, rolling resistance {rolling}", "velocity", found["velocity_x_m_s"], expected, unit="m/s", absolute=within)
+    agrees(
+        f"rolling down an incline, rolling resistance coefficient {rolling}",
+        "velocity",
+        found["velocity_x_m_s"],
+        expected,
+        unit="m/s",
+        absolute=within,
+    )
     assert found["spin_y_rad_s"][0] * RADIUS == pytest.approx(found["velocity_x_m_s"][0], rel=1e-6, abs=1e-8)
 
 
@@ -120,18 +141,25 @@ def test_incline_with_slip(agrees: Agrees) -> None:
     angle, time, mu = 0.6, 0.4, 0.1
     found = lain(friction("coulomb", mu), time, speed=1e-3, angle=angle)
     down = GRAVITY * (np.sin(angle) - mu * np.cos(angle))
-    agrees("incline with slip", "velocity", found["velocity_x_m_s"], down * time, unit="m/s", relative=1e-6)
+    agrees("sliding down an incline", "velocity", found["velocity_x_m_s"], down * time, unit="m/s", relative=1e-6)
     spin = 2.5 * mu * GRAVITY * np.cos(angle) * time / RADIUS
-    agrees("incline with slip", "spin", found["spin_y_rad_s"], spin, unit="rad/s", relative=1e-6)
+    agrees("sliding down an incline", "angular velocity", found["spin_y_rad_s"], spin, unit="rad/s", relative=1e-6)
 
 
 def test_decay_of_rolling(agrees: Agrees) -> None:
     """rolling_decay: omega = omega0 - 5 mu_r g / (2 r) t, without sliding friction; 5/7 mu_r g of the velocity where it rolls."""
     found = lain(friction("coulomb", 0.0, 0.01), 0.2, spin=50.0)
     spin = 50.0 - 5.0 * 0.01 * GRAVITY / (2.0 * RADIUS) * 0.2
-    agrees("decay of rolling", "spin", found["spin_y_rad_s"], spin, unit="rad/s", relative=1e-6)
+    agrees("deceleration by rolling resistance", "angular velocity", found["spin_y_rad_s"], spin, unit="rad/s", relative=1e-6)
     rolls = lain(friction("coulomb", 0.5, 0.01), 0.2, velocity=0.125, spin=50.0)
-    agrees("decay of rolling", "velocity", rolls["velocity_x_m_s"], 0.125 - 5.0 / 7.0 * 0.01 * GRAVITY * 0.2, unit="m/s", relative=1e-6)
+    agrees(
+        "deceleration by rolling resistance",
+        "velocity",
+        rolls["velocity_x_m_s"],
+        0.125 - 5.0 / 7.0 * 0.01 * GRAVITY * 0.2,
+        unit="m/s",
+        relative=1e-6,
+    )
 
 
 def test_decay_of_twisting(agrees: Agrees) -> None:
@@ -145,7 +173,14 @@ def test_decay_of_twisting(agrees: Agrees) -> None:
     lies = float(response.rest.time[0])
     first, later, end = response.at([lies + 0.1, lies + 0.4, 4.0])["spin_z_rad_s"]
     assert 0.0 < later < first < 100.0
-    agrees("decay of twisting, of Hertz's pressure", "spin lost in 0.3 s", first - later, slower * 0.3, unit="rad/s", relative=1e-6)
+    agrees(
+        "deceleration by twisting friction, Hertz pressure",
+        "decrease of the angular velocity in 0.3 s",
+        first - later,
+        slower * 0.3,
+        unit="rad/s",
+        relative=1e-6,
+    )
     assert end == max(0.0, first - slower * (3.9 - lies))
 
 
@@ -191,4 +226,4 @@ print "velocity $(v_vx:%.10g)"
     law = friction("coulomb", mu, rolling)
     ours = lain(law, steps * step, speed=1e-9 if velocity else 1e-3, velocity=velocity, spin=velocity / RADIUS, angle=angle)
     slowed, theirs = ours["velocity_x_m_s"] - velocity, found - velocity
-    agrees("rolling to rest, and down a slope", "change of the velocity", slowed, theirs, unit="m/s", against=LAMMPS, relative=1e-3)
+    agrees("rolling to rest, and rolling down an incline", "change of velocity", slowed, theirs, unit="m/s", against=LAMMPS, relative=1e-3)

@@ -20,16 +20,16 @@ from vibroimpact.structures.surface import Side
 from vibroimpact.structures.transfer_compliance import computed_transfer, transfer_compliances
 
 AGAINST = Against(
-    "double Fourier series of an elastic layer",
+    "elastic layer, double Fourier series",
     "closed form",
     "plates, spheres and modes",
     "Sneddon, Fourier Transforms, 1951, section 46",
 )
 BRICKS = Against(
-    "plate elements, beside bricks",
+    "plate elements and solid elements of this package",
     "consistency",
     "plates, spheres and modes",
-    "two elements of this package",
+    "two element formulations of this package; no external reference",
 )
 
 
@@ -73,7 +73,7 @@ def test_the_faces_of_a_plate(agrees: Agrees) -> None:
     points = [(place(apart), face) for apart, face in (*lower, *upper)]
     found = computed_transfer(recipe, SPOT, "upper", points, faces=2)[:, 2]
     exact = [series(point, face) for point, face in points]
-    agrees("both faces, 0 to 5 thicknesses from the force", "static compliance", found, exact, unit="m/N", relative=0.002)
+    agrees("both faces, 0 to 5 plate thicknesses from the force", "static compliance", found, exact, unit="m/N", relative=0.002)
 
 
 @pytest.mark.slow
@@ -91,7 +91,7 @@ def test_modes_and_what_they_lack(agrees: Agrees) -> None:
     for apart in (0.0, 2.0, 5.0):
         carried = float((basis.contact * basis.points[str(apart)][:, 2] / basis.angular_frequencies**2).sum())
         whole = carried + basis.residuals[str(apart)][2]
-        agrees("modes and what they lack", "static compliance", whole, series(place(apart), "lower"), unit="m/N", relative=0.002)
+        agrees("modal sum with residual compliance", "static compliance", whole, series(place(apart), "lower"), unit="m/N", relative=0.002)
         waves = np.hypot(np.pi * np.arange(1, 40)[:, None] / LENGTH, np.pi * np.arange(1, 40)[None] / WIDTH)
         omega, face = thickness_modes(waves.ravel(), THICKNESS, Elastic(7850.0, MODULUS, POISSON), even=False)
         kept = np.argsort(omega[:, 0])[:80]
@@ -112,7 +112,14 @@ def test_plate_theory(agrees: Agrees, apart: float) -> None:
     """What goes together with modes of plate theory, whose points are of its middle plane."""
     recipe = Recipe(PlateOfPlates((LENGTH, WIDTH, THICKNESS), 0.0405), 7850.0, MODULUS, POISSON, HELD)
     found = computed_transfer(recipe, SPOT, "upper", [(place(apart), "upper")])[0, 2]
-    agrees("plate theory, 2 and 5 thicknesses away", "static compliance", found, series(place(apart), "plate"), unit="m/N", relative=5e-4)
+    agrees(
+        "plate theory, 2 and 5 plate thicknesses from the force",
+        "static compliance",
+        found,
+        series(place(apart), "plate"),
+        unit="m/N",
+        relative=5e-4,
+    )
 
 
 def test_bricks(agrees: Agrees) -> None:
@@ -124,7 +131,7 @@ def test_bricks(agrees: Agrees) -> None:
     ]
     point = ((0.012, 0.009), "upper")
     solid, plate = (computed_transfer(recipe, (0.0, 0.0), "upper", [point], faces=2)[0] for recipe in recipes)
-    agrees("bricks beside plate elements", "static compliance", solid[2], plate[2], unit="m/N", against=BRICKS, relative=0.02)
+    agrees("solid elements against plate elements", "static compliance", solid[2], plate[2], unit="m/N", against=BRICKS, relative=0.02)
     np.testing.assert_allclose(solid[:2], plate[:2], rtol=0.03)  # the face slides as it tilts
 
 

@@ -22,25 +22,25 @@ from vibroimpact.contact.pair import ContactPair
 from vibroimpact.contact.registry import contact_laws
 
 AGAINST = Against(
-    "SciPy's DOP853 on several bodies",
+    "SciPy's DOP853, impacts of several bodies",
     "own independent computation",
     "several bodies",
-    "tests/oracles/moving_bodies.py, in the coordinates of the bodies",
+    "tests/oracles/moving_bodies.py, equations of motion in body coordinates",
 )
 DROP = Against(
-    "the solver of drops on a rigid plate",
+    "solver of this package for drops on a rigid plate",
     "consistency",
     "several bodies",
-    "another solver of this package; no opponent",
+    "another solver of this package; no external reference",
 )
 SYMMETRY = Against(
-    "symmetry of two balls on one plate",
+    "symmetry of two spheres on one plate",
     "consistency",
     "several bodies",
-    "each sees the symmetric modes, driven by both; no opponent",
+    "each sphere excites the symmetric modes, which both drive; no external reference",
 )
 RIGID = Against(
-    "impulse of rigid bodies",
+    "impact of rigid bodies",
     "closed form",
     "several bodies",
     "reduced mass; Goldsmith, Impact, 1960, section 2.3",
@@ -78,9 +78,9 @@ def test_a_ball_against_a_wall_is_the_drop(agrees: Agrees, law: type[CompliantLa
     ball = vi.MovingBody(mass=0.09032078879, velocity=(0.0, 0.0, -3.0))
     system = vi.System(bodies={"ball": ball, "wall": WALL}, contacts={"at": vi.PointContact(above="ball", below="wall", law=made)})
     response = vi.simulate_system(system, duration=2.0 * float(row["duration_s"][0]))
-    case, impacts = "a ball against a wall, every law that has a force", response.impacts
-    agrees(case, "largest force", impacts["max_force_N"], row["max_force_N"], unit="N", against=DROP, relative=1e-8)
-    agrees(case, "duration", impacts["duration_s"], row["duration_s"], unit="s", against=DROP, relative=1e-9)
+    case, impacts = "sphere against a wall, all laws with a contact force", response.impacts
+    agrees(case, "maximum contact force", impacts["max_force_N"], row["max_force_N"], unit="N", against=DROP, relative=1e-8)
+    agrees(case, "contact duration", impacts["duration_s"], row["duration_s"], unit="s", against=DROP, relative=1e-9)
     after = response.at(response.end_time)["ball"].velocity[2]
     agrees(case, "separation speed", after, row["separation_speed_m_s"][0], unit="m/s", against=DROP, relative=1e-8)
     assert response.energy["closure_relative"] < 1e-9
@@ -93,7 +93,7 @@ def test_newtons_cradle(agrees: Agrees, number: int, gap: float) -> None:
     response, expected = vi.simulate_system(system, duration=1.5e-3), integrate(system, 1.5e-3, 5e-6)
     moved = response.at(1.5e-3)
     for name in system.bodies:
-        agrees("Newton's cradles", "velocities", moved[name].velocity, expected.velocity[name], unit="m/s", absolute=2e-11)
+        agrees("Newton's cradle, 3 and 5 spheres", "velocities", moved[name].velocity, expected.velocity[name], unit="m/s", absolute=2e-11)
     assert response.momentum(1.5e-3)[2] == pytest.approx(0.1, rel=1e-12)
     assert response.energy["closure_relative"] < 1e-10
     assert gap or 0.98 < float(moved[f"{number - 1}"].velocity[2]) < 0.9999
@@ -137,8 +137,8 @@ def test_contacts_that_overlap_at_random(agrees: Agrees, seed: int) -> None:
     expected, moved = integrate(system, 1e-3, 5e-6), response.at(1e-3)
     for name in system.bodies:
         body, theirs = moved[name], expected.angular_velocity[name]
-        agrees("random systems, contacts that overlap", "velocities", body.velocity, expected.velocity[name], unit="m/s", absolute=1e-8)
-        agrees("random systems, contacts that overlap", "angular velocities", body.angular_velocity, theirs, unit="rad/s", absolute=1e-7)
+        agrees("random systems, simultaneous contacts", "velocities", body.velocity, expected.velocity[name], unit="m/s", absolute=1e-8)
+        agrees("random systems, simultaneous contacts", "angular velocities", body.angular_velocity, theirs, unit="rad/s", absolute=1e-7)
     assert response.energy["closure_relative"] < 1e-9
 
 
@@ -151,12 +151,23 @@ def test_mirrored_balls_are_one_of_which_the_plate_feels_twice_the_force(agrees:
     both = vi.simulate_system(vi.System(bodies={"plate": plate, "left": ball, "right": ball}, contacts=contacts), duration=5e-4)
     alone = replace(plate, modes=modes_at(frequencies, 0.01, left=math.sqrt(2.0) * even))
     one = vi.simulate_system(vi.System(bodies={"plate": alone, "left": ball}, contacts={"left": contacts["left"]}), duration=5e-4)
-    for name in ("max_force_N", "impulse_N_s", "max_indentation_m"):
+    for name, quantity, unit in (
+        ("max_force_N", "maximum contact force", "N"),
+        ("impulse_N_s", "impulse", "N s"),
+        ("max_indentation_m", "maximum indentation", "m"),
+    ):
         first = len(one.impacts[name])
         for side in ("left", "right"):
             here = both.impacts[name][both.impacts["contact"] == side]
-            quantity = name.rpartition("_")[0].replace("_", " ") if name != "impulse_N_s" else "impulse"
-            agrees("two mirrored balls", quantity, here, one.impacts[name], against=SYMMETRY, relative=1e-9)
+            agrees(
+                "two symmetrically placed spheres on a vibrating plate",
+                quantity,
+                here,
+                one.impacts[name],
+                unit=unit,
+                against=SYMMETRY,
+                relative=1e-9,
+            )
         assert len(both.impacts[name]) == 2 * first
     np.testing.assert_allclose(both.at(5e-4)["left"].velocity, one.at(5e-4)["left"].velocity, rtol=1e-9)
 
@@ -205,7 +216,7 @@ def test_an_excentric_impact_on_a_free_beam_that_bends(agrees: Agrees, place: fl
     response, expected = vi.simulate_system(system, duration=1e-3), integrate(system, 1e-3, 5e-6)
     moved = response.at(np.linspace(0.0, 1e-3, 101))
     for name in ("ball", "beam"):
-        case, body, theirs = "eccentric impact on a free beam that bends", moved[name], expected.angular_velocity[name]
+        case, body, theirs = "eccentric impact on a free flexible beam", moved[name], expected.angular_velocity[name]
         agrees(case, "velocities", body.velocity[-1], expected.velocity[name], unit="m/s", absolute=1e-8)
         agrees(case, "angular velocities", body.angular_velocity[-1], theirs, unit="rad/s", absolute=1e-7)
     np.testing.assert_allclose(response.momentum(np.linspace(0.0, 1e-3, 101))[:, 2], -0.1, rtol=1e-9)

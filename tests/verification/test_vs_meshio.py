@@ -18,10 +18,10 @@ from vibroimpact.structures.mesh import ElementBlock, Mesh
 meshio = pytest.importorskip("meshio")
 
 AGAINST = Against(
-    "meshio's files",
+    "meshio, mesh files",
     "other program",
     "programs and files",
-    "meshio, which reads what is written here and writes what is read; Schlömer, doi 10.5281/zenodo.1173115",
+    "meshio, Schlömer, doi 10.5281/zenodo.1173115; it reads files written by this package, and writes files that this package reads",
 )
 
 
@@ -66,7 +66,7 @@ def test_elements(agrees: Agrees, kind: str, suffix: str, tmp_path: Path) -> Non
     assert cells.type == NAMES[written]
     expected = measures(written, mesh.nodes, mesh.blocks[0].connectivity[:, : len(ELEMENT_KINDS[written].reference)])
     found = measures(written, read.points, cells.data)
-    agrees("five kinds of elements, Nastran, Abaqus, VTK", "volume and its second moments", found, expected, relative=1e-11)
+    agrees("five element types, Nastran, Abaqus and VTK files", "volume and second moments of volume", found, expected, relative=1e-11)
     if suffix == "vtu":
         np.testing.assert_array_equal(read.point_data["height_m"], mesh.nodes[:, 2])
         np.testing.assert_array_equal(read.point_data["place_m"], mesh.nodes)
@@ -111,4 +111,4 @@ def test_a_mesh_of_meshio(agrees: Agrees, tmp_path: Path) -> None:
         meshio.Mesh(points, [("tetra", tets)]).write(file, **options)
         read = read_mesh(file)
         found = measures("tet4", read.nodes, read.blocks[0].connectivity)[0]
-        agrees("two tetrahedra, written by it", "volume", found, 1 / 6 + 1 / 3, unit="m³", relative=1e-12)
+        agrees("two tetrahedra, files written by meshio", "volume", found, 1 / 6 + 1 / 3, unit="m³", relative=1e-12)

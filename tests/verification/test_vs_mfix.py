@@ -12,10 +12,10 @@ import vibroimpact as vi
 from agreement import Against, Agrees
 
 AGAINST = Against(
-    "MFiX-DEM, DEM01",
+    "MFiX-DEM, verification case DEM01",
     "published computation",
     "flight, bounces and shaken plates",
-    "Garg and others 2012, Powder Technol. 220, 122, doi 10.1016/j.powtec.2011.09.019",
+    "Garg et al. 2012, Powder Technol. 220, 122, doi 10.1016/j.powtec.2011.09.019",
 )
 
 
@@ -33,17 +33,40 @@ def response() -> vi.Response:
 
 def test_positions(agrees: Agrees, response: vi.Response) -> None:
     heights = response.at([0.14083519, 0.30514291, 0.35062094])["position_m"]
-    agrees("DEM01", "position in flight and in contact", heights, [0.40274475, 0.04766252, 0.00593876], unit="m", relative=1e-6)
+    agrees(
+        "DEM01, falling and rebounding sphere",
+        "height of the centre in flight and in contact",
+        heights,
+        [0.40274475, 0.04766252, 0.00593876],
+        unit="m",
+        relative=1e-6,
+    )
 
 
 def test_events(agrees: Agrees, response: vi.Response) -> None:
     row = {name: column[0] for name, column in response.impacts.items()}
-    agrees("DEM01", "time of touch", row["time_s"], 0.285617, unit="s", absolute=5e-7)
-    agrees("DEM01", "approach speed", row["approach_speed_m_s"], 2.800950, unit="m/s", relative=1e-6)
-    agrees("DEM01", "lowest point", 0.1 - row["max_indentation_m"], 0.001624, unit="m", absolute=5e-7)
-    agrees("DEM01", "time of release", row["time_s"] + row["duration_s"], 0.397435, unit="s", absolute=5e-7)
-    agrees("DEM01", "separation speed", row["separation_speed_m_s"], 2.475443, unit="m/s", relative=1e-6)
-    agrees("DEM01", "apex", row["rebound_height_m"], 0.412432, unit="m", absolute=5e-7)
+    agrees("DEM01, falling and rebounding sphere", "time of first contact", row["time_s"], 0.285617, unit="s", absolute=5e-7)
+    agrees("DEM01, falling and rebounding sphere", "approach speed", row["approach_speed_m_s"], 2.800950, unit="m/s", relative=1e-6)
+    agrees(
+        "DEM01, falling and rebounding sphere",
+        "minimum height of the centre",
+        0.1 - row["max_indentation_m"],
+        0.001624,
+        unit="m",
+        absolute=5e-7,
+    )
+    agrees(
+        "DEM01, falling and rebounding sphere", "time of separation", row["time_s"] + row["duration_s"], 0.397435, unit="s", absolute=5e-7
+    )
+    agrees("DEM01, falling and rebounding sphere", "separation speed", row["separation_speed_m_s"], 2.475443, unit="m/s", relative=1e-6)
+    agrees(
+        "DEM01, falling and rebounding sphere",
+        "maximum height of the centre after rebound",
+        row["rebound_height_m"],
+        0.412432,
+        unit="m",
+        absolute=5e-7,
+    )
     assert response.energy["closure_relative"] <= 1e-9
 
 
@@ -58,4 +81,4 @@ def test_closed_form_to_the_tolerance(agrees: Agrees) -> None:
             "run": {"impacts": 1},
         }
         found = vi.simulate(vi.read_case(case)).impacts["restitution_achieved"]
-        agrees("linear spring and dashpot without gravity", "restitution", found, asked, relative=1e-8)
+        agrees("linear spring-dashpot law without gravity", "coefficient of restitution", found, asked, relative=1e-8)

@@ -8,10 +8,10 @@ import vibroimpact as vi
 from agreement import Against, Agrees
 
 AGAINST = Against(
-    "a spring of Mindlin's stiffness, by 20,000 Verlet steps",
+    "spring of Mindlin's tangential stiffness, 20,000 Verlet steps",
     "own independent computation",
     "oblique impact and friction",
-    "as discrete-element codes do it, in the test itself",
+    "incremental friction as in discrete-element codes, in the test",
 )
 
 
@@ -57,4 +57,11 @@ def test_slip_after(agrees: Agrees, name: str) -> None:
     )
     impacts = vi.simulate(problem).impacts
     found = impacts["separation_velocity_x_m_s"][0] - RADIUS * impacts["spin_y_after_rad_s"][0]
-    agrees(f"`{name}`, slips, sticks and is turned back", "slip after", found, slip_by_small_steps(name), unit="m/s", absolute=4e-4 * SLIP)
+    agrees(
+        f"friction law `{name}`, sliding, sticking and reversal",
+        "tangential velocity of the contact point after impact",
+        found,
+        slip_by_small_steps(name),
+        unit="m/s",
+        absolute=4e-4 * SLIP,
+    )

@@ -21,10 +21,10 @@ from vibroimpact.contact.quasi_static import QuasiStatic
 from vibroimpact.structures.modal_model import ModalBasis
 
 AGAINST = Against(
-    "SciPy's DOP853 on the modal equations",
+    "SciPy's DOP853, modal equations of motion",
     "own independent computation",
     "impacts on vibrating bodies",
-    "tests/oracles/modal_integration.py, at 1e-12",
+    "tests/oracles/modal_integration.py, tolerance 1e-12",
 )
 
 
@@ -48,10 +48,10 @@ def check(agrees: Agrees, case: str, response: vi.Response, tolerance: float) ->
     visits = grouped(oracle(response.problem).run(int(impacts["contacts"].sum())), impacts["contacts"])
     for number, visit in enumerate(visits):
         row, force = {name: values[number] for name, values in impacts.items()}, max(touch.max_force for touch in visit)
-        agrees(case, "time of touch", row["time_s"], visit[0].begin, unit="s", absolute=tolerance * 3e-4)
-        agrees(case, "duration", row["duration_s"], visit[-1].end - visit[0].begin, unit="s", relative=tolerance)
+        agrees(case, "time of first contact", row["time_s"], visit[0].begin, unit="s", absolute=tolerance * 3e-4)
+        agrees(case, "contact duration", row["duration_s"], visit[-1].end - visit[0].begin, unit="s", relative=tolerance)
         agrees(case, "separation speed", row["separation_speed_m_s"], visit[-1].separation_speed, unit="m/s", relative=tolerance)
-        agrees(case, "largest force", row["max_force_N"], force, unit="N", relative=tolerance)
+        agrees(case, "maximum contact force", row["max_force_N"], force, unit="N", relative=tolerance)
 
 
 @pytest.mark.parametrize(
@@ -72,14 +72,19 @@ def check(agrees: Agrees, case: str, response: vi.Response, tolerance: float) ->
 def test_one_impact(
     agrees: Agrees, law: CompliantLaw, plate: ModalBasis | None, sphere: ModalBasis | None, more: dict[str, object]
 ) -> None:
-    check(agrees, "three laws, plate, sphere, local elements", vi.simulate(drop_on(law, plate, sphere, tolerance=1e-11, **more)), 1e-8)
+    check(
+        agrees,
+        "one impact, three contact laws, elastic plate and sphere, local elements",
+        vi.simulate(drop_on(law, plate, sphere, tolerance=1e-11, **more)),
+        1e-8,
+    )
 
 
 def test_a_plate_that_kicks_the_ball_again(agrees: Agrees) -> None:
     """While it still rises from the first contact: two contacts of one impact, or more, as soft or hard."""
     response = vi.simulate(drop_on(HERTZ, SOFT, speed=1.0, tolerance=1e-11))
     assert response.impacts["contacts"][0] >= 2
-    check(agrees, "a plate that kicks the ball again", response, 1e-8)
+    check(agrees, "repeated contacts within one impact", response, 1e-8)
 
 
 @pytest.mark.parametrize("law", [HERTZ, LOSSY, ADAMS], ids=lambda law: law.name)
@@ -87,7 +92,7 @@ def test_later_impacts_on_a_plate_that_rings(agrees: Agrees, law: CompliantLaw) 
     """Three impacts of a slow ball on a plate that swings by more than the ball falls in a period: no meeting is stepped over."""
     response = vi.simulate(drop_on(law, modes_of([180.0, 950.0], [1.8, -1.2], 0.002), speed=0.6, impacts=3, tolerance=1e-11))
     assert len(response.impacts["impact"]) == 3
-    check(agrees, "three impacts on a plate that rings", response, 1e-7)
+    check(agrees, "three impacts on a vibrating plate", response, 1e-7)
 
 
 def test_a_mode_that_is_not_met() -> None:

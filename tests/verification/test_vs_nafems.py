@@ -18,13 +18,13 @@ from vibroimpact.structures.supports.edge import EDGES, Edge
 from vibroimpact.structures.supports.support import Support, held_by
 
 AGAINST = Against(
-    "NAFEMS FV12, FV13 and FV21",
+    "NAFEMS benchmarks FV12, FV13 and FV21",
     "published computation",
     "plates, spheres and modes",
-    "Selected Benchmarks for Natural Frequency Analysis, 1987",
+    "NAFEMS, Selected Benchmarks for Natural Frequency Analysis, 1987",
 )
 MINDLIN = Against(
-    "Mindlin's plate",
+    "Mindlin plate theory, simply supported plate",
     "closed form",
     "plates, spheres and modes",
     "Mindlin 1951, J. Appl. Mech. 18, 31",
@@ -57,20 +57,20 @@ def mindlin(m: int, n: int, thickness: float, factor: float) -> float:
 @pytest.mark.parametrize("theory", ["thick", "thin"])
 def test_fv13_thin_and_simply_supported(agrees: Agrees, theory: str) -> None:
     found = frequencies(plates(0.05, 2.0, theory), SIMPLY, 4)
-    agrees("FV13, thin, simply supported", "frequencies", found, [2.377, 5.942, 5.942, 9.507], unit="Hz", relative=1e-3)
+    agrees("FV13, thin simply supported plate", "natural frequencies", found, [2.377, 5.942, 5.942, 9.507], unit="Hz", relative=1e-3)
 
 
 def test_fv12_thin_and_free(agrees: Agrees) -> None:
     """The printed fourth to seventh targets, 4.233 and 7.416 Hz, are up to 1 % high; converged ones stand in their place."""
     expected = [1.622, 2.360, 2.922, 4.19024, 4.19024, 7.35600, 7.35600]
-    agrees("FV12, thin, free", "frequencies", frequencies(plates(0.05, 1.25), (), 7), expected, unit="Hz", relative=1e-3)
+    agrees("FV12, thin free plate", "natural frequencies", frequencies(plates(0.05, 1.25), (), 7), expected, unit="Hz", relative=1e-3)
 
 
 @pytest.mark.slow
 def test_fv12_with_bricks(agrees: Agrees) -> None:
     structure = solid_structure(solid_plate_mesh((10.0, 10.0, 0.05), 0.25), STEEL)
     expected = [1.622, 2.360, 2.922, 4.19024, 4.19024]
-    agrees("FV12, bricks", "frequencies", frequencies(structure, (), 5), expected, unit="Hz", relative=1e-3)
+    agrees("FV12, solid elements", "natural frequencies", frequencies(structure, (), 5), expected, unit="Hz", relative=1e-3)
 
 
 @pytest.mark.parametrize(
@@ -81,10 +81,14 @@ def test_fv12_with_bricks(agrees: Agrees) -> None:
 def test_fv21_thick_and_simply_supported(agrees: Agrees, factor: float | None, targets: tuple[float, ...], tolerance: float) -> None:
     found = frequencies(plates(1.0, 2.0, factor=factor), SIMPLY, 8)
     at = [0, 1, 5, 6]  # the fourth and fifth move in the plane of the plate
-    case = "FV21, thick, Mindlin's factor" if factor else "FV21, thick, against three dimensions"
-    agrees(case, "frequencies", found[at], targets, unit="Hz", relative=tolerance)
+    case = (
+        "FV21, thick simply supported plate, Mindlin's shear correction factor"
+        if factor
+        else "FV21, thick simply supported plate, three-dimensional elasticity"
+    )
+    agrees(case, "natural frequencies", found[at], targets, unit="Hz", relative=tolerance)
     exact = [mindlin(*pair, 1.0, factor or 5 / 5.7) for pair in PAIRS]
-    agrees("FV21, thick", "frequencies", found[at], exact, unit="Hz", against=MINDLIN, relative=1e-4)
+    agrees("FV21, thick simply supported plate", "natural frequencies", found[at], exact, unit="Hz", against=MINDLIN, relative=1e-4)
     np.testing.assert_allclose(found[[3, 4]], np.sqrt(200e9 / 2.6 / 8000) / 20, rtol=1e-6)
 
 
@@ -97,4 +101,11 @@ def test_fv21_with_bricks(agrees: Agrees) -> None:
     """Three layers of bricks, within 0.1 % of the exact solution in three dimensions (test_vs_navier has it)."""
     structure = solid_structure(solid_plate_mesh((10.0, 10.0, 1.0), 1.0, 3, "hex27"), STEEL)
     found = frequencies(structure, SIMPLY, 6)[[0, 1, 5]]
-    agrees("FV21, bricks, against three dimensions", "frequencies", found, [45.971, 109.857, 168.819], unit="Hz", relative=1e-3)
+    agrees(
+        "FV21, solid elements, three-dimensional elasticity",
+        "natural frequencies",
+        found,
+        [45.971, 109.857, 168.819],
+        unit="Hz",
+        relative=1e-3,
+    )

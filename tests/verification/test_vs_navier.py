@@ -27,19 +27,19 @@ from vibroimpact.structures.supports.edge import EDGES, Edge
 from vibroimpact.structures.supports.support import Support, held_by
 
 AGAINST = Against(
-    "Navier's and Mindlin's simply supported plates",
+    "Navier and Mindlin, simply supported plates",
     "closed form",
     "plates, spheres and modes",
-    "Navier; Mindlin 1951, J. Appl. Mech. 18, 31",
+    "Navier series of thin plates; Mindlin 1951, J. Appl. Mech. 18, 31",
 )
 EXACT = Against(
-    "elasticity in three dimensions, simply supported plates",
+    "three-dimensional elasticity, simply supported plates",
     "own independent computation",
     "plates, spheres and modes",
-    "Srinivas, Joga Rao and Rao 1970, J. Sound Vib. 12, 187; Legendre's polynomials over the thickness",
+    "Srinivas, Joga Rao and Rao 1970, J. Sound Vib. 12, 187; Legendre polynomials through the thickness",
 )
 UPPER = Against(
-    "Leissa's square plates, upper bounds by Ritz's method",
+    "Leissa, square plates, upper bounds by the Ritz method",
     "published computation",
     "plates, spheres and modes",
     "Leissa 1969, NASA SP-160; 1973, J. Sound Vib. 31, 257",
@@ -121,14 +121,21 @@ def test_thick_plates(agrees: Agrees, size: tuple[float, float, float]) -> None:
     mesh = plate_mesh(size[:2], min(size[:2]) / (10 if size[0] < 1 else 4))
     found = frequencies(plate_structure(mesh, STEEL, size[2]), SIMPLY, 30)
     case = f"plate elements, {1e3 * size[0]:g} by {1e3 * size[1]:g} by {1e3 * size[2]:g} mm"
-    agrees(case, "frequencies", found, thick(size, STEEL, 30), unit="Hz", relative=1e-4)
+    agrees(case, "natural frequencies", found, thick(size, STEEL, 30), unit="Hz", relative=1e-4)
 
 
 def test_a_block_of_plate_elements(agrees: Agrees) -> None:
     """A plate as thick as a third of its side; among its lowest modes are several in its plane."""
     size = (0.3, 0.36, 0.1)
     found = frequencies(plate_structure(plate_mesh(size[:2], 0.06), STEEL, size[2]), SIMPLY, 20)
-    agrees("plate elements, as thick as a third of the side", "frequencies", found, thick(size, STEEL, 20), unit="Hz", relative=1e-4)
+    agrees(
+        "plate elements, thickness one third of the shorter side",
+        "natural frequencies",
+        found,
+        thick(size, STEEL, 20),
+        unit="Hz",
+        relative=1e-4,
+    )
 
 
 @pytest.mark.parametrize("size", [SIZE, (0.5, 0.5, 0.02)])
@@ -136,7 +143,9 @@ def test_a_block_of_plate_elements(agrees: Agrees) -> None:
 def test_thin_plates(agrees: Agrees, size: tuple[float, float, float]) -> None:
     """20 modes within 1e-4."""
     structure = plate_structure(plate_mesh(size[:2], min(size[:2]) / 10), STEEL, size[2], "thin")
-    agrees("thin elements", "frequencies", frequencies(structure, SIMPLY, 20), thin(size, STEEL, 20), unit="Hz", relative=1e-4)
+    agrees(
+        "thin-plate elements", "natural frequencies", frequencies(structure, SIMPLY, 20), thin(size, STEEL, 20), unit="Hz", relative=1e-4
+    )
 
 
 @pytest.mark.slow
@@ -145,7 +154,7 @@ def test_a_mesh_that_follows_discs(agrees: Agrees) -> None:
     discs = [Disc(x, y, 0.02) for x in (-0.2292, 0.2292) for y in (-0.18, 0.18)] + [Disc(0.03, 0.02, 0.002)]
     mesh = plate_mesh(SIZE[:2], 0.06, discs)
     found = frequencies(plate_structure(mesh, STEEL, SIZE[2]), SIMPLY, 15)
-    agrees("plate elements bent around discs", "frequencies", found, thick(SIZE, STEEL, 15), unit="Hz", relative=1e-4)
+    agrees("curved plate elements around discs", "natural frequencies", found, thick(SIZE, STEEL, 15), unit="Hz", relative=1e-4)
 
 
 @pytest.mark.parametrize("element", one_in(2, ["plate", "solid"]))
@@ -153,10 +162,10 @@ def test_the_mesh_that_is_made_unless_told_otherwise(agrees: Agrees, element: st
     """10 modes of the mesh that a case makes: plate elements within 1e-4 of Mindlin's, bricks within 0.5 % of the exact ones."""
     model = computed_model(plate_recipe(SIZE, STEEL, Reduction(modes=10), SIMPLY, element))
     if element == "plate":
-        agrees("plate elements, default mesh", "frequencies", model.frequencies, thick(SIZE, STEEL, 10), unit="Hz", relative=1e-4)
+        agrees("plate elements, default mesh", "natural frequencies", model.frequencies, thick(SIZE, STEEL, 10), unit="Hz", relative=1e-4)
     else:
         exact = sorted(three_dimensional(SIZE, STEEL, m, n) for m in range(1, 7) for n in range(1, 7))[:10]
-        agrees("bricks, default mesh", "frequencies", model.frequencies, exact, unit="Hz", against=EXACT, relative=5e-3)
+        agrees("solid elements, default mesh", "natural frequencies", model.frequencies, exact, unit="Hz", against=EXACT, relative=5e-3)
 
 
 @pytest.mark.slow
@@ -179,8 +188,8 @@ def test_solids_and_plate_elements_agree(agrees: Agrees, kind: str, element_size
     exact = sorted(three_dimensional(SIZE, STEEL, m, n) for m in range(1, 7) for n in range(1, 7))[:10]
     flat = frequencies(plate_structure(plate_mesh(SIZE[:2], 0.07), STEEL, SIZE[2]), SIMPLY, 10)
     solid = frequencies(solid_structure(solid_plate_mesh(SIZE, element_size, 1, kind), STEEL), SIMPLY, 10)
-    agrees("plate elements", "frequencies", flat, exact, unit="Hz", against=EXACT, relative=5e-4)
-    agrees(f"{kind}", "frequencies", solid, exact, unit="Hz", against=EXACT, relative=5e-3)
+    agrees("plate elements", "natural frequencies", flat, exact, unit="Hz", against=EXACT, relative=5e-4)
+    agrees(f"solid elements {kind}", "natural frequencies", solid, exact, unit="Hz", against=EXACT, relative=5e-3)
     np.testing.assert_allclose(solid, flat, rtol=5e-3)
 
 
@@ -223,7 +232,14 @@ def test_leissas_square_plates(agrees: Agrees, name: str) -> None:
     rigidity = STEEL.youngs_modulus * height**3 / (12 * (1 - STEEL.poissons_ratio**2))
     found = frequencies(plate_structure(plate_mesh((1.0, 1.0), 0.2), STEEL, height), supports, 5)
     ours = found * 2 * np.pi * np.sqrt(STEEL.density * height / rigidity)
-    agrees(f"thin square plates, {name}", "frequency parameter of Leissa", ours, expected, against=UPPER, relative=0.01)
+    agrees(
+        f"thin square plates, {name}",
+        "frequency parameter ω a² √(m/D), m: mass per area, modes 1 to 5",
+        ours,
+        expected,
+        against=UPPER,
+        relative=0.01,
+    )
     ratio = ours / expected
     assert (ratio < 1.0002).all()
     assert (ratio > 0.99).all()

@@ -20,10 +20,10 @@ from vibroimpact.structures.supports.edge import EDGES, Edge
 from vibroimpact.structures.transfer_strain import computed_strains
 
 AGAINST = Against(
-    "Kirchhoff's plate: strains of modes, and Navier's series",
+    "Kirchhoff plate, modal strains and Navier series",
     "closed form",
     "sensors and signals",
-    "Navier; modes to 600 kHz at two million samples a second, tests/oracles/measuring_chain.py",
+    "Navier series; modes to 600 kHz, sampled at 2 MHz, tests/oracles/measuring_chain.py",
 )
 
 
@@ -63,7 +63,14 @@ def test_modes(agrees: Agrees, side: Any) -> None:
     exact = curvatures(plate, *GAUGE)[:, theirs] * (1.0 if side == "upper" else -1.0)
     shapes, strains = model.at(np.array([GAUGE]))[0][mine, 0, 2], model.strains(GAUGE, side)[mine]
     signs = np.sign(shapes * plate.at(*GAUGE)[theirs])
-    agrees("modes, both faces", "strains, two and of shear", strains * signs[:, None], exact.T, unit="kg^-½", of_the_largest=2e-3)
+    agrees(
+        "mode shapes, both faces",
+        "modal strains, two normal strains and shear strain",
+        strains * signs[:, None],
+        exact.T,
+        unit="1/(m kg^½)",
+        of_the_largest=2e-3,
+    )
 
 
 @pytest.mark.parametrize(
@@ -80,8 +87,15 @@ def test_navier(agrees: Agrees, shape: Any, tolerance: float) -> None:
     exact = (plate.at(*SPOT) / plate.omega**2 * curvatures(plate, *GAUGE)).sum(axis=1)
     recipe = Recipe(shape, DENSITY, MODULUS, POISSON, EDGES_HELD, Reduction(modes=5))
     (found,) = computed_strains(recipe, SPOT, "upper", [(GAUGE, "upper")])
-    case = "bricks" if isinstance(shape, PlateOfSolids) else "plate elements"
-    agrees(f"static, ten thicknesses away, {case}", "strains under a unit force", found, exact, unit="1/N", of_the_largest=tolerance)
+    case = "solid elements" if isinstance(shape, PlateOfSolids) else "plate elements"
+    agrees(
+        f"static response ten plate thicknesses from the force, {case}",
+        "strains per unit force",
+        found,
+        exact,
+        unit="1/N",
+        of_the_largest=tolerance,
+    )
 
 
 def response_with(frequency: float) -> vi.Response:
@@ -129,7 +143,7 @@ def test_a_drop(agrees: Agrees, response: vi.Response, strains: dict[str, Floats
     sensor = next(one for one in response.problem.sensors if one.name == name)
     found = response.signals(Sensor(name, "strain", sensor.direction, filter=kind, instrument=StrainGauge()))[name]
     exact = sampled(strains[name], 50e3, kind)[: len(found.value)]
-    agrees("a drop, gauges along x, y, slanting and below", "signal of strain", found.value, exact, rms=0.01)
+    agrees("impact, strain gauges along x, along y, diagonal and on the lower face", "strain signal", found.value, exact, rms=0.01)
     assert found.uncertainty < 0.01
 
 

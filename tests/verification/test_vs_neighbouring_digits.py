@@ -19,10 +19,10 @@ from vibroimpact.runs.captions import caption
 from vibroimpact.runs.tables import impact_table, ledger_table
 
 AGAINST = Against(
-    "a second drop that differs by 1e-9",
+    "second simulation with the approach speed changed by 1e-9",
     "consistency",
     "impacts on vibrating bodies",
-    "digits that both print agree; no opponent",
+    "agreement of the printed digits; no external reference",
 )
 
 
@@ -63,7 +63,7 @@ def test_printed_digits_are_those_of_both(agrees: Agrees, law: CompliantLaw, see
     off = [
         not agree(getattr(row, name), getattr(other, name)) for row, other in zip(rows, others, strict=True) for name in ("energy", "part")
     ]
-    agrees("six impacts, two laws", "printed energies that disagree", off, 0.0, absolute=0.5)
+    agrees("six impacts, two contact laws", "indicator of differing printed energies", off, 0.0, absolute=0.5)
     first, second = (re.findall(r"(about )?(-?[\d.]+(?:·10[⁻\d⁰¹²³⁴⁵⁶⁷⁸⁹]+|e[-+]\d+)?) (?:s|J)\b", one.status) for one in pair)
     for (vague, here), (other_vague, there) in zip(first, second, strict=True):
         assert vague or other_vague or agree(here, there), (pair[0].status, pair[1].status)

@@ -26,16 +26,16 @@ from vibroimpact.contact.pair import ContactPair
 from vibroimpact.contact.registry import contact_laws
 
 AGAINST = Against(
-    "two drops beside the first",
+    "finite differences of two neighbouring simulations",
     "consistency",
     "impacts on vibrating bodies",
-    "differences of two runs on either side; no opponent",
+    "central differences of two simulations; no external reference",
 )
 DOP853 = Against(
-    "SciPy's DOP853, two runs side by side",
+    "SciPy's DOP853, differences of two neighbouring integrations",
     "own independent computation",
     "impacts on vibrating bodies",
-    "tests/oracles/modal_integration.py, at 1e-12",
+    "tests/oracles/modal_integration.py, tolerance 1e-12",
 )
 
 
@@ -62,7 +62,13 @@ def test_every_law(agrees: Agrees, law: type[CompliantLaw]) -> None:
     problem = drop_on(law.example(PAIR), RICH, impacts=2, tolerance=1e-12)
     found = vi.simulate(problem).impacts["sensitivity"]
     assert found[0] > 0.9
-    agrees("every law, two impacts on a rich plate", "sensitivity", found, seen(problem), relative=5e-3)
+    agrees(
+        "all contact laws, two impacts on a plate with ten modes",
+        "sensitivity to the initial speed or height",
+        found,
+        seen(problem),
+        relative=5e-3,
+    )
 
 
 @pytest.mark.parametrize(
@@ -82,7 +88,13 @@ def test_all_that_vibrates(agrees: Agrees, law: CompliantLaw, more: dict) -> Non
     problem = drop_on(law, RICH, impacts=2, tolerance=1e-12, **more)
     # ten times as far apart: two drops of which each is integrated to 1e-11 are told apart to 1e-3 and better
     found = vi.simulate(problem).impacts["sensitivity"]
-    agrees("vibrating spheres, local elements, dents", "sensitivity", found, seen(problem, 1e-7), relative=2e-3)
+    agrees(
+        "elastic spheres, local elements, plastic dents",
+        "sensitivity to the initial speed or height",
+        found,
+        seen(problem, 1e-7),
+        relative=2e-3,
+    )
 
 
 def test_micro_impacts(agrees: Agrees) -> None:
@@ -90,7 +102,13 @@ def test_micro_impacts(agrees: Agrees) -> None:
     problem = drop_on(Hertz(stiffness=STIFFNESS), modes_of([260.0, 2100.0], [2.5, 1.5]), speed=1.0, impacts=2, tolerance=1e-11)
     response = vi.simulate(problem)
     assert response.impacts["contacts"].max() >= 2
-    agrees("a plate that kicks the ball again", "sensitivity", response.impacts["sensitivity"], seen(problem), relative=2e-3)
+    agrees(
+        "repeated contacts within one impact",
+        "sensitivity to the initial speed or height",
+        response.impacts["sensitivity"],
+        seen(problem),
+        relative=2e-3,
+    )
 
 
 def test_a_batch_is_its_drops() -> None:
@@ -122,7 +140,14 @@ def test_dop853(agrees: Agrees, law: CompliantLaw) -> None:
     ]
     largest = np.abs(growth).max(axis=1)
     assert largest[-1] > 10.0
-    agrees("first of three impacts", "sensitivity", found["sensitivity"][0], max(1.0, largest[0]), against=DOP853, relative=1e-4)
+    agrees(
+        "first of three impacts",
+        "sensitivity to the initial speed or height",
+        found["sensitivity"][0],
+        max(1.0, largest[0]),
+        against=DOP853,
+        relative=1e-4,
+    )
     # the speed at which the surfaces meet is not among what the oracle tells: it may have grown more
     assert np.all(found["sensitivity"] > largest * (1.0 - 1e-3))
     assert found["sensitivity"][-1] < 3.0 * largest[-1]

@@ -19,13 +19,13 @@ from support import one_in
 from vibroimpact.contact.laws.hertz import Hertz
 
 AGAINST = Against(
-    "Nesterenko's solitary wave",
+    "Nesterenko, solitary wave in a chain of spheres",
     "closed form",
     "several bodies",
-    "Nesterenko 1984, J. Appl. Mech. Tech. Phys. 24, 733, in the limit of long waves",
+    "Nesterenko 1984, J. Appl. Mech. Tech. Phys. 24, 733, long-wave limit",
 )
 DOP853 = Against(
-    "SciPy's DOP853 on a row of beads",
+    "SciPy's DOP853, chain of spheres",
     "own independent computation",
     "several bodies",
     "tests/oracles/moving_bodies.py",
@@ -50,7 +50,7 @@ def test_speed_of_the_wave(agrees: Agrees, chain: vi.SystemResponse) -> None:
     fastest = float(moved["33"].velocity[:, 2].max())
     wave = np.sqrt(2.0 * MODULUS / (np.pi * DENSITY * (1.0 - RATIO**2)))
     expected = (16.0 / 25.0) ** 0.2 * wave**0.8 * fastest**0.2
-    agrees("sixty steel beads", "speed of the wave", speed, expected, unit="m/s", relative=0.01)
+    agrees("chain of sixty steel spheres", "wave speed", speed, expected, unit="m/s", relative=0.01)
 
 
 def test_it_does_not_change_its_shape(chain: vi.SystemResponse) -> None:
@@ -67,7 +67,9 @@ def test_every_bead_moves_as_dop853_moves_it(agrees: Agrees) -> None:
     system = replace(row_of_balls(10, 0.5, mass=MASS, law=Hertz(stiffness=STIFFNESS)), tolerance=1e-11)
     expected, moved = integrate(system, 1e-4, 1e-6), vi.simulate_system(system, duration=1e-4).at(1e-4)
     for name in system.bodies:
-        agrees("ten beads", "velocities", moved[name].velocity, expected.velocity[name], unit="m/s", against=DOP853, absolute=1e-9)
+        agrees(
+            "chain of ten spheres", "velocities", moved[name].velocity, expected.velocity[name], unit="m/s", against=DOP853, absolute=1e-9
+        )
 
 
 @pytest.mark.parametrize("number", one_in(4, range(8, 17)))

@@ -27,22 +27,34 @@ from vibroimpact.exporting.export_format import find_export_format
 pytestmark = pytest.mark.peers
 
 LAMMPS = Against(
-    "LAMMPS, running exported drops",
+    "LAMMPS, simulation of exported drops",
     "other program",
     "programs and files",
-    "LAMMPS 22 Jul 2025, doi 10.1016/j.cpc.2021.108171; velocity Verlet, 20,000 steps a contact",
+    "LAMMPS 22 Jul 2025, Thompson et al. 2022, doi 10.1016/j.cpc.2021.108171; velocity Verlet method, 20,000 steps per contact",
 )
-YADE = Against("YADE, running exported drops", "other program", "programs and files", "YADE 2023.02a; leapfrog, 10,000 steps a contact")
+YADE = Against(
+    "YADE, simulation of exported drops", "other program", "programs and files", "YADE 2023.02a; leapfrog method, 10,000 steps per contact"
+)
 EXUDYN = Against(
-    "EXUDYN, running exported drops", "other program", "programs and files", "EXUDYN 1.13 or newer; Dormand and Prince's method at 1e-10"
+    "EXUDYN, simulation of exported drops",
+    "other program",
+    "programs and files",
+    "EXUDYN 1.13 or newer; Dormand-Prince method, tolerance 1e-10",
 )
-MUJOCO = Against("MuJoCo, running exported drops", "other program", "programs and files", "MuJoCo 3; Euler steps, 1,000 a contact")
+MUJOCO = Against(
+    "MuJoCo, simulation of exported drops", "other program", "programs and files", "MuJoCo 3; Euler method, 1,000 steps per contact"
+)
 
 PAIR = ContactPair(effective_modulus=2.4265e9, effective_radius=0.025, effective_mass=MASS, poissons_ratio=0.28)
 LINE = re.compile(r"impact (\d+): approach speed (\S+) m/s, restitution (\S+), rebound height (\S+) m, largest force (\S+) N")
 MOTION = re.compile(r"impact (\d+): velocity along the plate (\S+) (\S+) m/s, spin (\S+) (\S+) (\S+) rad/s")
 COLUMNS = ("approach_speed_m_s", "restitution_achieved", "rebound_height_m", "max_force_N")
-QUANTITIES = dict(zip(COLUMNS, ("approach speed", "restitution", "height of rebounds", "largest force"), strict=True))
+QUANTITIES = {
+    "approach_speed_m_s": ("approach speed", "m/s"),
+    "restitution_achieved": ("coefficient of restitution", ""),
+    "rebound_height_m": ("rebound height", "m"),
+    "max_force_N": ("maximum contact force", "N"),
+}
 AFTER = ("separation_velocity_x_m_s", "separation_velocity_y_m_s", "spin_x_after_rad_s", "spin_y_after_rad_s", "spin_z_after_rad_s")
 
 
@@ -80,7 +92,8 @@ def compare(
     for column in columns:
         if column == "restitution_achieved" and drop.laws[0].contact_end == "zero-force":
             continue  # told at zero force, and by the program a little later, at zero overlap; heights tell the same
-        agrees(case, QUANTITIES[column], drop.impacts[column], found[column], against=against, relative=tolerance)
+        quantity, unit = QUANTITIES[column]
+        agrees(case, quantity, drop.impacts[column], found[column], unit=unit, against=against, relative=tolerance)
 
 
 SHORT = COLUMNS[:3]  # without the force
@@ -107,7 +120,7 @@ def compare_motion(
     for column in found.keys() & set(AFTER):
         scale = RADIUS if "spin" in column else 1.0
         theirs, ours = scale * found[column][:impacts], scale * drop.impacts[column][:impacts]
-        quantity = "velocity of the surface by spin after" if "spin" in column else "velocity along the plate after"
+        quantity = "angular velocity times radius after impact" if "spin" in column else "tangential velocity after impact"
         agrees(case, quantity, ours, theirs, unit="m/s", against=against, absolute=tolerance * SLIP)
 
 
@@ -163,20 +176,28 @@ class TestLammps:
     def test_its_own_laws(self, agrees: Agrees, name: str, tmp_path: Path) -> None:
         drop = told(EXACT_IN_LAMMPS[name])
         assert find_export_format("lammps").notes(drop) == []
-        compare(agrees, LAMMPS, "laws of its own", self.run(drop, tmp_path), drop, 1e-4)
+        compare(agrees, LAMMPS, "contact laws of the program", self.run(drop, tmp_path), drop, 1e-4)
 
     def test_speed_at_the_start(self, agrees: Agrees, tmp_path: Path) -> None:
         drop = told(law("tsuji", restitution=0.7), speed=0.5)
-        compare(agrees, LAMMPS, "a speed at the start", self.run(drop, tmp_path), drop, 1e-4)
+        compare(agrees, LAMMPS, "given initial speed", self.run(drop, tmp_path), drop, 1e-4)
 
     @pytest.mark.parametrize("name", ["hunt-crossley", "lankarani-nikravesh", "jankowski", "adams-impact"])
     def test_restitution_of_other_laws(self, agrees: Agrees, name: str, tmp_path: Path) -> None:
         drop = told(EXACT_IN_EXUDYN[name], height=4.0, number=1)
-        compare(agrees, LAMMPS, "other laws, by a calibrated one", self.run(drop, tmp_path), drop, 3e-4, SHORT)
+        compare(
+            agrees,
+            LAMMPS,
+            "other contact laws, represented by a calibrated law of the program",
+            self.run(drop, tmp_path),
+            drop,
+            3e-4,
+            SHORT,
+        )
 
     def test_a_function_of_the_approach_speed(self, agrees: Agrees, calibrated: Drop, tmp_path: Path) -> None:
         """Whose values at the impacts of this drop it gets."""
-        compare(agrees, LAMMPS, "a function of the approach speed", self.run(calibrated, tmp_path), calibrated, 5e-4, SHORT)
+        compare(agrees, LAMMPS, "damping as a function of the approach speed", self.run(calibrated, tmp_path), calibrated, 5e-4, SHORT)
 
     def test_the_papers_drop(self, agrees: Agrees, tmp_path: Path) -> None:
         drop = told_case("paper:type1-variable")
@@ -187,28 +208,28 @@ class TestLammps:
         drop = oblique(friction, SLIDING)
         assert find_export_format("lammps").notes(drop) == []
         found = self.run(drop, tmp_path)
-        compare_motion(agrees, LAMMPS, "friction of its own, sliding", found, drop, 1e-8, impacts=1)
-        compare_motion(agrees, LAMMPS, "friction of its own", found, drop, 4e-4)  # whose later impacts stick at last
+        compare_motion(agrees, LAMMPS, "friction law of the program, sliding", found, drop, 1e-8, impacts=1)
+        compare_motion(agrees, LAMMPS, "friction law of the program", found, drop, 4e-4)  # whose later impacts stick at last
         drop = oblique(friction, STICKING)
-        compare_motion(agrees, LAMMPS, "friction of its own", self.run(drop, tmp_path), drop, 4e-4)
+        compare_motion(agrees, LAMMPS, "friction law of the program", self.run(drop, tmp_path), drop, 4e-4)
 
     def test_friction_under_a_spring_that_is_not_the_materials(self, agrees: Agrees, tmp_path: Path) -> None:
         """The radius of the contact is then not that of the overlap."""
         drop = oblique("mindlin", STICKING, stiffness=3.0 * FRICTION_PAIR.hertz_stiffness)
-        compare_motion(agrees, LAMMPS, "friction under another spring", self.run(drop, tmp_path), drop, 4e-4)
+        compare_motion(agrees, LAMMPS, "friction with another normal stiffness", self.run(drop, tmp_path), drop, 4e-4)
 
     def test_friction_across_gravity_and_spin_about_the_normal(self, agrees: Agrees, tmp_path: Path) -> None:
         drop = oblique("mindlin-force", STICKING, velocity=(0.3, -0.4), spin=(3.0, -8.0, 50.0), gravity=(0.5, 0.2))
         assert "leaves the spin about the normal" in " ".join(find_export_format("lammps").notes(drop))
         found = self.run(drop, tmp_path)
         assert found.pop("spin_z_after_rad_s").tolist() == [50.0] * 3
-        compare_motion(agrees, LAMMPS, "friction across gravity, spin about the normal", found, drop, 1e-3)
+        compare_motion(agrees, LAMMPS, "friction transverse to gravity, spin about the normal", found, drop, 1e-3)
 
     def test_friction_that_stands_for_another(self, agrees: Agrees, tmp_path: Path) -> None:
         drop = oblique("mdr", STICKING)
         assert "its mindlin-rescale stands for it" in " ".join(find_export_format("lammps").notes(drop))
         compare_motion(
-            agrees, LAMMPS, "friction that stands for another", self.run(drop, tmp_path), oblique("mindlin-rescale", STICKING), 4e-4
+            agrees, LAMMPS, "friction law represented by another", self.run(drop, tmp_path), oblique("mindlin-rescale", STICKING), 4e-4
         )
 
     @pytest.mark.parametrize("name", ["tsuji", "hunt-crossley"])
@@ -218,10 +239,10 @@ class TestLammps:
             find_export_format("lammps").notes(oblique("mindlin", 0.1, name))
         )
         drop = oblique("mindlin", SLIDING, name)
-        compare_motion(agrees, LAMMPS, "friction with damping, sliding", self.run(drop, tmp_path), drop, 0.008, impacts=1)
+        compare_motion(agrees, LAMMPS, "friction with normal damping, sliding", self.run(drop, tmp_path), drop, 0.008, impacts=1)
         for friction in "mindlin", "mindlin-rescale", "mindlin-force":
             drop = oblique(friction, STICKING, name)
-            compare_motion(agrees, LAMMPS, "friction with damping, sticking", self.run(drop, tmp_path), drop, 0.17)
+            compare_motion(agrees, LAMMPS, "friction with normal damping, sticking", self.run(drop, tmp_path), drop, 0.17)
 
 
 class TestYade:
@@ -237,12 +258,14 @@ class TestYade:
     @pytest.mark.parametrize("name", ["hertz", "hertz, n = 1"])
     def test_its_own_laws(self, agrees: Agrees, name: str, tmp_path: Path) -> None:
         drop = told(EXACT_IN_LAMMPS[name])
-        compare(agrees, YADE, "laws of its own", self.run(drop, tmp_path), drop, 1e-4)
+        compare(agrees, YADE, "contact laws of the program", self.run(drop, tmp_path), drop, 1e-4)
 
     @pytest.mark.parametrize("name", ["tsuji", "tsuji, 0.3", "linear", "kuwabara-kono", "hunt-crossley", "adams-impact"])
     def test_restitution_of_other_laws(self, agrees: Agrees, name: str, tmp_path: Path) -> None:
         drop = told(EXACT_IN_EXUDYN[name], height=4.0, number=1)
-        compare(agrees, YADE, "other laws, by a calibrated one", self.run(drop, tmp_path), drop, 5e-4, SHORT)
+        compare(
+            agrees, YADE, "other contact laws, represented by a calibrated law of the program", self.run(drop, tmp_path), drop, 5e-4, SHORT
+        )
 
     def test_the_papers_drop(self, agrees: Agrees, tmp_path: Path) -> None:
         drop = told_case("paper:type1-variable")
@@ -260,9 +283,9 @@ class TestYade:
             assert 1.0 - shorter < (spins[1] - spins[0]) / (spins[2] - spins[0]) < 1.0 - 0.5 * shorter
         assert f"changes the spin by up to {100.0 * shorter:.2g} % less" in " ".join(find_export_format("yade").notes(drop))
         drop = oblique("mindlin-force", STICKING)
-        compare_motion(agrees, YADE, "friction of its own, with a shorter arm", self.run(drop, tmp_path), drop, 0.02)
+        compare_motion(agrees, YADE, "friction law of the program, lever arm reduced by the overlap", self.run(drop, tmp_path), drop, 0.02)
         without = told(law("hertz"), oblique=vi.Oblique(velocity=(1.0, -0.5), spin=(3.0, -8.0, 5.0), gravity=(0.5, 0.0)))
-        compare_motion(agrees, YADE, "oblique without friction", self.run(without, tmp_path), without, 1e-5)
+        compare_motion(agrees, YADE, "oblique impact without friction", self.run(without, tmp_path), without, 1e-5)
 
     def test_friction_with_damping(self, agrees: Agrees, tmp_path: Path) -> None:
         """The radius of the contact is that of the overlap."""
@@ -272,7 +295,7 @@ class TestYade:
             assert words in notes
         found, there = self.run(drop, tmp_path), oblique("mindlin-force", STICKING, "hunt-crossley", spin=(0.0, -20.0, 5.0))
         found.pop("spin_z_after_rad_s")
-        compare_motion(agrees, YADE, "friction with damping", found, there, 0.17)
+        compare_motion(agrees, YADE, "friction with normal damping", found, there, 0.17)
 
 
 class TestExudyn:
@@ -287,12 +310,12 @@ class TestExudyn:
     def test_laws(self, agrees: Agrees, name: str, tmp_path: Path) -> None:
         drop = told(EXACT_IN_EXUDYN[name])
         found = self.run(drop, tmp_path)
-        compare(agrees, EXUDYN, "every law that it can have", found, drop, 1e-6, SHORT)
-        compare(agrees, EXUDYN, "every law that it can have", found, drop, 1e-4, ("max_force_N",))
+        compare(agrees, EXUDYN, "all contact laws that the program provides", found, drop, 1e-6, SHORT)
+        compare(agrees, EXUDYN, "all contact laws that the program provides", found, drop, 1e-4, ("max_force_N",))
 
     def test_speed_at_the_start(self, agrees: Agrees, tmp_path: Path) -> None:
         drop = told(law("hunt-crossley", restitution=0.7), speed=0.5)
-        compare(agrees, EXUDYN, "a speed at the start", self.run(drop, tmp_path), drop, 1e-6, SHORT)
+        compare(agrees, EXUDYN, "given initial speed", self.run(drop, tmp_path), drop, 1e-6, SHORT)
 
     def test_the_papers_drop(self, agrees: Agrees, tmp_path: Path) -> None:
         drop = told_case("paper:type1-variable")
@@ -300,14 +323,14 @@ class TestExudyn:
 
     def test_a_function_of_the_approach_speed(self, agrees: Agrees, calibrated: Drop, tmp_path: Path) -> None:
         """Which EXUDYN evaluates itself, at each impact."""
-        compare(agrees, EXUDYN, "a function of the approach speed", self.run(calibrated, tmp_path), calibrated, 1e-6, SHORT)
+        compare(agrees, EXUDYN, "damping as a function of the approach speed", self.run(calibrated, tmp_path), calibrated, 1e-6, SHORT)
 
     @pytest.mark.parametrize("name", ["hertz", "hunt-crossley", "adams-impact"])
     def test_friction(self, agrees: Agrees, name: str, tmp_path: Path) -> None:
         for coefficient in SLIDING, STICKING:
             drop = oblique("coulomb", coefficient, name)
             assert find_export_format("exudyn").notes(drop) == []
-            compare_motion(agrees, EXUDYN, "coulomb friction, sliding and sticking", self.run(drop, tmp_path), drop, 1e-5)
+            compare_motion(agrees, EXUDYN, "Coulomb friction, sliding and sticking", self.run(drop, tmp_path), drop, 1e-5)
 
     def test_friction_that_stands_for_another(self, agrees: Agrees, tmp_path: Path) -> None:
         drop = oblique("mdr", STICKING, velocity=(0.3, -0.4), spin=(3.0, -8.0, 50.0), gravity=(0.5, 0.2))
@@ -315,7 +338,7 @@ class TestExudyn:
         assert "its coulomb stands for it" in notes
         assert "leaves the spin about the normal" in notes
         coulomb = oblique("coulomb", STICKING, velocity=(0.3, -0.4), spin=(3.0, -8.0, 50.0), gravity=(0.5, 0.2))
-        compare_motion(agrees, EXUDYN, "friction that stands for another", self.run(drop, tmp_path), coulomb, 1e-4)
+        compare_motion(agrees, EXUDYN, "friction law represented by another", self.run(drop, tmp_path), coulomb, 1e-4)
 
 
 class TestMujoco:
@@ -341,14 +364,27 @@ class TestMujoco:
         drop = told(EXACT_IN_EXUDYN[name], number=1)
         restitution, duration = self.first_contact(drop)
         ours = achieved_restitution(drop.laws[0], MASS, drop.impacts["approach_speed_m_s"][0])
-        agrees("first impact, six laws", "restitution", ours, restitution, against=MUJOCO, relative=1e-3)
-        agrees("first impact, six laws", "duration", drop.impacts["duration_s"][0], duration, unit="s", against=MUJOCO, relative=3e-3)
+        agrees("first impact, six contact laws", "coefficient of restitution", ours, restitution, against=MUJOCO, relative=1e-3)
+        agrees(
+            "first impact, six contact laws",
+            "contact duration",
+            drop.impacts["duration_s"][0],
+            duration,
+            unit="s",
+            against=MUJOCO,
+            relative=3e-3,
+        )
 
     def test_the_papers_drop(self, agrees: Agrees) -> None:
         drop = told_case("paper:type1-variable")
         found, _ = self.first_contact(drop)
         agrees(
-            "the paper's drop, first impact", "restitution", drop.impacts["restitution_achieved"][0], found, against=MUJOCO, relative=1e-3
+            "the paper's drop, first impact",
+            "coefficient of restitution",
+            drop.impacts["restitution_achieved"][0],
+            found,
+            against=MUJOCO,
+            relative=1e-3,
         )
 
     def test_whole_drop(self, agrees: Agrees) -> None:
@@ -366,7 +402,7 @@ class TestMujoco:
         assert heights[0] == 0.06
         after = int(drop.impacts["time_s"][0] / model.opt.timestep)
         top, ours = max(heights[after + 1000 :]) - drop.radius, drop.impacts["rebound_height_m"][0] - drop.radius
-        agrees("a whole drop", "height of the rebound", ours, top, unit="m", against=MUJOCO, relative=3e-3)
+        agrees("complete drop and rebound", "rebound height", ours, top, unit="m", against=MUJOCO, relative=3e-3)
 
     def test_a_drop_without_friction_on_an_inclined_plate(self, agrees: Agrees) -> None:
         """Its own axes do not turn the velocities of its centre."""
@@ -382,7 +418,7 @@ class TestMujoco:
         while not (data.qvel[2] > 0.0 and data.qpos[2] > drop.radius):
             mujoco.mj_step(model, data)
         along = drop.impacts["separation_velocity_x_m_s"][0]
-        agrees("an inclined plate", "velocity along the plate", along, data.qvel[0], unit="m/s", against=MUJOCO, relative=1e-3)
+        agrees("inclined plate, no friction", "tangential velocity", along, data.qvel[0], unit="m/s", against=MUJOCO, relative=1e-3)
         assert data.qvel[1] == pytest.approx(-0.2, rel=1e-12)
         np.testing.assert_allclose(data.qvel[3:], [3.0, -8.0, 5.0], rtol=1e-9)
         assert data.qvel[2] == pytest.approx(drop.impacts["separation_speed_m_s"][0], rel=1e-2)

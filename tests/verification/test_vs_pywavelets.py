@@ -10,10 +10,10 @@ from agreement import Against, Agrees
 from vibroimpact.signals.features.wavelet_packets import wavelet_packet_energies
 
 AGAINST = Against(
-    "PyWavelets, wavelet packets",
+    "PyWavelets, wavelet packet decomposition",
     "other program",
     "sensors and signals",
-    "Lee and others 2019, J. Open Source Softw. 4(36), 1237, doi 10.21105/joss.01237",
+    "Lee et al. 2019, J. Open Source Softw. 4(36), 1237, doi 10.21105/joss.01237",
 )
 
 
@@ -23,7 +23,7 @@ def test_energies_of_packets(agrees: Agrees, samples: int) -> None:
     for signal, energies in zip(signals, wavelet_packet_energies(signals), strict=True):
         tree = pywt.WaveletPacket(signal, "db4", mode="periodization", maxlevel=3)
         expected = [float((node.data**2).sum()) for node in tree.get_level(3, "freq")]
-        agrees("8 to 2048 samples of noise, db4", "energies of eight packets", energies, expected, relative=1e-11)
+        agrees("8 to 2048 samples of white noise, wavelet db4", "energies of eight wavelet packets", energies, expected, relative=1e-11)
 
 
 @pytest.mark.parametrize("samples", [9, 100, 1001])

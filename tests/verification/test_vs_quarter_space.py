@@ -9,10 +9,10 @@ from oracles.quarter_space import image_factor
 from vibroimpact.cases.limits.edge import softening
 
 AGAINST = Against(
-    "finite elements of a quarter space",
+    "finite-element analysis of an elastic quarter space",
     "own independent computation",
     "Hertz and elastic contact",
-    "tests/oracles/quarter_space.py, a block of 150 distances from the edge",
+    "tests/oracles/quarter_space.py, block of 150 times the distance from the edge",
 )
 
 
@@ -22,8 +22,8 @@ def test_what_an_edge_adds(agrees: Agrees, ratio: float) -> None:
     """Within 6 %: a block of 150 distances from the edge is 2 % too stiff."""
     share = 1.0 / (2.0 / (3.0 * 3.141592653589793))  # of the compliance of Hertz's contact; then the factor of the image is left
     agrees(
-        "contact near a free edge",
-        "factor of the image",
+        "contact near a free edge, Poisson's ratio 0 and 0.3",
+        "factor of the image load",
         softening(1.0, 1.0, ratio, share),
         image_factor(ratio, reach=150.0),
         relative=0.06,

@@ -21,16 +21,16 @@ from vibroimpact.structures.sound_paths import Listener, SoundPaths, sound_paths
 from vibroimpact.structures.supports.edge import EDGES, Edge
 
 AGAINST = Against(
-    "Rayleigh's integral: a piston, a mode, an impact",
+    "Rayleigh integral, baffled circular piston",
     "closed form",
     "sensors and signals",
-    "Pierce, Acoustics, 1981, section 5.7; modes to 300 kHz by tests/oracles/measuring_chain.py",
+    "Pierce, Acoustics, 1981, section 5.7",
 )
 QUADRATURE = Against(
-    "Rayleigh's integral by quadrature",
+    "Rayleigh integral by numerical quadrature, vibrating plate",
     "own independent computation",
     "sensors and signals",
-    "SciPy's dblquad; the midpoint rule at two million samples a second",
+    "SciPy's dblquad; midpoint rule with modes to 300 kHz, sampled at 2 MHz, tests/oracles/measuring_chain.py",
 )
 
 
@@ -62,8 +62,8 @@ def test_axis_of_a_piston(agrees: Agrees, distance: float) -> None:
     k = 2.0 * np.pi * FREQUENCIES / SPEED
     exact = 2.0 * SPEED * np.abs(np.sin(0.5 * k * (np.hypot(distance, RADIUS) - distance)))
     agrees(
-        "axis of a piston, 10 to 500 mm",
-        "pressure over density and velocity, 100 Hz to 25 kHz",
+        "axis of a circular piston, distances 10 to 500 mm",
+        "sound pressure over air density and piston velocity, 100 Hz to 25 kHz",
         found,
         exact,
         unit="m/s",
@@ -78,7 +78,13 @@ def test_far_field_of_a_piston(agrees: Agrees, angle: float) -> None:
     there = listener(far * np.cos(angle), (far * np.sin(angle), 0.0))
     found = 2.0 * np.pi * FREQUENCIES * np.abs(at_frequencies(sound_paths(PISTON, there, RISING))[0])
     x, ahead = k * RADIUS * np.sin(angle), SPEED * k * RADIUS**2 / (2.0 * far)
-    agrees("far field of a piston", "pressure over that ahead", found / ahead, np.abs(2.0 * j1(x) / x), absolute=1e-3)
+    agrees(
+        "far field of a circular piston",
+        "directivity, sound pressure over that on the axis",
+        found / ahead,
+        np.abs(2.0 * j1(x) / x),
+        absolute=1e-3,
+    )
 
 
 def listener(distance: float, place: tuple[float, float] = (0.0, 0.0), side: Any = "upper") -> Listener:
@@ -116,7 +122,14 @@ def test_mode_of_a_plate(agrees: Agrees, shape: Any, tolerance: float, side: Any
         exact = outwards * 2.0 / np.sqrt(plate.mass) * complex(*parts) / (2.0 * np.pi)
         sign = np.sign(model.at(np.array([[0.04, 0.03]]))[0][mode, 0, 2] * plate.at(0.04, 0.03)[number])
         part = abs(sign * found[mode] - exact) / abs(exact)
-        agrees(f"three modes, {type(shape).__name__}", "pressure, difference over it", part, 0.0, against=QUADRATURE, absolute=tolerance)
+        agrees(
+            f"three modes of a plate, {type(shape).__name__}",
+            "relative difference of the sound pressure",
+            part,
+            0.0,
+            against=QUADRATURE,
+            absolute=tolerance,
+        )
 
 
 @pytest.fixture(scope="module")
@@ -183,6 +196,6 @@ def test_an_impact(
 
     kept = plate.omega < 2.0 * np.pi * 50e3
     same = exact(np.where(kept[:, None], all_modes, 0.0))
-    agrees("an impact, three places, modes kept", "signal of pressure", found.value, same, against=QUADRATURE, rms=1e-3)
+    agrees("impact, three microphone positions, retained modes", "sound pressure signal", found.value, same, against=QUADRATURE, rms=1e-3)
     whole = exact(all_modes)
     assert rms(found.value - whole) / rms(whole) < found.uncertainty < 0.03

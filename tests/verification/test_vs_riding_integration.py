@@ -17,10 +17,10 @@ from vibrating import drop_on, modes_of, oracle
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
 
 AGAINST = Against(
-    "SciPy's DOP853, spheres that ride on what vibrates",
+    "SciPy's DOP853, spheres in persistent contact with a vibrating plate",
     "own independent computation",
     "impacts on vibrating bodies",
-    "tests/oracles/modal_integration.py and riding_integration.py, at 1e-12",
+    "tests/oracles/modal_integration.py and riding_integration.py, tolerance 1e-12",
 )
 
 
@@ -53,9 +53,9 @@ def test_a_thin_plate_throws_its_ball_again(agrees: Agrees) -> None:
     found = (response.impacts[name][0] for name in ("duration_s", "separation_speed_m_s", "max_force_N"))
     expected = (visit[-1].end, visit[-1].separation_speed, max(touch.max_force for touch in visit))
     for quantity, unit, ours, theirs in zip(
-        ("duration", "separation speed", "largest force"), ("s", "m/s", "N"), found, expected, strict=True
+        ("contact duration", "separation speed", "maximum contact force"), ("s", "m/s", "N"), found, expected, strict=True
     ):
-        agrees("a thin plate throws its ball again", quantity, ours, theirs, unit=unit, relative=1e-6)
+        agrees("repeated contacts with a thin vibrating plate", quantity, ours, theirs, unit=unit, relative=1e-6)
     assert response.impacts["separation_speed_m_s"][0] == pytest.approx(0.98468, rel=1e-4)
 
 
@@ -70,10 +70,17 @@ def test_springs_of_3_hz_give_a_heavy_ball_back(agrees: Agrees) -> None:
     assert response.impacts["contacts"].tolist() == [10]
     duration, speed = (float(response.impacts[name][0]) for name in ("duration_s", "separation_speed_m_s"))
     # they part without any speed between them, so that the moment is known less well than the flight that begins there
-    case, exact = "a heavy ball on springs of 3 Hz, ten contacts", visit[-1].separation_speed + 9.8 * visit[-1].end
-    agrees(case, "speed with which the flight begins", speed + 9.8 * duration, exact, unit="m/s", relative=1e-8)
+    case, exact = "heavy sphere on a spring-supported plate of 3 Hz, ten contacts", visit[-1].separation_speed + 9.8 * visit[-1].end
+    agrees(
+        case,
+        "separation speed, extrapolated ballistically to the start of the impact",
+        speed + 9.8 * duration,
+        exact,
+        unit="m/s",
+        relative=1e-8,
+    )
     agrees(case, "separation speed", speed, visit[-1].separation_speed, unit="m/s", relative=2e-6)
-    agrees(case, "duration", duration, visit[-1].end, unit="s", relative=2e-6)
+    agrees(case, "contact duration", duration, visit[-1].end, unit="s", relative=2e-6)
     assert visit[-1].separation_speed == pytest.approx(4.0449, rel=1e-4)
 
 
@@ -95,7 +102,13 @@ def at_rest_of(agrees: Agrees, drops: dict[str, vi.Problem]) -> int:
         gaps = largest_gaps([balls[seed] for seed in some], 1.0)
         assert not [seed for seed, gap in zip(some, gaps, strict=True) if gap > balls[seed].sag]
         parts = [max(gap, 0.0) / balls[seed].sag for seed, gap in zip(some, gaps, strict=True)]
-        agrees("drops at random, a second after they rest", "gap, over the static indentation", parts, 0.0, absolute=1.0)
+        agrees(
+            "random drops, one second after the detection of rest",
+            "maximum gap, normalized by the static indentation",
+            parts,
+            0.0,
+            absolute=1.0,
+        )
     return len(balls)
 
 

@@ -30,13 +30,13 @@ from vibroimpact.results.folder import write_result
 from vibroimpact.results.result import result_of
 
 AGAINST = Against(
-    "the same case between rigid bodies, by the parser of Adams' files",
+    "strict parser of Adams files and SciPy's DOP853, same case with rigid bodies",
     "own independent computation",
     "programs and files",
-    "tests/oracles/adams.py and SciPy's DOP853",
+    "Adams Solver manual, statements and functions; tests/oracles/adams.py; Adams itself was not run",
 )
 PEERS = Against(
-    "LAMMPS and EXUDYN, running exported elastic cases",
+    "LAMMPS and EXUDYN, simulation of exported elastic cases",
     "other program",
     "programs and files",
     "LAMMPS 22 Jul 2025; EXUDYN 1.13 or newer",
@@ -128,13 +128,13 @@ def test_adams_gives_each_impact_its_own_damping(
     agrees: Agrees, to: str, place: Path, alone: dict[str, np.ndarray], tmp_path: Path
 ) -> None:
     bounces = moved_by_adams(exported(place / "elastic", to, tmp_path))
-    for name, column in {
-        "approach_speed": "approach_speed_m_s",
-        "separation_speed": "separation_speed_m_s",
-        "largest_force": "max_force_N",
-    }.items():
+    for name, quantity, unit, column in (
+        ("approach_speed", "approach speed", "m/s", "approach_speed_m_s"),
+        ("separation_speed", "separation speed", "m/s", "separation_speed_m_s"),
+        ("largest_force", "maximum contact force", "N", "max_force_N"),
+    ):
         theirs = [getattr(bounce, name) for bounce in bounces]
-        agrees("a damping for each impact", name.replace("_", " "), alone[column], theirs, relative=1e-7)
+        agrees("different damping coefficient at each impact", quantity, alone[column], theirs, unit=unit, relative=1e-7)
 
 
 @pytest.mark.parametrize(
@@ -197,7 +197,13 @@ def test_the_remedy_that_is_named_rebounds_as_the_run(agrees: Agrees, place: Pat
     bounces = moved_by_adams(exported(tmp_path / "found", "adams", tmp_path))
     here = vi.read_result(place / "elastic").impacts
     theirs = [bounce.separation_speed / bounce.approach_speed for bounce in bounces]
-    agrees("calibrated to an elastic run", "restitution", here["restitution_achieved"], theirs, absolute=2e-4)
+    agrees(
+        "rigid bodies calibrated to an elastic simulation",
+        "coefficient of restitution",
+        here["restitution_achieved"],
+        theirs,
+        absolute=2e-4,
+    )
 
 
 @pytest.mark.parametrize("model", ["rigid", "elastic"])
@@ -210,9 +216,9 @@ def test_a_function_is_taken_at_the_speeds_of_rigid_bodies(agrees: Agrees, to: s
     drop = format.prepare(drop_of_result(vi.read_result(place / model), case, function))
     bounces = moved_by_adams({Path(name).suffix: text.decode() for name, text in format.write(drop).items()})
     assert len(bounces) == 4
-    case, theirs = "a function of the approach speed", [(bounce.approach_speed, bounce.largest_force) for bounce in bounces]
+    case, theirs = "damping as a function of the approach speed", [(bounce.approach_speed, bounce.largest_force) for bounce in bounces]
     agrees(case, "approach speed", drop.impacts["approach_speed_m_s"], [speed for speed, _ in theirs], unit="m/s", relative=1e-7)
-    agrees(case, "largest force", drop.impacts["max_force_N"], [force for _, force in theirs], unit="N", relative=1e-7)
+    agrees(case, "maximum contact force", drop.impacts["max_force_N"], [force for _, force in theirs], unit="N", relative=1e-7)
 
 
 @pytest.mark.peers
@@ -223,4 +229,11 @@ def test_the_program_itself(agrees: Agrees, to: str, tolerance: float, place: Pa
     command = [str(Path(sys.executable).parent / "lmp"), "-log", "none", "-in"] if to == "lammps" else [sys.executable]
     done = subprocess.run([*command, file.name], cwd=file.parent, capture_output=True, text=True, timeout=60, check=True)
     found = [float(value) for value in re.findall(r"impact \d+: .*restitution (\S+),", done.stdout)]
-    agrees(f"an elastic case, run by {to}", "restitution", alone["restitution_achieved"], found, against=PEERS, relative=tolerance)
+    agrees(
+        f"elastic case, exported with rigid bodies to {to}",
+        "coefficient of restitution",
+        alone["restitution_achieved"],
+        found,
+        against=PEERS,
+        relative=tolerance,
+    )

@@ -21,10 +21,10 @@ from vibroimpact.contact.laws.thornton import Thornton
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 
 AGAINST = Against(
-    "the solver of rigid bodies",
+    "rigid-body solver of this package",
     "consistency",
     "impacts on vibrating bodies",
-    "modes a million times stiffer; another solver of this package, no opponent",
+    "limit of modes a million times stiffer; another solver of this package, no external reference",
 )
 
 
@@ -56,7 +56,13 @@ def misses(law: ContactLaw, factor: float, damping: float, inside: bool) -> tupl
 @pytest.mark.parametrize("law", [*LAWS, *OTHERS], ids=lambda law: law.name)
 def test_stiff_bodies_are_rigid(agrees: Agrees, law: ContactLaw, damping: float, inside: bool) -> None:
     error, response = misses(law, 1e6, damping, inside)
-    agrees("five laws, three impacts, both bodies stiffened", "largest relative difference of six columns", error, 0.0, absolute=1e-10)
+    agrees(
+        "five contact laws, three impacts, both bodies stiffened",
+        "maximum relative difference of six impact quantities",
+        error,
+        0.0,
+        absolute=1e-10,
+    )
     assert np.all(response.impacts["contacts"] == 1)
     assert response.energy["closure_relative"] < 1e-9
 
@@ -65,7 +71,7 @@ def test_stiff_bodies_are_rigid(agrees: Agrees, law: ContactLaw, damping: float,
 def test_the_error_is_the_compliance_that_is_left(agrees: Agrees, law: ContactLaw) -> None:
     errors = [misses(law, factor, 1.0, True)[0] for factor in (1e3, 1e4)]
     assert errors[0] < 1e-5
-    agrees("frequencies ten times higher", "error over the smaller error", errors[0] / errors[1], 100.0, relative=0.15)
+    agrees("natural frequencies ten times higher", "ratio of the errors (second order: 100)", errors[0] / errors[1], 100.0, relative=0.15)
 
 
 @pytest.mark.parametrize("law", LAWS, ids=lambda law: law.name)

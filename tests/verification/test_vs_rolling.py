@@ -15,16 +15,16 @@ from vibroimpact.dynamics.oblique.rolling import LyingSpheres
 from vibroimpact.dynamics.oblique.state import Sphere, State
 
 AGAINST = Against(
-    "rigid spheres that slip and roll",
+    "sliding and rolling of rigid spheres, closed form",
     "closed form",
     "oblique impact and friction",
-    "sliding ends with 5/7 of the velocity; inclines; rolling resistance; twisting by Hertz's pressure",
+    "rolling begins at 5/7 of the sliding velocity; inclines; rolling resistance; twisting friction under Hertz pressure",
 )
 SCIPY = Against(
-    "SciPy's Radau on centre and spin",
+    "SciPy's Radau, translation and rotation of a sphere",
     "own independent computation",
     "oblique impact and friction",
-    "friction that changes over 1e-6 m/s at rest, in the test itself",
+    "friction regularized over a sliding velocity of 1e-6 m/s, in the test",
 )
 
 
@@ -47,9 +47,9 @@ def test_sliding_ends_in_rolling_with_five_sevenths(agrees: Agrees) -> None:
     """After 2 v / (7 mu g) the sphere rolls; until then it has gone 12 v^2 / (49 mu g)."""
     until = 2.0 * 1.4 / (7.0 * 0.1 * GRAVITY)
     state, _ = after(until, (1.4, 0.0))
-    agrees("sliding ends in rolling", "velocity", state.velocity[:, 0], [1.0, 0.0], unit="m/s", absolute=1e-12)
+    agrees("transition from sliding to rolling", "velocity", state.velocity[:, 0], [1.0, 0.0], unit="m/s", absolute=1e-12)
     way = 12.0 * 1.4**2 / (49.0 * 0.1 * GRAVITY)
-    agrees("sliding ends in rolling", "way until then", state.position[0, 0], way, unit="m", relative=1e-12)
+    agrees("transition from sliding to rolling", "distance to the transition", state.position[0, 0], way, unit="m", relative=1e-12)
     later, force = after(until + 2.0, (1.4, 0.0))
     assert later.position[0, 0] == pytest.approx(state.position[0, 0] + 2.0, rel=1e-12)
     assert later.spin[1, 0] == pytest.approx(1.0 / RADIUS, rel=1e-12)
@@ -59,7 +59,7 @@ def test_sliding_ends_in_rolling_with_five_sevenths(agrees: Agrees) -> None:
 def test_back_spin_brings_the_sphere_back(agrees: Agrees) -> None:
     """With the spin -5 v / R the slip is six times the velocity, and the sphere rolls back with 1 - 6 2/7 of it."""
     state, _ = after(10.0, (1.0, 0.0), (0.0, -5.0 / RADIUS, 0.0))
-    agrees("back spin", "velocity", state.velocity[0, 0], 1.0 - 6.0 * 2.0 / 7.0, unit="m/s", relative=1e-12)
+    agrees("sliding with backspin", "velocity", state.velocity[0, 0], 1.0 - 6.0 * 2.0 / 7.0, unit="m/s", relative=1e-12)
 
 
 @pytest.mark.parametrize("mu", [0.5, 0.12, 0.02])
@@ -69,8 +69,8 @@ def test_down_an_incline(agrees: Agrees, mu: float) -> None:
     state, force = after(time, (0.0, 0.0), mu=mu, angle=angle)
     rolls = 2.0 / 7.0 * np.tan(angle) <= mu
     down = GRAVITY * (5.0 / 7.0 * np.sin(angle) if rolls else np.sin(angle) - mu * np.cos(angle))
-    agrees("down an incline, rolling and slipping", "velocity", state.velocity[0, 0], down * time, unit="m/s", relative=1e-12)
-    agrees("down an incline, rolling and slipping", "way", state.position[0, 0], 0.5 * down * time**2, unit="m", relative=1e-12)
+    agrees("rolling and sliding down an incline", "velocity", state.velocity[0, 0], down * time, unit="m/s", relative=1e-12)
+    agrees("rolling and sliding down an incline", "distance", state.position[0, 0], 0.5 * down * time**2, unit="m", relative=1e-12)
     assert force[0, 0] == pytest.approx(-MASS * (GRAVITY * np.sin(angle) - down), rel=1e-12)
     assert (state.spin[1, 0] * RADIUS == pytest.approx(state.velocity[0, 0])) == rolls
 
@@ -102,8 +102,8 @@ def test_across_an_incline_against_an_integration(agrees: Agrees, mu: float, ang
     found = integrated(start, spin, time, mu, angle)
     state, _ = after(time, start, (*spin, 0.0), mu=mu, angle=angle)
     moved = [*state.position[:, 0], *state.velocity[:, 0]]
-    agrees("across an incline", "place and velocity", moved, found[:4], unit="m, m/s", against=SCIPY, absolute=2e-6)
-    agrees("across an incline", "spin", state.spin[:2, 0], found[4:], unit="rad/s", against=SCIPY, absolute=2e-4)
+    agrees("sliding across an incline", "position and velocity", moved, found[:4], unit="m, m/s", against=SCIPY, absolute=2e-6)
+    agrees("sliding across an incline", "angular velocity", state.spin[:2, 0], found[4:], unit="rad/s", against=SCIPY, absolute=2e-4)
 
 
 def resting(**changes: Any) -> vi.Response:
@@ -190,7 +190,7 @@ def test_rolling_resistance_brings_the_sphere_to_rest(agrees: Agrees) -> None:
     for time in (until * (1.0 + 1e-15), until + 5.0):
         state, force = after(time, **rolls)
         way = 7.0 * 0.7**2 / (10.0 * 0.02 * GRAVITY)
-        agrees("rolling resistance", "way to rest", state.position[0, 0], way, unit="m", relative=1e-12)
+        agrees("rolling to rest by rolling resistance", "distance to rest", state.position[0, 0], way, unit="m", relative=1e-12)
         np.testing.assert_allclose([*state.velocity[:, 0], *(RADIUS * state.spin[:, 0])], 0.0, atol=1e-15)
         assert force[0, 0] == 0.0
 
@@ -213,7 +213,7 @@ def test_a_sphere_that_rolls_up_a_slope(agrees: Agrees, rolling: float) -> None:
     state, _ = after(speed / up + later, (-speed, 0.0), (0.0, -speed / RADIUS, 0.0), mu=0.6, angle=angle, rolling=rolling)
     assert state.velocity[0, 0] == pytest.approx(max(down, 0.0) * later, rel=1e-12, abs=1e-15)
     place = -0.5 * speed**2 / up + 0.5 * max(down, 0.0) * later**2
-    agrees("up a slope, with rolling resistance", "place", state.position[0, 0], place, unit="m", relative=1e-12)
+    agrees("rolling up an incline, with rolling resistance", "position", state.position[0, 0], place, unit="m", relative=1e-12)
 
 
 def test_sliding_with_rolling_resistance_ends_in_rolling() -> None:
@@ -258,8 +258,24 @@ def test_rolling_resistance_against_an_integration(
         found = integrated(velocity, spin, time, mu, angle, rolling)
         state, _ = after(time, velocity, (*spin, 0.0), mu=mu, angle=angle, rolling=rolling)
         moved, turned = [*state.position[:, 0], *state.velocity[:, 0]], RADIUS * state.spin[:2, 0]
-        agrees("with rolling resistance", "place and velocity", moved, found[:4], unit="m, m/s", against=SCIPY, absolute=5e-6)
-        agrees("with rolling resistance", "velocity by spin", turned, found[4:] * RADIUS, unit="m/s", against=SCIPY, absolute=5e-6)
+        agrees(
+            "sliding and rolling with rolling resistance",
+            "position and velocity",
+            moved,
+            found[:4],
+            unit="m, m/s",
+            against=SCIPY,
+            absolute=5e-6,
+        )
+        agrees(
+            "sliding and rolling with rolling resistance",
+            "angular velocity times radius",
+            turned,
+            found[4:] * RADIUS,
+            unit="m/s",
+            against=SCIPY,
+            absolute=5e-6,
+        )
 
 
 def test_a_run_comes_to_rest_by_rolling_resistance() -> None:
@@ -319,9 +335,16 @@ def test_an_impact_resists_rolling(agrees: Agrees, friction: str) -> None:
         oblique = vi.Oblique(velocity=(speed, 0.0), spin=(0.0, spin / RADIUS, 0.0), friction=law)
         impacts = resting(height=None, speed=2.0, gravity=0.0, impacts=1, duration=None, oblique=oblique).impacts
         impulse = 2.0 + impacts["separation_speed_m_s"][0]
-        case, turned = "an impact that resists rolling", RADIUS * impacts["spin_y_after_rad_s"]
-        agrees(case, "velocity along the plate", impacts["separation_velocity_x_m_s"], speed + push * impulse, unit="m/s", relative=1e-8)
-        agrees(case, "velocity of the surface by spin", turned, spin + turn * impulse, unit="m/s", relative=1e-8)
+        case, turned = "impact with rolling resistance", RADIUS * impacts["spin_y_after_rad_s"]
+        agrees(
+            case,
+            "tangential velocity after impact",
+            impacts["separation_velocity_x_m_s"],
+            speed + push * impulse,
+            unit="m/s",
+            relative=1e-8,
+        )
+        agrees(case, "angular velocity times radius after impact", turned, spin + turn * impulse, unit="m/s", relative=1e-8)
 
 
 def test_a_contact_with_an_area_resists_twisting(agrees: Agrees) -> None:
@@ -335,7 +358,14 @@ def test_a_contact_with_an_area_resists_twisting(agrees: Agrees) -> None:
     until = 3.0 * 0.4 * MASS * RADIUS**2 / moment
     for time, left in ((0.25 * until, 2.25), (until, 0.0), (3.0 * until, 0.0)):
         state, _ = LyingSpheres(ball, start, law, GRAVITY * one, time * one).at(np.array([0]), time * one)
-        agrees("a sphere that lies and spins", "spin about the normal", state.spin[2, 0], left, unit="rad/s", absolute=1e-12)
+        agrees(
+            "sphere at rest on the plate, spinning about the normal",
+            "angular velocity about the normal",
+            state.spin[2, 0],
+            left,
+            unit="rad/s",
+            absolute=1e-12,
+        )
     state, _ = LyingSpheres(ball, start, vi.find_friction_law("coulomb")(coefficient=0.2), GRAVITY * one, one).at(np.array([0]), one)
     assert state.spin[2, 0] == 3.0
 
@@ -362,8 +392,15 @@ def test_gravity_across_the_slip_turns_the_friction_of_an_impact(agrees: Agrees,
     found = solve_ivp(rates, (0.0, duration), start, method="Radau", rtol=1e-9, atol=1e-13, max_step=duration / 200.0).y[:, -1]
     across = np.array([impacts["separation_velocity_y_m_s"][0], RADIUS * impacts["spin_x_after_rad_s"][0]])
     without = gravity[1] * duration
-    case = f"gravity across the slip of an impact, coefficient {mu}"
-    agrees(case, "velocity and spin across, over gravity's", across / without, found[[3, 5]] / without, against=SCIPY, absolute=tolerance)
+    case = f"impact with gravity transverse to sliding, coefficient of friction {mu}"
+    agrees(
+        case,
+        "transverse velocity and angular velocity times radius, normalized by gravity times contact duration",
+        across / without,
+        found[[3, 5]] / without,
+        against=SCIPY,
+        absolute=tolerance,
+    )
 
 
 def test_a_slip_of_rounding_is_none() -> None:

@@ -15,10 +15,10 @@ from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.pair import ContactPair
 
 AGAINST = Against(
-    "SciPy's DOP853, restarted at the deepest point",
+    "SciPy's DOP853, restarted at maximum indentation",
     "own independent computation",
     "damping laws",
-    "scipy.integrate.solve_ivp on the force of each law, good to about 1e-7 here",
+    "scipy.integrate.solve_ivp with the force of each law, accurate to about 1e-7",
 )
 
 
@@ -53,4 +53,6 @@ def test_restitution(agrees: Agrees, law: type[CompliantLaw], speed: float) -> N
 
     _, final = leg(after, [deepest, -1e-12], speed, [out])
     found = vi.integrated_restitution(one, 0.09, speed)
-    agrees("every law that has a force, 0.3 and 6 m/s", "restitution", found, -final / speed, absolute=2e-6)
+    agrees(
+        "all laws with a contact force, approach speeds 0.3 and 6 m/s", "coefficient of restitution", found, -final / speed, absolute=2e-6
+    )

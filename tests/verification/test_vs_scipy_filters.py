@@ -20,16 +20,16 @@ from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer
 from vibroimpact.dynamics.sensors.sensor import Sensor
 
 AGAINST = Against(
-    "SciPy's filters on many times more samples",
+    "SciPy filters on oversampled signals",
     "other program",
     "sensors and signals",
     "scipy.signal: Butterworth sections, Kaiser windows, bilinear integrators",
 )
 FORM = Against(
-    "what a filter is to do, in closed form",
+    "specified filter response, closed form",
     "closed form",
     "sensors and signals",
-    "a tone in band passes, one above it is stopped; a stiff mode is a spring",
+    "pass band, stop band, and quasi-static response of a stiff mode",
 )
 
 
@@ -65,8 +65,8 @@ def test_signals_of_several_impacts(agrees: Agrees, response: vi.Response, kind:
     exact = decimated(full, kind)[: len(found)]
     heard = slice(None) if kind == "butterworth" else slice(0, -HALF_LENGTH)  # a converter hears what comes after the run
     largest = float(np.abs(exact).max())
-    case = f"several impacts, {kind}"
-    agrees(case, f"signal of {quantity}, over its largest", found[heard] / largest, exact[heard] / largest, absolute=2e-3)
+    case = f"several impacts, filter {kind}"
+    agrees(case, f"{quantity} signal, normalized by its maximum", found[heard] / largest, exact[heard] / largest, absolute=2e-3)
 
 
 @pytest.fixture(scope="module", params=one_in(2, [0.03, 0.001]))
@@ -115,8 +115,8 @@ def test_a_plate_that_carries_the_sphere(
     for heard, most in windows:
         heard = heard[::32]
         exact, part = value[::32][heard], found[: len(heard)][heard]
-        case = f"a plate {'on which the sphere comes to lie' if most > 1e-3 else 'that carries the sphere'}, {kind}"
-        agrees(case, "signal", part, exact, rms=most)
+        case = f"sphere {'coming to rest' if most > 1e-3 else 'at rest'} on a vibrating plate, filter {kind}"
+        agrees(case, "sensor signal", part, exact, rms=most)
 
 
 @pytest.mark.parametrize("kind", one_in(3, ["sigma-delta", "butterworth", "none"]))
@@ -129,7 +129,9 @@ def test_an_overdriven_accelerometer(agrees: Agrees, response: vi.Response, kind
     found = response.signals(Sensor("a", rate=RATE, filter=kind, instrument=Accelerometer(**meter, range=end)))["a"]
     heard = slice(0, -HALF_LENGTH) if kind == "sigma-delta" else slice(None)
     expected = exact[: len(found.value)][heard]
-    agrees(f"an overdriven accelerometer, {kind}", "signal", found.value[heard], expected, unit="m/s²", absolute=0.01 * end)
+    agrees(
+        f"accelerometer beyond its range, filter {kind}", "sensor signal", found.value[heard], expected, unit="m/s²", absolute=0.01 * end
+    )
     assert found.peak == pytest.approx(np.abs(full).max(), rel=0.02)
     assert found.overload_time == pytest.approx((np.abs(full) > end).sum() / (FINER * RATE), rel=0.03)
 
@@ -150,8 +152,15 @@ def test_a_tone_passes_or_is_stopped(agrees: Agrees, frequency: float, seen: flo
     found, bare = (response.signals(Sensor("a", rate=RATE, filter=kind))["a"] for kind in ("sigma-delta", "none"))
     later = found.time > 2.0 * HALF_LENGTH / RATE
     largest = float(np.abs(bare.value).max())
-    case = "a tone that passes or is stopped"
-    agrees(case, "signal, over its largest", found.value[later] / largest, seen * bare.value[later] / largest, against=FORM, absolute=2e-4)
+    case = "tones in the pass band and in the stop band"
+    agrees(
+        case,
+        "signal, normalized by its maximum",
+        found.value[later] / largest,
+        seen * bare.value[later] / largest,
+        against=FORM,
+        absolute=2e-4,
+    )
 
 
 def test_a_mode_above_half_the_rate_acts_in_band_as_below_its_resonance(agrees: Agrees) -> None:
@@ -166,6 +175,6 @@ def test_a_mode_above_half_the_rate_acts_in_band_as_below_its_resonance(agrees: 
     times = np.arange(len(found)) / rate
     filtered = np.array([(force * kernel(rate * (time - fine))).sum() * rate * 1e-7 for time in times])
     compliance = (20.0 / (2.0 * np.pi * 80e3)) ** 2
-    case, exact = "a mode far above half the rate acts as a spring", -compliance * filtered
-    agrees(case, "signal of displacement", found, exact, unit="m", against=FORM, absolute=0.01 * compliance * filtered.max())
+    case, exact = "mode far above the Nyquist frequency, quasi-static response", -compliance * filtered
+    agrees(case, "displacement signal", found, exact, unit="m", against=FORM, absolute=0.01 * compliance * filtered.max())
     assert np.abs(found).max() > 0.1 * compliance * force.max()

@@ -22,16 +22,16 @@ from vibroimpact.dynamics.sensors.sensor import Sensor
 from vibroimpact.structures.modal_model import ModalBasis
 
 AGAINST = Against(
-    "SciPy's filters: a geophone",
+    "SciPy filters, geophone",
     "other program",
     "sensors and signals",
-    "scipy.signal.cont2discrete and butter, on samples taken 512 times faster",
+    "scipy.signal.cont2discrete and butter, on 512-fold oversampled signals",
 )
 FORM = Against(
-    "closed forms of a geophone",
+    "geophone response, closed form",
     "closed form",
     "sensors and signals",
-    "gain of a coil on a spring; its answer to a step of velocity",
+    "frequency response and velocity step response of a moving-coil geophone",
 )
 
 
@@ -86,7 +86,13 @@ def test_geophone(agrees: Agrees, response: vi.Response, geophone: Geophone, kin
     found = response.signals(Sensor("a", "voltage", rate=RATE, filter=kind, instrument=geophone))["a"].value
     heard = slice(0, -HALF_LENGTH) if kind == "sigma-delta" else slice(None)
     largest, expected = float(np.abs(exact).max()), exact[::FINER][: len(found)]
-    agrees(f"several impacts, filter {kind}", "voltage, over its largest", found[heard] / largest, expected[heard] / largest, absolute=1e-6)
+    agrees(
+        f"several impacts, filter {kind}",
+        "voltage, normalized by its maximum",
+        found[heard] / largest,
+        expected[heard] / largest,
+        absolute=1e-6,
+    )
 
 
 @pytest.mark.parametrize("frequency", [3.0, 10.0, 40.0, 2e3])
@@ -103,7 +109,7 @@ def test_gain_and_phase_of_a_geophone(agrees: Agrees, frequency: float) -> None:
     s, omega, corner = 2j * np.pi * frequency, 2.0 * np.pi * 10.0, 2.0 * np.pi * 500.0
     gain = 27.6 * s**2 / (s**2 + 1.2 * omega * s + omega**2) * corner**2 / (s**2 + np.sqrt(2.0) * corner * s + corner**2)
     off = np.conj(after) / np.conj(before) / gain - 1.0
-    agrees("gain and phase, 3 Hz to 2 kHz", "complex gain over theirs, less one", abs(off), 0.0, against=FORM, absolute=1e-6)
+    agrees("frequency response, 3 Hz to 2 kHz", "relative difference of the complex gain", abs(off), 0.0, against=FORM, absolute=1e-6)
 
 
 @pytest.mark.parametrize("kind", ["none", "sigma-delta"])
@@ -121,7 +127,14 @@ def test_a_geophone_on_a_plate_that_moves_on(agrees: Agrees, kind: str) -> None:
     exact = 27.6 * speed * np.exp(-ratio * omega * since) * (np.cos(root * omega * since) - ratio / root * np.sin(root * omega * since))
     later = found.time > float(response.impacts["duration_s"][0]) + (0.0 if kind == "none" else HALF_LENGTH / 50e3)
     part = abs(27.6 * speed)
-    agrees("a step of velocity", "voltage, over its largest", found.value[later] / part, exact[later] / part, against=FORM, absolute=1e-4)
+    agrees(
+        "response to a velocity step",
+        "voltage, normalized by its maximum",
+        found.value[later] / part,
+        exact[later] / part,
+        against=FORM,
+        absolute=1e-4,
+    )
 
 
 def noisy(**parts: object) -> np.ndarray:

@@ -16,7 +16,7 @@ from vibroimpact.signals.envelope import hilbert_envelope
 from vibroimpact.signals.features.intrinsic_modes import intrinsic_modes
 
 AGAINST = Against(
-    "SciPy and NumPy, features of signals",
+    "SciPy and NumPy, signal features",
     "other program",
     "sensors and signals",
     "scipy.signal.hilbert, scipy.stats, PchipInterpolator, scipy.fft.dct",
@@ -31,7 +31,7 @@ def test_the_envelope(agrees: Agrees, samples: int) -> None:
     signals = RANDOM.standard_normal((4, samples))
     padded = next_fast_len(2 * samples, real=True)
     exact = np.abs(hilbert(signals, N=padded + padded % 2))[:, :samples]
-    agrees("1 to 1001 samples of noise", "envelope", hilbert_envelope(signals), exact, relative=1e-12)
+    agrees("1 to 1001 samples of white noise", "Hilbert envelope", hilbert_envelope(signals), exact, relative=1e-12)
 
 
 def test_the_envelope_is_that_between_silences() -> None:
@@ -53,7 +53,7 @@ def test_the_cubic(agrees: Agrees) -> None:
         knots[number, RANDOM.choice(300, 1 + 20 * number, replace=False)] = True
     found = cubic_through(signals, np.flatnonzero(knots))
     for signal, chosen, cubic in zip(signals, knots, found, strict=True):
-        agrees("five random signals", "monotone cubic", cubic, _cubic(signal, np.flatnonzero(chosen)), absolute=1e-13)
+        agrees("five random signals", "monotone cubic interpolation", cubic, _cubic(signal, np.flatnonzero(chosen)), absolute=1e-13)
 
 
 def _cubic(signal: np.ndarray, knots: np.ndarray) -> np.ndarray:
@@ -74,7 +74,13 @@ def test_the_intrinsic_modes(agrees: Agrees) -> None:
                 tops, bottoms = (_cubic(sifted, find_peaks(side, prominence=least)[0]) for side in (sifted, -sifted))
                 sifted -= 0.5 * (tops + bottoms)
             largest = float(np.abs(signal).max())
-            agrees("four random walks", "intrinsic modes, over the signal's largest", mode / largest, sifted / largest, absolute=1e-9)
+            agrees(
+                "four random walks",
+                "intrinsic mode functions, normalized by the maximum of the signal",
+                mode / largest,
+                sifted / largest,
+                absolute=1e-9,
+            )
             rest -= sifted
 
 
@@ -86,4 +92,4 @@ def test_the_cepstrum(agrees: Agrees) -> None:
     bands = [np.interp(np.arange(321), centres[number : number + 3], [0.0, 1.0, 0.0], left=0.0, right=0.0) for number in range(20)]
     level = np.log([band @ power / power.sum() + 1e-10 for band in bands])
     table = vi.feature_table(signal[None], 1.0, [f"cepstrum_{number}" for number in range(1, 9)])
-    agrees("640 samples of noise", "cepstrum", table.values[0], dct(level, norm="ortho")[1:9], relative=1e-10)
+    agrees("640 samples of white noise", "cepstral coefficients", table.values[0], dct(level, norm="ortho")[1:9], relative=1e-10)

@@ -14,14 +14,18 @@ import vibroimpact as vi
 from agreement import Against, Agrees
 
 AGAINST = Against(
-    "closed forms of features",
+    "signal features, closed form",
     "closed form",
     "sensors and signals",
-    "tones, damped tones, Gaussian bursts, half sines, impulses, white noise",
+    "tones, damped tones, Gaussian bursts, half-sine pulses, impulses, white noise",
 )
 
 
 EULER = 0.5772156649015329
+UNITS = {
+    **dict.fromkeys(("decay_time", "duration", "temporal_centroid", "bounce_interval"), "s"),
+    **dict.fromkeys(("spectral_centroid", "spectral_bandwidth", "spectral_roll_off", "peak_frequency"), "Hz"),
+}
 
 
 def features_of(signal: np.ndarray, rate: float, **settings: float) -> dict[str, float]:
@@ -67,11 +71,11 @@ def test_a_tone(agrees: Agrees) -> None:
     for name, value in exact.items():
         # within the sampling of a period: 20 samples
         if name == "zero_crossing_rate":  # to one crossing
-            agrees("a tone", name.replace("_", " "), found[name], value, unit="1/s", absolute=1.01 * rate / samples)
+            agrees("harmonic tone", name.replace("_", " "), found[name], value, unit="1/s", absolute=1.01 * rate / samples)
             continue
         close = 1e-3 if name in ("peak", "peak_to_peak", "clearance_factor", "crest_factor", "impulse_factor") else 2e-4
         within = max(close * abs(value), 1e-5)
-        agrees("a tone", name.replace("_", " "), found[name], value, absolute=within)
+        agrees("harmonic tone", name.replace("_", " "), found[name], value, unit=UNITS.get(name, ""), absolute=within)
     assert found["spectral_flatness"] < 1e-20
 
 
@@ -82,9 +86,9 @@ def test_a_damped_tone(agrees: Agrees) -> None:
     turn = 2.0 * math.pi * frequency
     # the integral of exp(-2 t/T) sin^2(w t)
     energy = 4.0 * 0.5 * (constant / 2.0 - (2.0 / constant) / ((2.0 / constant) ** 2 + (2.0 * turn) ** 2))
-    agrees("a damped tone", "energy", found["energy"], energy, relative=1e-4)
-    agrees("a damped tone", "rms", found["rms"], math.sqrt(energy * rate / 8192), relative=1e-4)
-    agrees("a damped tone", "decay time", found["decay_time"], constant, unit="s", relative=1e-2)
+    agrees("damped tone", "energy", found["energy"], energy, relative=1e-4)
+    agrees("damped tone", "rms", found["rms"], math.sqrt(energy * rate / 8192), relative=1e-4)
+    agrees("damped tone", "decay time", found["decay_time"], constant, unit="s", relative=1e-2)
     assert found["temporal_centroid"] == pytest.approx(constant / 2.0, rel=1e-2)
     # down to a tenth of the largest value of the envelope
     assert found["duration"] == pytest.approx(constant * math.log(10.0), abs=2.0 / frequency)
@@ -107,7 +111,7 @@ def test_a_burst_with_a_gaussian_envelope(agrees: Agrees) -> None:
     assert found["spectral_centroid"] == pytest.approx(frequency, rel=1e-6)
     assert found["amplitude_centroid"] == pytest.approx(frequency, rel=1e-6)
     bandwidth = 1.0 / (math.sqrt(8.0) * math.pi * width)
-    agrees("a Gaussian burst", "spectral bandwidth", found["spectral_bandwidth"], bandwidth, unit="Hz", relative=1e-6)
+    agrees("Gaussian burst", "spectral bandwidth", found["spectral_bandwidth"], bandwidth, unit="Hz", relative=1e-6)
     assert found["cut_off_10_dB"] == pytest.approx(frequency + math.sqrt(math.log(10.0)) / (2.0 * math.pi * width), rel=1e-4)
 
 
@@ -117,7 +121,7 @@ def test_a_half_sine(agrees: Agrees) -> None:
     found = features_of(5.0 * np.where(time < contact, np.sin(np.pi * time / contact), 0.0), rate)
     share = contact * rate / 2**15
     falls = brentq(lambda f: abs(math.cos(math.pi * f) / (1.0 - 4.0 * f**2)) - 10.0**-0.5, 0.6, 1.4)
-    agrees("a half sine", "frequency of -10 dB, over 1/T", found["cut_off_10_dB"] * contact, falls, relative=1e-3)
+    agrees("half-sine pulse", "-10 dB cut-off frequency, times pulse duration", found["cut_off_10_dB"] * contact, falls, relative=1e-3)
     assert found["peak"] == pytest.approx(5.0, rel=1e-5)
     assert found["mean"] == pytest.approx(5.0 * 2.0 / math.pi * share, rel=1e-5)
     assert found["rms"] == pytest.approx(5.0 * math.sqrt(share / 2.0), rel=1e-5)
@@ -135,7 +139,7 @@ def test_the_force_of_hertz(agrees: Agrees) -> None:
     time = np.arange(2**15) / 1000.0
     force = np.maximum(whole.sol(np.minimum(time, contact))[0], 0.0) ** 1.5
     found = features_of(force, 1000.0)["cut_off_10_dB"] * contact
-    agrees("Hertz's force", "frequency of -10 dB, over 1/T", found, 1.16, absolute=0.005)
+    agrees("Hertz pulse", "-10 dB cut-off frequency, times pulse duration", found, 1.16, absolute=0.005)
 
 
 def test_impulses(agrees: Agrees) -> None:
@@ -161,7 +165,7 @@ def test_impulses(agrees: Agrees) -> None:
         "standard_deviation": math.sqrt(spread),
     }
     for name, value in exact.items():
-        agrees("eight impulses", name.replace("_", " "), found[name], value, relative=1e-10)
+        agrees("eight impulses", name.replace("_", " "), found[name], value, unit=UNITS.get(name, ""), relative=1e-10)
 
 
 def test_one_impulse_has_all_frequencies() -> None:
@@ -191,7 +195,7 @@ def test_a_bouncing_ball(agrees: Agrees, restitution: float) -> None:
     assert found["packets"] == 4
     # a smaller sine reaches the threshold later, within a quarter of its period
     assert found["bounce_interval"] == pytest.approx(first, abs=1e-4)
-    agrees("a bouncing ball", "restitution", found["bounce_restitution"], restitution, absolute=2e-4 / first)
+    agrees("signal of a bouncing ball", "coefficient of restitution", found["bounce_restitution"], restitution, absolute=2e-4 / first)
     assert found["peak_ratio"] == pytest.approx(restitution, rel=0.02)
 
 

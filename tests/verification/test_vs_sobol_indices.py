@@ -12,7 +12,7 @@ from vibroimpact.studies.designs.saltelli import plan
 from vibroimpact.studies.sensitivity import sobol_indices
 
 AGAINST = Against(
-    "functions whose indices are known",
+    "functions with known Sobol indices",
     "closed form",
     "calibration, identification and studies",
     "Ishigami and Homma 1990; sums and products of uniform variables",
@@ -45,8 +45,8 @@ def test_ishigami(agrees: Agrees) -> None:
     found = sobol_indices(ishigami(drawn(3, -np.pi, np.pi)), 3)
     assert found is not None
     first, total = closed_form_of_ishigami()
-    agrees("Ishigami's function, 8192 points", "first indices", found.first, first, absolute=0.01)
-    agrees("Ishigami's function, 8192 points", "total indices", found.total, total, absolute=0.01)
+    agrees("Ishigami function, 8192 samples", "first-order Sobol indices", found.first, first, absolute=0.01)
+    agrees("Ishigami function, 8192 samples", "total-effect Sobol indices", found.total, total, absolute=0.01)
     # the interval holds the truth, and is not so wide as to say nothing
     assert np.all(np.abs(found.first - first) <= found.first_error)
     assert np.all(np.abs(found.total - total) <= found.total_error)
@@ -60,16 +60,16 @@ def test_sum_of_axes_has_the_indices_of_its_variances(agrees: Agrees) -> None:
     found = sobol_indices(weights @ x, 4)
     assert found is not None
     expected = weights**2 / np.sum(weights**2)
-    agrees("a weighted sum", "first indices", found.first, expected, absolute=2e-3)
-    agrees("a weighted sum", "total indices", found.total, expected, absolute=2e-3)
+    agrees("weighted sum of uniform variables", "first-order Sobol indices", found.first, expected, absolute=2e-3)
+    agrees("weighted sum of uniform variables", "total-effect Sobol indices", found.total, expected, absolute=2e-3)
 
 
 def test_product_of_two_axes_matters_only_together(agrees: Agrees) -> None:
     x = drawn(2, -1.0, 1.0)
     found = sobol_indices(x[0] * x[1], 2)  # neither does anything by itself
     assert found is not None
-    agrees("a product", "first indices", found.first, [0.0, 0.0], absolute=0.02)
-    agrees("a product", "total indices", found.total, [1.0, 1.0], absolute=0.02)
+    agrees("product of two uniform variables", "first-order Sobol indices", found.first, [0.0, 0.0], absolute=0.02)
+    agrees("product of two uniform variables", "total-effect Sobol indices", found.total, [1.0, 1.0], absolute=0.02)
 
 
 @pytest.mark.slow

@@ -15,16 +15,16 @@ from vibroimpact.structures.supports.edge import EDGES, Edge
 from vibroimpact.structures.supports.patch import Patch
 
 AGAINST = Against(
-    "a simply supported elastic layer, by its half waves",
+    "simply supported elastic layer, double Fourier series",
     "closed form",
     "plates, spheres and modes",
-    "exact over the thickness, with the images of a half space; Navier's series (Timoshenko and Woinowsky-Krieger, table 23)",
+    "exact through the thickness, with the images of a half space; Navier series (Timoshenko and Woinowsky-Krieger, table 23)",
 )
 ELEMENTS = Against(
-    "plate elements, beside bricks",
+    "plate elements and solid elements of this package",
     "consistency",
     "plates, spheres and modes",
-    "two elements of this package",
+    "two element formulations of this package; no external reference",
 )
 
 
@@ -66,7 +66,14 @@ def test_the_thin_theory_is_kirchhoffs(agrees: Agrees, thickness: float, place: 
     if place == (0.0, 0.0):
         assert navier / SIDE**2 == pytest.approx(0.0116008, rel=1e-5)
     found = computed_compliance(recipe(PlateOfPlates((SIDE, SIDE, thickness), SIDE / 20, "thin")), place)
-    agrees("thin theory, however thick", "deflection of the point, times D", found * rigidity(thickness), navier, unit="m²", relative=1e-3)
+    agrees(
+        "Kirchhoff theory, thin and thick plates",
+        "deflection at the load point per unit force, times D",
+        found * rigidity(thickness),
+        navier,
+        unit="m²",
+        relative=1e-3,
+    )
 
 
 @pytest.mark.parametrize("place", [(0.0, 0.0), (0.17, 0.03)])
@@ -80,9 +87,9 @@ def test_the_thin_theory_is_kirchhoffs(agrees: Agrees, thickness: float, place: 
     ids=["thick", "thick of solids", "thin"],
 )
 def test_simply_supported(agrees: Agrees, shape: PlateOfPlates | PlateOfSolids, tolerance: float, place: tuple[float, float]) -> None:
-    case = f"{'bricks' if isinstance(shape, PlateOfSolids) else 'plate elements'}, 1/{SIDE / shape.size[2]:.0f} as thick as long"
+    case = f"{'solid' if isinstance(shape, PlateOfSolids) else 'plate'} elements, thickness 1/{SIDE / shape.size[2]:.0f} of the side"
     found = computed_compliance(recipe(shape), place)
-    agrees(case, "structural compliance", found, exact(shape.size[2], *place), unit="m/N", relative=tolerance)
+    agrees(case, "structural compliance at the load point", found, exact(shape.size[2], *place), unit="m/N", relative=tolerance)
 
 
 def test_what_thin_theory_would_miss() -> None:
@@ -99,7 +106,15 @@ def test_clamped_plates_of_either_elements(agrees: Agrees, thickness: float, sol
     thick, thin, bricks = (
         computed_compliance(recipe(shape, CLAMPED), (0.06, -0.04)) for shape in (plates, replace(plates, theory="thin"), solids)
     )
-    agrees("clamped, bricks beside plate elements", "structural compliance", bricks, thick, unit="m/N", against=ELEMENTS, relative=0.01)
+    agrees(
+        "clamped plate, solid elements against plate elements",
+        "structural compliance at the load point",
+        bricks,
+        thick,
+        unit="m/N",
+        against=ELEMENTS,
+        relative=0.01,
+    )
     assert thin == pytest.approx(thick * (1 - of_shear), rel=0.01)
 
 
@@ -112,5 +127,5 @@ def test_the_plate_of_the_paper(agrees: Agrees) -> None:
         computed_compliance(recipe(shape, patches), (0.0, 0.0))
         for shape in (PlateOfPlates(size, 0.07), PlateOfSolids(size, 0.026, splits=2))
     ]
-    case = "the paper's plate, bricks beside plate elements"
-    agrees(case, "structural compliance", found[1], found[0], unit="m/N", against=ELEMENTS, relative=0.01)
+    case = "the paper's plate, solid elements against plate elements"
+    agrees(case, "structural compliance at the load point", found[1], found[0], unit="m/N", against=ELEMENTS, relative=0.01)

@@ -16,10 +16,10 @@ from vibroimpact.structures.supports.support import held_by
 from vibroimpact.structures.surface import surface_motion
 
 AGAINST = Against(
-    "finite elements of a sphere in contact",
+    "finite-element analysis of a sphere in static contact",
     "own independent computation",
     "Hertz and elastic contact",
-    "tests/oracles/axisymmetric_contact.py; and, under Hertz's pressure, elements of this package",
+    "tests/oracles/axisymmetric_contact.py; under Hertz pressure, solid elements of this package",
 )
 
 
@@ -39,7 +39,11 @@ def test_under_the_pressure_of_hertz(agrees: Agrees, poissons_ratio: float) -> N
         load = share @ motion[2::3]
         found = load @ elastic.static(load) - 0.6 * (1 - poissons_ratio**2) / ratio
         agrees(
-            "under Hertz's pressure", "factor of the finite size", float(finite_sphere_factor(poissons_ratio, ratio)), found, absolute=0.006
+            "free sphere under Hertz pressure",
+            "finite-size correction factor",
+            float(finite_sphere_factor(poissons_ratio, ratio)),
+            found,
+            absolute=0.006,
         )
 
 
@@ -53,4 +57,4 @@ def test_against_a_sphere_in_contact(agrees: Agrees, poissons_ratio: float, rati
     force = 4.0 / 3.0 * modulus / (1 - poissons_ratio**2) * ratio**3 * radius**2
     approach = ratio**2 * radius + float(sphere_term(poissons_ratio).factor(ratio)) * force / (modulus * radius)
     found = static_approach(radius, modulus, poissons_ratio, approach, 8.0)
-    agrees("in contact, a/R = 0.04 to 0.18", "force at the same approach", force, found.force, unit="N", relative=5e-3)
+    agrees("static contact, a/R = 0.04 to 0.18", "contact force at equal approach", force, found.force, unit="N", relative=5e-3)

@@ -12,10 +12,10 @@ from agreement import Against, Agrees
 from oracles.measuring_chain import RATE, Floats, SimplySupported, driven, rms, sampled
 
 AGAINST = Against(
-    "statics, momentum, and edges of Kirchhoff's plate",
+    "static equilibrium, momentum balance, and edge forces of the Kirchhoff plate",
     "closed form",
     "sensors and signals",
-    "lever rule; modes to 300 kHz at two million samples a second, tests/oracles/measuring_chain.py",
+    "lever rule; modes to 300 kHz, sampled at 2 MHz, tests/oracles/measuring_chain.py",
 )
 
 
@@ -66,7 +66,13 @@ def on_points(**one: Any) -> list[dict[str, Any]]:
 
 @pytest.mark.parametrize("supports", [on_points(type="point"), on_points(type="spring", stiffness=1e6)], ids=["points", "springs"])
 def test_lever_rule(agrees: Agrees, supports: Any) -> None:
-    agrees("three points, three springs", "shares of a static force", static(drop(supports, THREE))[:, 2], lever(SPOT), absolute=1e-6)
+    agrees(
+        "three point supports, three spring supports",
+        "support forces per unit static force",
+        static(drop(supports, THREE))[:, 2],
+        lever(SPOT),
+        absolute=1e-6,
+    )
 
 
 PATCHES = {"type": "patches", "spacing": [0.14, 0.11], "radius": 0.01}
@@ -95,7 +101,7 @@ def test_momentum_of_modes(agrees: Agrees, supports: Any, places: list[tuple[flo
     assert modes is not None
     exact = -(modes.angular_frequencies[:, None] ** 2) * modes.participation
     found = sum(modes.points[f"{number}"] for number in range(len(places)))
-    agrees("points, pads, patches, bars, clamped edges", "rate of momentum of modes", found, exact, of_the_largest=1e-6)
+    agrees("point, pad, patch, bar and clamped supports", "rate of change of modal momentum", found, exact, of_the_largest=1e-6)
     np.testing.assert_allclose(static(response).sum(axis=0), [0.0, 0.0, 1.0], rtol=0.0, atol=1e-8)
 
 
@@ -132,14 +138,14 @@ def off(found: Floats, force: Floats) -> float:
 def test_edges(agrees: Agrees, response: vi.Response, forces: Floats, number: int) -> None:
     found = response.signals()[f"{number}"].value
     exact = sampled(forces[number], 50e3, "sigma-delta")[: len(found)]
-    agrees("four edges, after an impact", "signal of the force", found, exact, unit="N", rms=0.01)
+    agrees("each of four supported edges after an impact", "support force signal", found, exact, unit="N", rms=0.01)
 
 
 def test_balance_of_momentum(agrees: Agrees, response: vi.Response, forces: Floats) -> None:
     """The supports together give the contact force and the change of the plate's momentum."""
     found = sum(signal.value for signal in response.signals().values())
     exact = sampled(forces.sum(axis=0), 50e3, "sigma-delta")[: len(found)]
-    agrees("the supports together", "signal of the force", found, exact, unit="N", rms=0.01)
+    agrees("sum of all supports after an impact", "support force signal", found, exact, unit="N", rms=0.01)
 
 
 @pytest.mark.parametrize("frequency", [16e3, pytest.param(30e3, marks=pytest.mark.slow)])
@@ -160,4 +166,10 @@ def test_a_ball_that_lies_on_three_points(agrees: Agrees) -> None:
     )
     weight = 4.0 / 3.0 * np.pi * 5e-3**3 * 7850.0 * 9.80665
     found = [signal.value[-1] for signal in response.signals().values()]
-    agrees("a ball that lies on three points", "forces over the weight", np.array(found) / weight, lever(SPOT), absolute=1e-4)
+    agrees(
+        "sphere at rest on a plate with three point supports",
+        "support forces, normalized by the weight",
+        np.array(found) / weight,
+        lever(SPOT),
+        absolute=1e-4,
+    )

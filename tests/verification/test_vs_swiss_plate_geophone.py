@@ -18,16 +18,16 @@ from agreement import Against, Agrees
 from vibroimpact.cases.reader import load_table
 
 AGAINST = Against(
-    "class limits of Swiss plate geophones",
+    "Swiss plate geophones, amplitude limits of grain-size classes",
     "experiment",
     "sensors and signals",
-    "Wyss and others 2016, Water Resour. Res. 52, 7712: 4.6e-4 D^1.71 V, D in mm",
+    "Wyss et al. 2016, Water Resour. Res. 52, 7712: amplitude 4.6e-4 D^1.71 V, D in mm",
 )
 PLATE = Against(
-    "a plate of Kirchhoff on two sprung edges",
+    "Kirchhoff plate on two spring-supported edges",
     "own independent computation",
     "sensors and signals",
-    "100 modes, 3 % damping, quartz at 1 m/s; another model of the same plate",
+    "100 modes, damping ratio 3 %, quartz spheres at 1 m/s; separate model of the same plate",
 )
 
 
@@ -58,7 +58,12 @@ def heard() -> dict[float, np.ndarray]:
 def test_small_grains_lie_at_the_class_limits(agrees: Agrees, heard: dict[float, np.ndarray], diameter: float) -> None:
     limit = 4.6e-4 * diameter**1.71
     agrees(
-        "grains of 12.3 and 17.4 mm at 1 m/s, nothing tuned", "largest voltage", np.median(heard[diameter]), limit, unit="V", relative=0.5
+        "grains of 12.3 and 17.4 mm at 1 m/s, no fitted parameters",
+        "maximum voltage",
+        np.median(heard[diameter]),
+        limit,
+        unit="V",
+        relative=0.5,
     )
 
 
@@ -67,8 +72,8 @@ def test_medians_are_near_those_of_a_kirchhoff_plate(agrees: Agrees, heard: dict
     """Places, pads and the elasticity of the plate's face differ: it is the same plate, not the same model."""
     median = np.median(heard[diameter])
     agrees(
-        "grains of 12 to 38 mm, median of six places",
-        "largest voltage",
+        "grains of 12 to 38 mm, median of six impact positions",
+        "maximum voltage",
         median,
         KIRCHHOFF[diameter],
         unit="V",

@@ -16,19 +16,19 @@ from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.meyer import Meyer
 
 AGAINST = Against(
-    "Tabor's rebound with Meyer's index, by SciPy's quadrature",
+    "Tabor's rebound theory with Meyer's index, numerical quadrature (SciPy)",
     "own independent computation",
     "elastic-plastic contact",
-    "Tabor 1948, Proc. R. Soc. A 192, 247; energies over the contact radius",
+    "Tabor 1948, Proc. R. Soc. A 192, 247; energies integrated over the contact radius",
 )
 JOHNSON = Against(
-    "Johnson, rebound at constant pressure",
+    "Johnson, rebound at constant contact pressure",
     "closed form",
     "elastic-plastic contact",
     "Johnson, Contact Mechanics, 1985, eq. 11.47",
 )
 MEASURED = Against(
-    "Kharaz and Gorham: spheres on steel and aluminium",
+    "Kharaz and Gorham, impacts of spheres on steel and aluminium",
     "experiment",
     "elastic-plastic contact",
     "Kharaz and Gorham 2000, Philos. Mag. Lett. 80, 549",
@@ -78,15 +78,22 @@ def test_force_over_indentation(agrees: Agrees, index: float) -> None:
     for a in YIELD_RADIUS * np.array([1.0, 1.3, 3.0, 8.0, 9.0, 30.0]):
         delta = indentation(a, index)
         agrees(
-            "five indices, to 30 times the radius of yield",
-            "force",
+            "five Meyer indices, contact radii to 30 times the yield radius",
+            "contact force",
             law.loading_force(np.array(delta)),
             force(a, index),
             unit="N",
             relative=1e-12,
         )
         work = loading_work(a, index)
-        agrees("five indices, to 30 times the radius of yield", "work", law.loading_work(np.array(delta)), work, unit="J", relative=1e-9)
+        agrees(
+            "five Meyer indices, contact radii to 30 times the yield radius",
+            "work of loading",
+            law.loading_work(np.array(delta)),
+            work,
+            unit="J",
+            relative=1e-9,
+        )
         assert law.contact_radius(np.array(delta)) == pytest.approx(a, rel=1e-12)
 
 
@@ -98,9 +105,9 @@ def test_restitution(agrees: Agrees, index: float, ratio: float) -> None:
     a = brentq(lambda a: loading_work(a, index) - energy, YIELD_RADIUS, 1e3 * YIELD_RADIUS, xtol=1e-20, rtol=1e-14)
     recovered = 0.3 * force(a, index) ** 2 / (MODULUS * a)  # Tabor's: Hertz's energy of the dent
     expected = np.sqrt(recovered / energy)
-    case, law = "five indices, 1.5 to 300 times the speed of yield", law_of(index)
-    agrees(f"{case}, closed form", "restitution", law.closed_form_restitution(MASS, speed), expected, relative=1e-8)
-    agrees(f"{case}, integrated", "restitution", vi.integrated_restitution(law, MASS, speed), expected, relative=1e-6)
+    case, law = "five Meyer indices, 1.5 to 300 times the yield speed", law_of(index)
+    agrees(f"{case}, closed form", "coefficient of restitution", law.closed_form_restitution(MASS, speed), expected, relative=1e-8)
+    agrees(f"{case}, integrated", "coefficient of restitution", vi.integrated_restitution(law, MASS, speed), expected, relative=1e-6)
 
 
 def test_elastic_up_to_yield() -> None:
@@ -118,7 +125,7 @@ def test_the_power_of_the_speed(agrees: Agrees) -> None:
     for index, pressure in ((2.0, AT_YIELD), (2.45, FULL)):
         expected = 0.3 * np.pi**1.25 * 4**0.75 * pressure / MODULUS * (energy / (pressure * RADIUS**3)) ** -0.25
         found = law_of(index).closed_form_restitution(MASS, 1e9 * YIELD_SPEED) ** 2
-        agrees("far above yield", "square of the restitution", found, expected, against=JOHNSON, relative=1e-4)
+        agrees("far above the yield speed", "square of the coefficient of restitution", found, expected, against=JOHNSON, relative=1e-4)
     index = 2.02  # full plasticity is beyond
     slow, fast = (law_of(index).closed_form_restitution(MASS, ratio * YIELD_SPEED) for ratio in (1e8, 1e9))
     assert np.log10(fast / slow) == pytest.approx(-(3.0 - index) / (index + 2.0), abs=1e-4)
@@ -129,8 +136,8 @@ def test_full_plasticity_at_a_hundred_times_the_speed_of_yield(agrees: Agrees) -
     law = Meyer(effective_modulus=MODULUS, effective_radius=RADIUS, yield_strength=STRENGTH)
     at_yield, at_full = (np.sqrt(2.0 * float(law.loading_work(np.asarray(level))) / MASS) for level in law.breakpoints)
     agrees(
-        "`meyer`, index by default",
-        "speed of full plasticity over that of yield",
+        "`meyer`, default index",
+        "speed at full plasticity, normalized by the yield speed",
         at_full / at_yield,
         100.0,
         against=MEASURED,

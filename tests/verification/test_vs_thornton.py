@@ -14,7 +14,7 @@ from agreement import Against, Agrees
 from vibroimpact.contact.laws.thornton import Thornton
 
 AGAINST = Against(
-    "Thornton, an elastic-perfectly-plastic sphere",
+    "Thornton, elastic-perfectly plastic sphere",
     "published computation",
     "elastic-plastic contact",
     "Thornton 1997, J. Appl. Mech. 64, 383",
@@ -29,23 +29,23 @@ EXPECTED = {2: 0.930626, 5: 0.773337, 10: 0.658558, 50: 0.444606, 100: 0.374299,
 
 
 def test_yield_speed(agrees: Agrees) -> None:
-    agrees("first yield", "speed", EXACT_YIELD_SPEED, YIELD_SPEED, unit="m/s", relative=1e-4)
+    agrees("onset of yield", "yield speed", EXACT_YIELD_SPEED, YIELD_SPEED, unit="m/s", relative=1e-4)
 
 
 @pytest.mark.parametrize("ratio", EXPECTED)
 def test_restitution(agrees: Agrees, ratio: float) -> None:
     speed = ratio * EXACT_YIELD_SPEED
-    case = "2 to 1000 times the speed of yield"
-    agrees(f"{case}, closed form", "restitution", LAW.closed_form_restitution(MASS, speed), EXPECTED[ratio], absolute=1e-6)
-    agrees(f"{case}, integrated", "restitution", vi.integrated_restitution(LAW, MASS, speed), EXPECTED[ratio], absolute=1e-6)
+    case = "2 to 1000 times the yield speed"
+    agrees(f"{case}, closed form", "coefficient of restitution", LAW.closed_form_restitution(MASS, speed), EXPECTED[ratio], absolute=1e-6)
+    agrees(f"{case}, integrated", "coefficient of restitution", vi.integrated_restitution(LAW, MASS, speed), EXPECTED[ratio], absolute=1e-6)
     r = 1.0 / ratio
     printed = np.sqrt(6 * np.sqrt(3) / 5 * (1 - r * r / 6)) * (r / (r + 2 * np.sqrt(6 / 5 - r * r / 5))) ** 0.25
-    agrees(f"{case}, the formula", "restitution", LAW.closed_form_restitution(MASS, speed), printed, relative=1e-12)
+    agrees(f"{case}, printed formula", "coefficient of restitution", LAW.closed_form_restitution(MASS, speed), printed, relative=1e-12)
 
 
 def test_asymptote_and_elastic_range(agrees: Agrees) -> None:
     found = LAW.closed_form_restitution(MASS, 1e8 * EXACT_YIELD_SPEED)
-    agrees("asymptote, 1e8 times the speed of yield", "restitution", found, 1.18499 * 1e-2, relative=1e-4)
+    agrees("asymptote, 1e8 times the yield speed", "coefficient of restitution", found, 1.18499 * 1e-2, relative=1e-4)
     assert LAW.closed_form_restitution(MASS, 0.999 * EXACT_YIELD_SPEED) == 1.0
 
 

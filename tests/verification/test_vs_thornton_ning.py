@@ -16,16 +16,16 @@ from vibroimpact.contact.laws.jkr import JKR
 from vibroimpact.contact.laws.krijt import Krijt
 
 AGAINST = Against(
-    "Johnson, Kendall and Roberts; Thornton and Ning: sticking spheres",
+    "Johnson, Kendall and Roberts; Thornton and Ning, adhesive spheres",
     "published computation",
     "adhesion",
-    "Johnson, Kendall and Roberts 1971; Thornton and Ning 1998, Powder Technol. 99, 154",
+    "Johnson, Kendall and Roberts 1971, Proc. R. Soc. A 324, 301; Thornton and Ning 1998, Powder Technol. 99, 154",
 )
 SCIPY = Against(
-    "SciPy's Radau on the contact radius",
+    "SciPy's Radau, equation of motion in the contact radius",
     "own independent computation",
     "adhesion",
-    "a JKR contact with viscous loss, in the test itself",
+    "JKR contact with viscous dissipation, in the test",
 )
 
 
@@ -42,11 +42,11 @@ def force(delta: np.ndarray) -> np.ndarray:
 
 def test_force(agrees: Agrees) -> None:
     at_break = -0.75 * (np.pi**2 * ADHESION**2 * RADIUS / MODULUS**2) ** (1 / 3)
-    agrees("a sphere of 0.2 mm", "indentation at the break", LAW.release_level, at_break, unit="m", relative=1e-12)
-    agrees("a sphere of 0.2 mm", "force at first touch", force(np.zeros(1)), -8 / 9 * PULL_OFF, unit="N", relative=1e-12)
-    agrees("a sphere of 0.2 mm", "force at the break", force(np.array([LAW.release_level])), -5 / 9 * PULL_OFF, unit="N", relative=1e-6)
+    agrees("sphere of 0.2 mm", "indentation at detachment", LAW.release_level, at_break, unit="m", relative=1e-12)
+    agrees("sphere of 0.2 mm", "force at first contact", force(np.zeros(1)), -8 / 9 * PULL_OFF, unit="N", relative=1e-12)
+    agrees("sphere of 0.2 mm", "force at detachment", force(np.array([LAW.release_level])), -5 / 9 * PULL_OFF, unit="N", relative=1e-6)
     lowest = force(np.linspace(LAW.release_level, 0.0, 20001)).min()
-    agrees("a sphere of 0.2 mm", "pull-off force", lowest, -PULL_OFF, unit="N", relative=1e-7)
+    agrees("sphere of 0.2 mm", "pull-off force", lowest, -PULL_OFF, unit="N", relative=1e-7)
 
 
 def test_force_and_indentation_satisfy_the_published_pair() -> None:
@@ -58,10 +58,16 @@ def test_force_and_indentation_satisfy_the_published_pair() -> None:
 
 
 def test_work_to_break_and_restitution(agrees: Agrees) -> None:
-    agrees("a sphere of 0.2 mm", "work to break", LAW.elastic_energy(LAW.release_level), 7.0922 * UNIT, unit="J", relative=1e-5)
+    agrees("sphere of 0.2 mm", "work of detachment", LAW.elastic_energy(LAW.release_level), 7.0922 * UNIT, unit="J", relative=1e-5)
     speeds = STICKING_SPEED * np.array([0.5, 0.99, 1.01, 1.5, 10.0])
     expected = np.sqrt(np.maximum(1 - (STICKING_SPEED / speeds) ** 2, 0.0))
-    agrees("0.5 to 10 times the sticking speed", "restitution", LAW.closed_form_restitution(MASS, speeds), expected, absolute=2e-3)
+    agrees(
+        "approach speeds 0.5 to 10 times the sticking speed",
+        "coefficient of restitution",
+        LAW.closed_form_restitution(MASS, speeds),
+        expected,
+        absolute=2e-3,
+    )
     np.testing.assert_allclose(vi.integrated_restitution(LAW, MASS, speeds), LAW.closed_form_restitution(MASS, speeds), atol=1e-8)
 
 
@@ -104,4 +110,11 @@ def test_viscous_loss_against_an_integration_in_the_contact_radius(agrees: Agree
     run = solve_ivp(rates, (0.0, 1.0), [start, speed], method="Radau", rtol=1e-9, atol=[1e-16, 1e-12], events=broken)
     # what is left between there and the break: nearly no way, so nearly no work
     found = vi.integrated_restitution(law, MASS, speed)
-    agrees("with viscous loss, three dampings", "restitution", found, -run.y[1, -1] / speed, against=SCIPY, absolute=2e-6)
+    agrees(
+        "viscous dissipation, three dissipation times",
+        "coefficient of restitution",
+        found,
+        -run.y[1, -1] / speed,
+        against=SCIPY,
+        absolute=2e-6,
+    )

@@ -33,19 +33,19 @@ from vibroimpact.cases.limits.plate_waves import plate_theory_error
 from vibroimpact.structures.plate_waves import bending_error, bending_factor, inertia_beyond_bending, mindlin_squares, stretching_error
 
 AGAINST = Against(
-    "elasticity in three dimensions, simply supported plates",
+    "three-dimensional elasticity, simply supported plates",
     "own independent computation",
     "impacts on vibrating bodies",
-    "a program of Fourier series, tests/oracles/three_dimensional_plate.py",
+    "separate program with Fourier series, tests/oracles/three_dimensional_plate.py",
 )
 SRINIVAS = Against(
-    "Srinivas, Joga Rao and Rao, frequencies of thick plates",
+    "Srinivas, Joga Rao and Rao, natural frequencies of thick plates",
     "published computation",
     "plates, spheres and modes",
-    "J. Sound Vib. 12, 187, 1970",
+    "Srinivas, Joga Rao and Rao 1970, J. Sound Vib. 12, 187",
 )
 LAYER = Against(
-    "statics of an elastic layer",
+    "elastic layer under a static sinusoidal load",
     "closed form",
     "plates, spheres and modes",
     "Sneddon, Fourier Transforms, 1951, section 46",
@@ -117,7 +117,14 @@ def test_the_oracle_has_the_frequencies_of_srinivas_and_rao(agrees: Agrees) -> N
     squares = np.array([0.02, 0.05, 0.08, 0.1, 0.13, 0.18, 0.2, 0.26, 0.32])  # of half waves in a thickness
     published = [0.0932, 0.2226, 0.3421, 0.4171, 0.5239, 0.6889, 0.7511, 0.9268, 1.0889]
     found = thickness_modes(np.pi * np.sqrt(squares), 1.0, Elastic(1.0, 2.6, 0.3), even=False)[0][:, 0]
-    agrees("the oracle, nine squares of half waves", "ω h √(density/G)", found, published, against=SRINIVAS, absolute=5.1e-5)
+    agrees(
+        "reference program, nine wavenumbers",
+        "dimensionless natural frequency ω h √(density/G)",
+        found,
+        published,
+        against=SRINIVAS,
+        absolute=5.1e-5,
+    )
 
 
 @pytest.mark.parametrize("given", [STEEL, PMMA])
@@ -127,7 +134,15 @@ def test_the_modes_of_the_oracle_have_the_statics_of_a_layer(agrees: Agrees, giv
     modes = sum(((face / omega) ** 2).sum(axis=1) for omega, face in families)
     half_space = 2.0 * (1.0 - given.ratio**2) / (given.modulus * k)
     exact = half_space * layer(k * THICKNESS)
-    agrees("the oracle, statics of a layer", "compliance of waves", modes, exact, unit="m/N", against=LAYER, relative=1e-6)
+    agrees(
+        "reference program, static response of a layer",
+        "compliance at three wavenumbers",
+        modes,
+        exact,
+        unit="m/N",
+        against=LAYER,
+        relative=1e-6,
+    )
 
 
 def test_the_oracle_has_converged() -> None:
@@ -150,8 +165,16 @@ def test_the_factor_of_the_face(agrees: Agrees, ratio: float) -> None:
     mixed = math.sqrt(12.0) * factor * k
     waves, shapes = np.linalg.eigh(np.array([[factor * k**2, mixed], [mixed, 12.0 * (bend + factor)]]).transpose(2, 0, 1))
     expected, error = np.abs(face[:, 0] / shapes[:, 0, 0]), np.sqrt(waves[:, 0]) / omega[:, 0] - 1.0
-    agrees("bending waves of a layer", "factor of the face", bending_factor(k, ratio), expected, relative=1e-6)
-    agrees("bending waves of a layer", "relative error of plate theory", bending_error(k, ratio), error, absolute=2e-6)
+    agrees(
+        "flexural waves of an elastic layer",
+        "surface deflection over that of Mindlin theory",
+        bending_factor(k, ratio),
+        expected,
+        relative=1e-6,
+    )
+    agrees(
+        "flexural waves of an elastic layer", "relative frequency error of Mindlin theory", bending_error(k, ratio), error, absolute=2e-6
+    )
     mean_square = 2.0 * (1.0 / (6.0 * (1.0 - ratio) * factor) - 0.2)
     assert float(bending_factor(np.array(0.1), ratio)) == pytest.approx(1.0 - 0.25 * 0.1**2 * mean_square, abs=1e-5)
     of_package = vi.Material(1.0, given.modulus, ratio)
@@ -218,7 +241,13 @@ PERIODS = {0.3: 2.5, 0.5: 2.5, 1.0: 5.0, 2.0: 10.0}  # of the highest mode in He
 def test_some_impacts(agrees: Agrees, plate: Elastic, side: float, modes: int, more: dict[str, Any]) -> None:
     """A ball as thick as the plate; with the point shapes of plate theory 5 % of the restitution would be missing on PMMA."""
     found = deviations(program(side, plate, THICKNESS, modes=modes, **more), exact(side, plate, THICKNESS))
-    agrees("a ball as thick as the plate", "largest force, duration, restitution: relative difference", found, 0.0, absolute=ASKED)
+    agrees(
+        "sphere radius equal to the plate thickness",
+        "relative difference of maximum contact force, contact duration and coefficient of restitution",
+        found,
+        0.0,
+        absolute=ASKED,
+    )
 
 
 @pytest.mark.slow
@@ -231,5 +260,7 @@ def test_impacts(agrees: Agrees, plate: Elastic, ratio: float, more: dict[str, A
     time = contact_time(plate, radius, STEEL, SPEED)
     response = program(SIDES[ratio], plate, radius, max_frequency=PERIODS[ratio] / time, **more)
     found = deviations(response, exact(SIDES[ratio], plate, radius, times=10.0 if ratio == 2.0 else 3.0))
-    case = f"R/h 0.3 to 2, {'bricks' if more else 'plate elements'}, default meshes"
-    agrees(case, "largest force, duration, restitution: relative difference", found, 0.0, absolute=ASKED)
+    case = f"sphere radius 0.3 to 2 plate thicknesses, {'solid' if more else 'plate'} elements, default meshes"
+    agrees(
+        case, "relative difference of maximum contact force, contact duration and coefficient of restitution", found, 0.0, absolute=ASKED
+    )

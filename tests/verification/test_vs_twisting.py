@@ -16,10 +16,10 @@ from vibroimpact.dynamics.oblique.state import Sphere, State
 from vibroimpact.structures.modal_model import ModalBasis
 
 AGAINST = Against(
-    "Hertz's pressure by quadrature, and SciPy's DOP853",
+    "quadrature over the Hertz pressure, and SciPy's DOP853",
     "own independent computation",
     "oblique impact and friction",
-    "moment and friction of a contact that slides and twists, in the test itself",
+    "friction force and moment of a sliding and twisting contact, in the test",
 )
 
 
@@ -80,8 +80,11 @@ def test_the_part_that_sliding_leaves(agrees: Agrees, ratio: float) -> None:
     law, force = friction(), np.array([100.0])
     spin = ratio / law.contact_radius(force)
     part = law.twisting_part(force, 0.092 * force, np.ones(1), spin)
-    case, within = "rim slower than 0.8 of the slip" if ratio < 0.8 else "faster", 1e-9 if ratio < 0.8 else 2e-4
-    agrees(f"sliding and twisting, {case}", "moment over μ F a", FULL * part, over_pressure(ratio)[1], relative=within)
+    case, within = (
+        "rim velocity below 0.8 of the sliding velocity" if ratio < 0.8 else "rim velocity above 0.8 of the sliding velocity",
+        1e-9 if ratio < 0.8 else 2e-4,
+    )
+    agrees(f"sliding and twisting, {case}", "friction moment, normalized by μ F a", FULL * part, over_pressure(ratio)[1], relative=within)
 
 
 def test_the_limits_of_the_part() -> None:
@@ -112,7 +115,14 @@ def test_an_impact_that_slides(agrees: Agrees, name: str, speed: float, slip: fl
     expected = abs(spin) - spin_after(0.092, speed, slip, abs(spin))
     found = response.impacts["spin_z_after_rad_s"][0]
     assert 0.0 < abs(found) < abs(spin)
-    agrees("impacts that slide, rigid plate", "spin lost", spin - found, np.sign(spin) * expected, unit="rad/s", relative=2e-3)
+    agrees(
+        "sliding impacts, rigid plate",
+        "decrease of the angular velocity",
+        spin - found,
+        np.sign(spin) * expected,
+        unit="rad/s",
+        relative=2e-3,
+    )
     assert expected < 1.5e-3 * abs(spin)
     assert abs(response.energy["closure_relative"]) < 1e-12
     without = impact(friction(name), speed, slip, 0.0).impacts
@@ -136,7 +146,7 @@ def test_an_impact_that_twists_alone(agrees: Agrees, plate: vi.Body, spin: float
     pressed = 2.0 * (weight * MASS * 2.0 * np.sin(part) * np.sqrt(RADIUS * deep)).sum()
     found = impact(friction(), 2.0, 0.0, spin, plate).impacts["spin_z_after_rad_s"][0]
     exact = max(spin - FULL * 0.092 * pressed / INERTIA, 0.0)
-    agrees("impacts that twist alone", "spin after, over that before", found / spin, exact / spin, absolute=1e-9)
+    agrees("impacts with twisting alone", "ratio of angular velocity after to before impact", found / spin, exact / spin, absolute=1e-9)
 
 
 @pytest.mark.parametrize("name", ["mdr", "mindlin"])
@@ -145,7 +155,14 @@ def test_an_impact_that_slides_on_modes(agrees: Agrees, name: str, spin: float) 
     """On a plate that hardly moves, as on a rigid one, to 1e-4 of what twisting takes."""
     found = impact(friction(name), 2.0, 3.0, spin, still()).impacts["spin_z_after_rad_s"][0]
     expected = abs(spin) - spin_after(0.092, 2.0, 3.0, abs(spin))
-    agrees("impacts that slide, on modes", "spin lost", spin - found, np.sign(spin) * expected, unit="rad/s", relative=1e-4)
+    agrees(
+        "sliding impacts, plate with a vibration mode",
+        "decrease of the angular velocity",
+        spin - found,
+        np.sign(spin) * expected,
+        unit="rad/s",
+        relative=1e-4,
+    )
 
 
 @pytest.mark.parametrize(("slip", "spin"), [(1.0, 30.0), (0.3, -200.0), (0.01, 300.0), (0.0, 5.0)])
@@ -169,6 +186,12 @@ def test_a_sphere_that_lies_slides_and_spins(agrees: Agrees, slip: float, spin: 
     state, _ = LyingSpheres(ball, start, law, gravity * one, until * one).at(np.zeros(401, dtype=int), times)
     left = np.abs(state.spin[2])
     assert left[0] == abs(spin)
-    agrees("a sphere that lies, slides and spins", "spin, over that before", left[-1] / abs(spin), expected / abs(spin), absolute=3e-6)
+    agrees(
+        "sphere on the plate, sliding and spinning about the normal",
+        "angular velocity, normalized by its initial value",
+        left[-1] / abs(spin),
+        expected / abs(spin),
+        absolute=3e-6,
+    )
     assert (np.diff(left) <= 0.0).all()
     assert (np.diff(sum(ball.kinetic(state))) <= 0.0).all()

@@ -19,13 +19,13 @@ from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer
 from vibroimpact.dynamics.sensors.sensor import Sensor
 
 AGAINST = Against(
-    "the same chain at two million samples a second",
+    "measuring chain sampled at 2 MHz",
     "own independent computation",
     "sensors and signals",
-    "tests/oracles/measuring_chain.py: Kirchhoff's modes in closed form, SciPy's filters, ten times the modes",
+    "tests/oracles/measuring_chain.py: Kirchhoff modes in closed form, SciPy filters, ten times the number of modes",
 )
 THICK = Against(
-    "all waves of an elastic layer at two million samples a second",
+    "all waves of an elastic layer, sampled at 2 MHz",
     "own independent computation",
     "sensors and signals",
     "tests/oracles/three_dimensional_plate.py and measuring_chain.py",
@@ -91,7 +91,13 @@ def compared(response: vi.Response, sensor: Sensor, exact: Floats) -> float:
 @pytest.mark.parametrize("quantity", ["acceleration", "velocity", "displacement"])
 def test_bare_points(agrees: Agrees, response: vi.Response, motion: dict[str, dict[str, Floats]], name: str, quantity: Any) -> None:
     exact, signal = sampled(motion[name][quantity], SAMPLES, "sigma-delta"), response.signals(Sensor(name, quantity))[name]
-    agrees("bare points, two to twelve thicknesses away", f"signal of {quantity}", signal.value, exact[: len(signal.value)], rms=PROMISED)
+    agrees(
+        "ideal sensors, two to twelve plate thicknesses from the impact",
+        f"{quantity} signal",
+        signal.value,
+        exact[: len(signal.value)],
+        rms=PROMISED,
+    )
     assert signal.uncertainty < PROMISED
 
 
@@ -99,7 +105,7 @@ def test_bare_points(agrees: Agrees, response: vi.Response, motion: dict[str, di
 def test_rates(agrees: Agrees, response: vi.Response, motion: dict[str, dict[str, Floats]], rate: float) -> None:
     """Down to where most modes lie above half of it: they pass in band what they do below their resonance."""
     found, exact = response.signals(Sensor("two", rate=rate))["two"].value, sampled(motion["two"]["acceleration"], rate, "sigma-delta")
-    agrees("20 to 40 kHz", "signal of acceleration", found, exact[: len(found)], unit="m/s²", rms=PROMISED)
+    agrees("sampling rates 20 to 40 kHz", "acceleration signal", found, exact[: len(found)], unit="m/s²", rms=PROMISED)
 
 
 @pytest.mark.parametrize("filtered", ["sigma-delta", "butterworth"])
@@ -112,8 +118,8 @@ def test_accelerometers(
     end = meter.get("range", np.inf)
     sensor = Sensor("two", filter=filtered, instrument=Accelerometer(**meter))
     signal, clipped = response.signals(sensor)["two"], sampled(np.clip(exact, -end, end), SAMPLES, filtered)
-    case = f"accelerometers that resonate, {'overdriven' if np.isfinite(end) else 'within their range'}, {filtered}"
-    agrees(case, "signal", signal.value, clipped[: len(signal.value)], unit="m/s²", rms=PROMISED)
+    case = f"accelerometers with a resonance, {'beyond' if np.isfinite(end) else 'within'} their range, filter {filtered}"
+    agrees(case, "acceleration signal", signal.value, clipped[: len(signal.value)], unit="m/s²", rms=PROMISED)
     if np.isfinite(end):
         within = np.abs(exact[: round(DURATION * RATE)])
         assert signal.peak == pytest.approx(within.max(), rel=0.02)
@@ -176,4 +182,4 @@ def test_the_face_of_a_thick_plate(
 ) -> None:
     response, motion = thick
     found, exact = response.signals(Sensor(name, quantity))[name].value, sampled(motion[name][quantity], SAMPLES, "sigma-delta")
-    agrees("the face of a thick plate", f"signal of {quantity}", found, exact[: len(found)], against=THICK, rms=PROMISED)
+    agrees("surface of a thick plate", f"{quantity} signal", found, exact[: len(found)], against=THICK, rms=PROMISED)

@@ -15,10 +15,10 @@ from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer
 from vibroimpact.dynamics.sensors.sensor import Sensor
 
 AGAINST = Against(
-    "the same chain at two million samples a second, hit obliquely",
+    "measuring chain sampled at 2 MHz, oblique impacts",
     "own independent computation",
     "sensors and signals",
-    "tests/oracles/measuring_chain.py: Kirchhoff's modes in closed form, SciPy's filters",
+    "tests/oracles/measuring_chain.py: Kirchhoff modes in closed form, SciPy filters",
 )
 
 
@@ -84,7 +84,7 @@ def off(response: vi.Response, sensor: Sensor, exact: Floats) -> float:
 def test_points(agrees: Agrees, response: vi.Response, motion: dict[str, Floats], quantity: str) -> None:
     sensor = Sensor("two", quantity)  # type: ignore[arg-type]
     found, exact = response.signals(sensor)["two"].value, sampled(motion[quantity], SAMPLES, "sigma-delta")
-    agrees("two oblique impacts", f"signal of {quantity}", found, exact[: len(found)], rms=0.01)
+    agrees("ideal sensors, two oblique impacts", f"{quantity} signal", found, exact[: len(found)], rms=0.01)
 
 
 @pytest.mark.parametrize("filtered", ["sigma-delta", "butterworth"])
@@ -92,7 +92,14 @@ def test_accelerometers(agrees: Agrees, response: vi.Response, motion: dict[str,
     exact = seismic(motion["acceleration"], 30e3, 0.02)
     sensor = Sensor("two", filter=filtered, instrument=Accelerometer(resonance=30e3))  # type: ignore[arg-type]
     found = response.signals(sensor)["two"].value
-    agrees(f"accelerometers, {filtered}", "signal", found, sampled(exact, SAMPLES, filtered)[: len(found)], unit="m/s²", rms=0.01)
+    agrees(
+        f"accelerometers, filter {filtered}",
+        "acceleration signal",
+        found,
+        sampled(exact, SAMPLES, filtered)[: len(found)],
+        unit="m/s²",
+        rms=0.01,
+    )
 
 
 def test_friction_is_heard(response: vi.Response) -> None:

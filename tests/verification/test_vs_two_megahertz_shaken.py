@@ -18,10 +18,10 @@ from oracles.measuring_chain import RATE, Floats, SimplySupported, driven, sampl
 from vibroimpact.dynamics.sensors.sensor import Accelerometer, Sensor
 
 AGAINST = Against(
-    "the same chain at two million samples a second, shaken",
+    "measuring chain sampled at 2 MHz, shaken supports",
     "own independent computation",
     "sensors and signals",
-    "tests/oracles/measuring_chain.py: Kirchhoff's modes in closed form, SciPy's filters",
+    "tests/oracles/measuring_chain.py: Kirchhoff modes in closed form, SciPy filters",
 )
 
 pytestmark = pytest.mark.slow
@@ -98,7 +98,10 @@ def test_points(agrees: Agrees, response: vi.Response, motion: dict[str, Floats]
     doubt = response.signals(sensor)["one"].uncertainty if filtered == "none" else 0.0
     within = 0.005 if doubt < 0.005 else doubt
     agrees(
-        f"filter {filtered}", f"signal of {quantity}", *heard(response, sensor, sampled(motion[quantity], SAMPLES, filtered)), rms=within
+        f"ideal sensors, filter {filtered}",
+        f"{quantity} signal",
+        *heard(response, sensor, sampled(motion[quantity], SAMPLES, filtered)),
+        rms=within,
     )
 
 
@@ -112,8 +115,8 @@ def test_accelerometers(agrees: Agrees, response: vi.Response, motion: dict[str,
     end = meter.get("range", np.inf)
     sensor = Sensor("one", rate=SAMPLES, filter=filtered, instrument=Accelerometer(**meter))
     clipped = sampled(np.clip(exact, -end, end), SAMPLES, filtered)
-    case = f"accelerometers, {'overdriven' if np.isfinite(end) else 'within their range'}, {filtered}"
-    agrees(case, "signal", *heard(response, sensor, clipped), unit="m/s²", rms=0.01)
+    case = f"accelerometers {'beyond' if np.isfinite(end) else 'within'} their range, filter {filtered}"
+    agrees(case, "acceleration signal", *heard(response, sensor, clipped), unit="m/s²", rms=0.01)
     signal, begin = response.signals(sensor)["one"], round(EARLIER * RATE / SAMPLES)
     within = np.abs(exact[begin : begin + round(DURATION * RATE)])
     if np.isfinite(end):

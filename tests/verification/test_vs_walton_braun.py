@@ -10,7 +10,7 @@ from agreement import Against, Agrees
 from vibroimpact.contact.laws.walton_braun import WaltonBraun
 
 AGAINST = Against(
-    "Walton and Braun's closed restitutions",
+    "Walton and Braun, closed-form coefficient of restitution",
     "closed form",
     "elastic-plastic contact",
     "Walton and Braun 1986, J. Rheol. 30, 949, doi 10.1122/1.549893",
@@ -23,14 +23,26 @@ SPEEDS = np.array([0.01, 0.3, 5.0])
 
 def test_constant_restitution(agrees: Agrees) -> None:
     law = WaltonBraun(stiffness=STIFFNESS, restitution=0.6)
-    agrees("constant", "restitution", vi.integrated_restitution(law, MASS, SPEEDS), 0.6, relative=1e-10)
+    agrees(
+        "constant coefficient of restitution",
+        "coefficient of restitution",
+        vi.integrated_restitution(law, MASS, SPEEDS),
+        0.6,
+        relative=1e-10,
+    )
 
 
 def test_restitution_that_falls_with_the_speed(agrees: Agrees) -> None:
     law = WaltonBraun(stiffness=STIFFNESS, stiffening=800.0)
     frequency = np.sqrt(STIFFNESS / MASS)
     exact = np.sqrt(frequency / (800.0 * SPEEDS + frequency))
-    agrees("falls with the speed", "restitution", vi.integrated_restitution(law, MASS, SPEEDS), exact, relative=1e-10)
+    agrees(
+        "coefficient of restitution decreasing with the speed",
+        "coefficient of restitution",
+        vi.integrated_restitution(law, MASS, SPEEDS),
+        exact,
+        relative=1e-10,
+    )
 
 
 def test_it_leaves_with_an_overlap_and_the_next_contact_begins_anew() -> None:

@@ -23,18 +23,18 @@ from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.quasi_static import QuasiStatic
 
 AGAINST = Against(
-    "Zener, a sphere on an infinite plate",
+    "Zener, impact of a sphere on an infinite plate",
     "closed form",
     "impacts on vibrating bodies",
-    "Zener 1941, Phys. Rev. 59, 669, doi 10.1103/PhysRev.59.669; his equation by SciPy at 1e-10",
+    "Zener 1941, Phys. Rev. 59, 669, doi 10.1103/PhysRev.59.669; Zener's equation integrated by SciPy at a tolerance of 1e-10",
 )
 
 
 NAVIER = Against(
-    "Navier's series of Kirchhoff's plate",
+    "Kirchhoff plate, Navier series",
     "own independent computation",
     "impacts on vibrating bodies",
-    "tests/oracles/three_dimensional_plate.py: closed-form modes, integrated in small steps",
+    "closed-form modes; time integration by tests/oracles/three_dimensional_plate.py",
 )
 
 MASS, SPEED, SIDE = 0.09032078879, 8.826664149, 30.0
@@ -60,10 +60,10 @@ def plate_response(inelasticity: float, highest: float = 60.0, residual: bool = 
 def test_restitution(agrees: Agrees, inelasticity: float, restitution: float) -> None:
     response = plate_response(inelasticity)
     assert response.impacts["contacts"][0] == 1
-    case = "inelasticity 0.05 to 1, closed-form modes of a large plate"
-    agrees(case, "restitution", response.impacts["restitution_achieved"], restitution, relative=3e-5)
+    case = "inelasticity parameter 0.05 to 1, closed-form modes of a large plate"
+    agrees(case, "coefficient of restitution", response.impacts["restitution_achieved"], restitution, relative=3e-5)
     part = response.impacts["energy_to_vibration_J"] / response.energy["input_J"]
-    agrees(case, "energy left as vibration, over that put in", part, 1.0 - restitution**2, relative=3e-5)
+    agrees(case, "vibration energy of the plate, normalized by the input energy", part, 1.0 - restitution**2, relative=3e-5)
 
 
 def test_history_of_the_force(agrees: Agrees) -> None:
@@ -81,13 +81,20 @@ def test_history_of_the_force(agrees: Agrees) -> None:
     exact = solve_ivp(slopes, (0.0, 10.0), [0.0, 1.0], method="DOP853", rtol=1e-10, atol=1e-12, events=apart, dense_output=True)
     response = plate_response(inelasticity)
     end = float(response.impacts["duration_s"][0]) / TIME
-    agrees("inelasticity 0.1768", "duration, in Zener's unit", end, exact.t[-1], relative=1e-4)
+    agrees("inelasticity parameter 0.1768", "contact duration, in Zener's unit of time", end, exact.t[-1], relative=1e-4)
     tau = np.linspace(0.0, 0.999 * min(end, exact.t[-1]), 200)
     unit = MASS * SPEED / TIME
     force = np.maximum(exact.sol(tau)[0], 0.0) ** 1.5
-    agrees("inelasticity 0.1768", "largest force", response.impacts["max_force_N"], unit * force.max(), unit="N", relative=1e-4)
+    agrees(
+        "inelasticity parameter 0.1768",
+        "maximum contact force",
+        response.impacts["max_force_N"],
+        unit * force.max(),
+        unit="N",
+        relative=1e-4,
+    )
     found = response.at(tau * TIME)["force_N"] / unit
-    agrees("inelasticity 0.1768", "history of the force, in Zener's unit", found, force, of_the_largest=1e-3)
+    agrees("inelasticity parameter 0.1768", "contact force history, in Zener's unit of force", found, force, of_the_largest=1e-3)
 
 
 def test_what_is_not_an_infinite_plate() -> None:
@@ -130,10 +137,10 @@ def test_the_thin_theory_is_kirchhoffs(agrees: Agrees) -> None:
     """With point shapes and the deflection of a point, which is finite, a plate of thin elements meets the Navier series."""
     response, series, _ = kirchhoff(0.1, 0.003, 80)
     row = response.impacts
-    case = "steel ball on PMMA, thin elements"
-    agrees(case, "largest force", row["max_force_N"], series.force, unit="N", against=NAVIER, relative=5e-3)
-    agrees(case, "duration", row["duration_s"], series.duration, unit="s", against=NAVIER, relative=5e-3)
-    agrees(case, "restitution", row["restitution_achieved"], series.restitution, against=NAVIER, relative=5e-3)
+    case = "steel sphere on PMMA, thin-plate elements"
+    agrees(case, "maximum contact force", row["max_force_N"], series.force, unit="N", against=NAVIER, relative=5e-3)
+    agrees(case, "contact duration", row["duration_s"], series.duration, unit="s", against=NAVIER, relative=5e-3)
+    agrees(case, "coefficient of restitution", row["restitution_achieved"], series.restitution, against=NAVIER, relative=5e-3)
 
 
 @pytest.mark.slow
@@ -142,7 +149,7 @@ def test_a_large_plate_of_thin_elements(agrees: Agrees) -> None:
     response, series, inelasticity = kirchhoff(0.2, 0.003, 300)
     exact = restitution(inelasticity)
     assert series.restitution == pytest.approx(exact, rel=1e-3)
-    agrees("a large plate of thin elements", "restitution", response.impacts["restitution_achieved"], exact, relative=5e-3)
+    agrees("large plate, thin-plate elements", "coefficient of restitution", response.impacts["restitution_achieved"], exact, relative=5e-3)
     thick, _, _ = kirchhoff(0.2, 0.003, 300, "thick")
     assert thick.impacts["restitution_achieved"][0] != pytest.approx(exact, rel=2e-2)
 
