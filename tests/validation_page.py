@@ -1,4 +1,4 @@
-"""Write docs/validation.md from what tests recorded: `python tests/validation_page.py` (see `agreement.py`)."""
+"""Write docs/validation.md from the recorded comparisons of the tests: `python tests/validation_page.py` (see `agreement.py`)."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ from agreement import ROOT, TOLD, Kind, Subject, read
 
 PAGE = ROOT / "docs" / "validation.md"
 PROSE = Path(__file__).with_suffix(".md")
-"""What the page says in words, with places for what is made."""
+"""The text of the page, with placeholders for the generated tables."""
 KINDS = {
-    "closed form": "formulas of theory",
-    "published computation": "numbers that others printed, or points of their figures",
-    "other program": "programs, run beside this one",
-    "own independent computation": "integrations, series and finite elements that share nothing with the package but NumPy and SciPy",
-    "consistency": "no opponent: limits, conservation laws, round trips, convergence, another way through the package",
+    "closed form": "analytical solutions",
+    "published computation": "published numerical results, printed or digitized from figures",
+    "other program": "other programs, run for the same case",
+    "own independent computation": "integrations, series and finite elements that share no code with the package except NumPy and SciPy",
+    "consistency": "no external reference: limits, conservation laws, round trips, convergence, another method of the package",
     "experiment": "measurements",
 }
 
 
 def number(value: float) -> str:
-    """A number without needless zeros: 1e-8, 0.005, 12166."""
+    """Format a number without trailing zeros: 1e-8, 0.005, 12166."""
     return re.sub(r"e([+-])0*(\d)", lambda found: f"e{found[1].strip('+')}{found[2]}", f"{value:.6g}")
 
 
@@ -52,10 +52,10 @@ def _capital(text: str) -> str:
 
 
 def block(rows: list[dict[str, Any]]) -> list[str]:
-    """One opponent of one file of tests."""
+    """The section of one reference in one test file."""
     first = rows[0]
-    table = ["| case | quantity | theirs | ours | deviation | tolerance |", "|---|---|---|---|---|---|", *map(line, rows)]
-    about = f"{_capital(first['kind'])}. {first['source'].rstrip('.')}. `{first['file']}`"
+    table = ["| case | quantity | reference | vibroimpact | deviation | tolerance |", "|---|---|---|---|---|---|", *map(line, rows)]
+    about = f"{_capital(first['kind'])}: {first['source'].rstrip('.')}. Test: `{first['file']}`"
     return [f"### {_capital(first['opponent'])}", "", about, "", *table, ""]
 
 
@@ -68,7 +68,7 @@ def blocks(rows: list[dict[str, Any]], title: str) -> list[str]:
 
 
 def part(row: dict[str, Any]) -> float:
-    """The deviation as a part of what is compared, or 0 where that is nothing."""
+    """The deviation relative to the largest reference value, or 0 if that value is zero."""
     if row["measure"] not in ("absolute", "mean"):
         return float(row["deviation"])
     largest = max(map(abs, row["theirs"]))
@@ -76,8 +76,8 @@ def part(row: dict[str, Any]) -> float:
 
 
 def summary(rows: list[dict[str, Any]]) -> list[str]:
-    """Of each kind of opponent how many there are, of how many comparisons and values, and where the results are off most."""
-    table = ["| kind | what it is | opponents | comparisons | values | worst deviation, as a part |", "|---|---|---|---|---|---|"]
+    """For each kind: the numbers of references, comparisons and values, and the comparison with the largest deviation."""
+    table = ["| kind | description | references | comparisons | values | largest relative deviation |", "|---|---|---|---|---|---|"]
     for kind, some in ((kind, [row for row in rows if row["kind"] == kind]) for kind in get_args(Kind)):
         if some:
             worst = max(some, key=part)
@@ -88,14 +88,14 @@ def summary(rows: list[dict[str, Any]]) -> list[str]:
 
 
 def missing(rows: list[dict[str, Any]]) -> list[str]:
-    """Files of comparisons that were not run."""
+    """Test files without recorded comparisons."""
     found = {path.relative_to(ROOT).as_posix() for path in (ROOT / "tests" / "verification").glob("test_*.py")}
     left = sorted(found - {row["file"] for row in rows})
-    return [f"* Not run when this page was made: {', '.join(f'`{file}`' for file in left)}.", ""] if left else []
+    return [f"* **Not run** when this page was generated: {', '.join(f'`{file}`' for file in left)}.", ""] if left else []
 
 
 def page(rows: list[dict[str, Any]]) -> str:
-    """The whole page, of rows as `agreement.read` has them."""
+    """The complete page, from rows as `agreement.read` returns them."""
     measured, computed = ([row for row in rows if (row["kind"] == "experiment") == which] for which in (True, False))
     tables = []
     for subject in get_args(Subject):
