@@ -10,8 +10,9 @@ import numpy as np
 
 import vibroimpact as vi
 from vibroimpact.cases.rigid import rigid_problem
+from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.response import Response
-from vibroimpact.identification.plate import Plate, plate_of
+from vibroimpact.identification.plate import Plate, compliance_error, plate_of, with_compliance
 from vibroimpact.signals.record import Record
 
 RATE, WINDOW, DELAY = 25600.0, 5e-3, 4e-3
@@ -67,14 +68,26 @@ class Impact:
         return float(0.5 * duration * weights @ force)
 
 
-def an_impact(radius: float, speed: float, place: tuple[float, float], modes: int = 280) -> Impact:
-    """A sphere that touches the plate first at `DELAY`."""
+def an_impact(radius: float, speed: float, place: tuple[float, float], modes: int = 280, off: np.random.Generator | None = None) -> Impact:
+    """A sphere that touches the plate first at `DELAY`; the plate is off its model by what the model states of its own errors, if asked."""
     case, there = plate(modes).case, plate(modes).at(place)
+    if off is not None:
+        there = off_by_its_errors(plate(modes), there, off)
     rigid = rigid_problem(case.model_copy(update={"sphere": case.sphere.model_copy(update={"radius": radius})}))
     gravity = float(there.gravity)
     height = radius + speed * DELAY - 0.5 * gravity * DELAY**2
     falling = {"speed": None, "height": height, "velocity": gravity * DELAY - speed, "impacts": None, "duration": DELAY + 2.0 * WINDOW}
     return Impact(radius, speed, place, vi.simulate(replace(there, sphere=rigid.sphere, laws=rigid.laws, **falling)))
+
+
+def off_by_its_errors(plate: Plate, problem: Problem, random: np.random.Generator) -> Problem:
+    """A problem with frequencies and static compliance drawn from the errors that the model of its plate states."""
+    mean, deviation = compliance_error(plate, problem)
+    modes = problem.plate.modes
+    assert modes is not None
+    frequencies = modes.frequencies * (1.0 + plate.frequency_errors * random.standard_normal(len(modes.frequencies)))
+    softer = with_compliance(problem, mean + deviation * random.standard_normal())
+    return replace(softer, plate=replace(problem.plate, modes=replace(modes, frequencies=frequencies)))
 
 
 def records_of(impact: Impact, decibels: float, seed: int) -> list[Record]:

@@ -19,6 +19,7 @@ import vibroimpact as vi
 from identifying import DELAY, RATE, SENSORS, THICKNESS, WINDOW, a_case, an_impact, drawn, plate, records_of
 from vibroimpact.dynamics.sensors.place_responses import sampled_responses
 from vibroimpact.identification.contact import contact_forces
+from vibroimpact.identification.force import whitening
 from vibroimpact.identification.identify import identify_on
 from vibroimpact.identification.plate import compliances_of, plate_of, shapes_of
 from vibroimpact.signals.inverse.deconvolve import deconvolve
@@ -98,34 +99,48 @@ def test_a_hertzian_pulse_is_that_of_the_equation_of_motion() -> None:
     assert found == pytest.approx((radius, speed), rel=2e-3)
 
 
+def third_differences(nodes: int, roughness: np.ndarray) -> np.ndarray:
+    found = np.zeros((nodes + 3, nodes))
+    for node in range(nodes):
+        found[node : node + 4, node] = 1.0, -3.0, 3.0, -1.0
+    return found / roughness[:, None]
+
+
 def test_a_deconvolved_force_is_the_least_squares_solution_with_its_prior() -> None:
     random = np.random.default_rng(3)
-    matrix, record = random.standard_normal((60, 12)), random.standard_normal(60)
-    found = deconvolve(matrix, record)
-    bend = np.zeros((14, 12))
-    for node in range(12):
-        bend[node : node + 3, node] = 1.0, -2.0, 1.0
+    matrix, record, roughness = random.standard_normal((60, 12)), random.standard_normal(60), random.uniform(1.0, 20.0, 15)
+    found = deconvolve(matrix, record, roughness)
+    bend = third_differences(12, roughness)
     # the strength that was found, from the covariance
     precision = np.linalg.inv(found.covariance) - matrix.T @ matrix
     strength = np.trace(precision) / np.trace(bend.T @ bend)
     assert precision == pytest.approx(strength * bend.T @ bend, abs=1e-6 * strength)
     stacked = np.concatenate([matrix, np.sqrt(strength) * bend])
-    assert found.force == pytest.approx(np.linalg.lstsq(stacked, np.append(record, np.zeros(14)), rcond=None)[0])
+    assert found.force == pytest.approx(np.linalg.lstsq(stacked, np.append(record, np.zeros(15)), rcond=None)[0])
 
 
 def test_the_marginal_likelihood_is_that_of_the_records() -> None:
     random = np.random.default_rng(4)
-    matrix, record = random.standard_normal((30, 6)), 3.0 * random.standard_normal(30)
-    bend = np.diff(np.eye(10), 2, axis=0)[:, 2:-2]
-    chosen = deconvolve(matrix, record)
+    matrix, record, rough = random.standard_normal((30, 6)), 3.0 * random.standard_normal(30), np.linspace(1.0, 8.0, 9)
+    bend, chosen = third_differences(6, np.ones(9)), deconvolve(matrix, record)
     precision = np.linalg.inv(chosen.covariance) - matrix.T @ matrix
     strength = np.trace(precision) / np.trace(bend.T @ bend)
 
-    def evidence(at: float) -> float:
+    def evidence(at: float, bend: np.ndarray = bend) -> float:
         covariance = np.eye(30) + matrix @ np.linalg.inv(at * bend.T @ bend) @ matrix.T
         return float(-0.5 * (record @ np.linalg.solve(covariance, record) + np.linalg.slogdet(covariance)[1]))
 
     assert evidence(strength) >= max(evidence(1.5 * strength), evidence(strength / 1.5))
+    other, bent = deconvolve(matrix, record, rough), third_differences(6, rough)
+    its_strength = np.trace(np.linalg.inv(other.covariance) - matrix.T @ matrix) / np.trace(bent.T @ bent)
+    assert other.evidence - chosen.evidence == pytest.approx(evidence(its_strength, bent) - evidence(strength), rel=1e-9)
+
+
+def test_errors_of_the_model_are_made_white_with_the_noise() -> None:
+    random = np.random.default_rng(5)
+    errors = random.standard_normal((40, 7)) * random.uniform(0.1, 9.0, 7)
+    white = whitening(errors)(np.eye(40))
+    assert white @ (np.eye(40) + errors @ errors.T) @ white.T == pytest.approx(np.eye(40), abs=1e-12)
 
 
 @pytest.mark.parametrize("impacts", [3, pytest.param(10, marks=pytest.mark.slow)])

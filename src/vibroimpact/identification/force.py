@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,6 +12,7 @@ from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.sensors.antialias import FINENESS
 from vibroimpact.dynamics.sensors.place_responses import sampled_responses
 from vibroimpact.identification.measured import Measured
+from vibroimpact.identification.model_errors import model_error_signals
 from vibroimpact.identification.plate import Plate, compliances_of, shapes_of
 from vibroimpact.signals.inverse.deconvolve import Deconvolved, deconvolve
 
@@ -18,6 +20,8 @@ _BEFORE, _AFTER = 0.35, 1.8
 """Where the force may act: in durations of the pulse before its first touch, and after it."""
 _MOST = 120
 """Largest number of nodes."""
+_KINK, _KINKS = 0.06, (0.0, 3.0, 15.0, 63.0, 255.0)
+"""How far the kinks of a force at its begin and end reach, in durations, and how much larger its third differences may be there."""
 
 
 @dataclass(frozen=True)
@@ -83,6 +87,25 @@ def force_behind(plate: Plate, measured: Measured, there: Problem, touch: float,
     columns = [sampled_responses(answers, measured.rate, one + spread, share, samples) for one in time]
     matrix = np.stack([(column / measured.noise[:, None]).ravel() for column in columns], axis=1)
     record = (measured.value / measured.noise[:, None]).ravel()
-    found = deconvolve(matrix, record)
+    # third differences lie between the nodes; those of a kink are large
+    beside = time[0] + step * (np.arange(len(time) + 3) - 1.5)
+    kinks = sum(np.exp(-(((beside - one) / (_KINK * duration)) ** 2)) for one in (touch, touch + duration))
+    first = _smooth(matrix, record, kinks)
+    times, impulses = (time[:, None] + spread).ravel(), (first.force[:, None] * share).ravel()
+    of_model = model_error_signals(plate, there, names, measured.rate, times, impulses, samples) / measured.noise[:, None]
+    white = whitening(of_model.reshape(len(of_model), -1).T)
+    found = _smooth(white(matrix), white(record), kinks)
     left = (record - matrix @ found.force).reshape(measured.value.shape)
     return Force(np.asarray(time), found, measured.noise[:, None] * left)
+
+
+def _smooth(matrix: Floats, record: Floats, kinks: Floats) -> Deconvolved:
+    """Return the force with the kinks, where it begins and ends, that the records prefer."""
+    return max((deconvolve(matrix, record, 1.0 + more * kinks) for more in _KINKS), key=lambda found: found.evidence)
+
+
+def whitening(errors: Floats) -> Callable[[Floats], Floats]:
+    """Return the map that makes the sum of unit white noise and of errors (samples, n) with unit deviations white."""
+    vectors, deviations, _ = np.linalg.svd(errors, full_matrices=False)
+    less = 1.0 - 1.0 / np.sqrt(1.0 + deviations**2)
+    return lambda values: values - (vectors * less) @ (vectors.T @ values)

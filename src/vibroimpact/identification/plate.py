@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
+from scipy.stats.qmc import Halton
 
 from vibroimpact.arrays import Floats
 from vibroimpact.cases.build import check_case, problem_of
+from vibroimpact.cases.elastic.bodies import elastic_bodies
 from vibroimpact.cases.elastic.coupling import at_place, treatment_of
 from vibroimpact.cases.fields.elastic_body import BroughtMeshTable
 from vibroimpact.cases.oblique import oblique_keys
@@ -19,6 +22,8 @@ from vibroimpact.dynamics.sensors.place_responses import PlaceResponses, place_r
 from vibroimpact.dynamics.vibrating.bodies import bases_of_plate
 from vibroimpact.errors import InputError
 from vibroimpact.structures.modal_model import rigid_basis
+from vibroimpact.structures.recipe import PlateOfPlates, PlateOfSolids
+from vibroimpact.structures.static_compliance import computed_compliances
 
 Place = tuple[float, float]
 """x and y on the plate [m]."""
@@ -29,6 +34,8 @@ _DETUNED = 1e-5
 """Relative step of a frequency in derivatives."""
 _LEFT_OUT = 16
 """Number of modes that stand for those left out: so dense that they do not swing back during a contact."""
+_FINER, _PLACES, _MIDDLE = 1.5, 32, 0.6
+"""How much finer a mesh is whose static compliance is compared, at how many places, over what part of the length and width of the plate."""
 _MARGIN = 1.5
 """Least distance of a place from the edge, in thicknesses."""
 
@@ -47,6 +54,8 @@ class Plate:
         Length of the responses [s].
     frequency_errors : array, shape (modes,)
         Standard deviation of the relative error of the frequency of each rigid motion and mode [-].
+    lacking : tuple of two floats
+        Mean and standard deviation, over places, of the part of its static compliance that the mesh lacks [-].
     responses : dict
         Responses that were computed, by the names of sensors.
     """
@@ -55,6 +64,7 @@ class Plate:
     problem: Problem
     window: float
     frequency_errors: Floats
+    lacking: tuple[float, float] = (0.0, 0.0)
     responses: dict[tuple[str, ...], PlaceResponses] = field(default_factory=dict)
 
     @property
@@ -120,13 +130,14 @@ def compliances_of(problem: Problem, names: Sequence[str]) -> Floats:
     return np.array([residuals[name] @ directions[name] if name in residuals else 0.0 for name in names])
 
 
-def with_modes_left_out(problem: Problem) -> Problem:
-    r"""Return a problem whose plate has an estimate of the modes left out at the contact: a few that stand for all of them.
+def with_modes_left_out(problem: Problem) -> list[Problem]:
+    r"""Return problems whose plate has an estimate of the modes left out at the contact: those of the next octave, and those above it.
 
     Where the modes above the last, at :math:`\omega_c`, are as dense as in the octave below it and move the contact as much, their
     receptance at :math:`\omega` is :math:`\int_{\omega_c}^\infty C \omega_c\,d\varpi/(\varpi^2 - \omega^2)`, with their static compliance
     C. By the rule of Gauss and Legendre in :math:`\xi = \omega_c/\varpi`, with nodes :math:`\xi_k` and weights :math:`w_k`, it is that of
-    modes at :math:`\omega_c/\xi_k` of compliances :math:`C w_k`. Statically nothing changes, since all compliance is there already.
+    modes at :math:`\omega_c/\xi_k` of compliances :math:`C w_k`, those of the next octave with :math:`\xi_k > 1/2`. Statically nothing
+    changes, since all compliance is there already.
     """
     modes = problem.plate.modes
     assert modes is not None  # `plate_of` has seen to it
@@ -134,19 +145,28 @@ def with_modes_left_out(problem: Problem) -> Problem:
     octave = modes.angular_frequencies > 0.5 * last
     compliance = float((modes.contact[octave] ** 2).sum()) / (0.5 * last) / last
     nodes, weights = (both[: _LEFT_OUT - 1 : -1] for both in np.polynomial.legendre.leggauss(2 * _LEFT_OUT))
+    next_octave = nodes > 0.5
+    return [_with_modes(problem, last / nodes[part], compliance * weights[part]) for part in (next_octave, ~next_octave)]
+
+
+def _with_modes(problem: Problem, frequencies: Floats, compliances: Floats) -> Problem:
+    """Return a problem whose plate has more modes at the contact, of angular frequencies [rad/s] and static compliances [m/N] (n,)."""
+    modes = problem.plate.modes
+    assert modes is not None
+    number = len(frequencies)
     above = replace(
         modes,
-        frequencies=np.append(modes.frequencies, modes.frequencies[-1] / nodes),
-        damping_ratios=np.append(modes.damping_ratios, np.full(_LEFT_OUT, modes.damping_ratios[-1])),
-        contact=np.append(modes.contact, last / nodes * np.sqrt(compliance * weights)),
-        participation=np.concatenate([modes.participation, np.zeros((_LEFT_OUT, 3))]),
+        frequencies=np.append(modes.frequencies, frequencies / (2.0 * np.pi)),
+        damping_ratios=np.append(modes.damping_ratios, np.full(number, modes.damping_ratios[-1])),
+        contact=np.append(modes.contact, frequencies * np.sqrt(compliances)),
+        participation=np.concatenate([modes.participation, np.zeros((number, 3))]),
         points={},
         rotation=None,
         frequency_errors=None,
         residuals={},
         along=None,
     )
-    return replace(with_compliance(problem, -compliance), plate=replace(problem.plate, modes=above), sensors=())
+    return replace(with_compliance(problem, -compliances.sum()), plate=replace(problem.plate, modes=above), sensors=())
 
 
 def with_compliance(problem: Problem, more: float) -> Problem:
@@ -154,15 +174,16 @@ def with_compliance(problem: Problem, more: float) -> Problem:
     return replace(problem, quasi_static=replace(problem.quasi_static, linear=problem.quasi_static.linear + more))
 
 
-def compliance_error(problem: Problem, frequency_errors: Floats) -> float:
-    """Return the standard deviation of the static compliance of the plate at the contact [m/N].
+def compliance_error(plate: Plate, problem: Problem) -> tuple[float, float]:
+    """Return mean and standard deviation of what the static compliance of the plate lacks at the contact of a problem [m/N].
 
-    What makes the frequencies too high makes the plate too stiff: the errors of all its modes have one sign.
+    Its mesh makes a plate too stiff. What makes the frequencies too high does too: the errors of all its modes have one sign.
     """
     modes = problem.plate.modes
     assert modes is not None  # `plate_of` has seen to it
-    of_modes = frequency_errors[-len(modes.frequencies) :]
-    return float((2.0 * of_modes * (modes.contact / modes.angular_frequencies) ** 2).sum())
+    of_modes = (modes.contact / modes.angular_frequencies) ** 2
+    mean, spread = (float(part * of_modes.sum()) for part in plate.lacking)
+    return mean, math.hypot(spread, 2.0 * float(plate.frequency_errors[-len(of_modes) :] @ of_modes))
 
 
 def plate_of(case: CaseTable, window: float, frequency_error: float = 0.0, progress: Callable[[float], None] | None = None) -> Plate:
@@ -205,4 +226,19 @@ def plate_of(case: CaseTable, window: float, frequency_error: float = 0.0, progr
     assert modes is not None  # the plate is elastic
     of_mesh = np.zeros(len(modes.frequencies)) if modes.frequency_errors is None else np.nan_to_num(modes.frequency_errors)
     errors = np.concatenate([np.zeros(0 if rigid is None else len(rigid.frequencies)), np.hypot(of_mesh, frequency_error)])
-    return Plate(case, problem, window, errors)
+    return Plate(case, problem, window, errors, _lacking(case))
+
+
+def _lacking(case: CaseTable) -> tuple[float, float]:
+    """Return mean and deviation over places of the part of its static compliance that the mesh of a plate lacks, 0 for that of a file [-].
+
+    It is what a finer mesh adds, which is most of it: near a point force the error falls with the square of the element size or faster.
+    """
+    recipe = elastic_bodies(case)["plate"].recipe
+    if not isinstance(recipe.shape, PlateOfPlates | PlateOfSolids):
+        return 0.0, 0.0
+    finer = replace(recipe, shape=replace(recipe.shape, element_size=recipe.shape.element_size / _FINER))
+    spread = _MIDDLE * np.asarray(recipe.shape.size[:2]) * (Halton(2, scramble=False).random(_PLACES + 1)[1:] - 0.5)
+    places = [(x, y) for x, y in spread.tolist()]
+    added = computed_compliances(finer, places) / computed_compliances(recipe, places) - 1.0
+    return float(added.mean()), float(added.std())

@@ -3,9 +3,10 @@ r"""Size, speed and place of a sphere from records: the contact of the case is c
 The modes that the case keeps end somewhere, and its mesh has errors. These are unknowns of the fit with a prior, so that the intervals
 contain them:
 
-* the contact force is :math:`F + c\,\Delta F`, with the change :math:`\Delta F` by an estimate of all modes left out, and c of mean one
-  and deviation one;
-* the static compliance of the plate at the contact has an error of zero mean, of the size that the errors of the frequencies tell;
+* the contact force is :math:`F + c_1\,\Delta_1 F + c_2\,\Delta_2 F`, with the changes by an estimate of the modes left out, in the next
+  octave and above it, and both c of mean one, with the deviations 0.3 and one;
+* the static compliance of the plate at the contact lacks what a finer mesh adds, with the spread over places and the errors of the
+  frequencies as its deviation;
 * the static response of the modes left out to each sensor is multiplied by :math:`1 + d_s`, of zero mean and deviation one, as it grows
   towards their frequencies;
 * each frequency is multiplied by :math:`1 + \epsilon_i`, of zero mean and of its own estimated error.
@@ -25,6 +26,7 @@ from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.sensors.place_responses import sampled_responses
 from vibroimpact.identification.contact import ContactForce, contact_forces
 from vibroimpact.identification.measured import Measured
+from vibroimpact.identification.model_errors import model_error_signals
 from vibroimpact.identification.plate import Place, Plate, compliance_error, compliances_of, shapes_of, with_compliance, with_modes_left_out
 from vibroimpact.identification.pulses import Candidate
 from vibroimpact.signals.inverse.gauss_newton import gauss_newton
@@ -34,10 +36,12 @@ _NUDGE, _LEAP, _RATIO = 1e-4, 0.02, 2e-3
 """Steps of derivatives: along the plate [m], in time [samples], in radius and speed [-]."""
 _RESTITUTION = 0.6
 """Restitution that the start is made with."""
+_NEXT_OCTAVE = 0.3
+"""Standard deviation of the effect of the modes of the next octave, over its estimate: twice that over 60 places of a plate."""
 _FITTED = 5
 """Number of parameters that are asked for; unknowns with a prior follow them."""
-_OF_FORCE = [2, 3, 5, 6]
-"""Those that the contact force depends on: radius, speed, c and the error of the compliance."""
+_OF_FORCE = [2, 3, 5, 6, 7]
+"""Those that the contact force depends on: radius, speed, both c and the error of the compliance."""
 
 
 @dataclass(frozen=True)
@@ -75,7 +79,7 @@ class _Explained(NamedTuple):
     """What a sphere makes of the records.
 
     `left`: its signals less the records, (S, samples). `slopes`: derivatives of `left` in all parameters and unknowns (S, samples, p).
-    `force`: its contact force. `force_slopes`: derivatives of the facts of the force in radius, speed and its two unknowns, (3, 4).
+    `force`: its contact force. `force_slopes`: derivatives of the facts of the force in radius, speed and its three unknowns, (3, 5).
     `problem`: with the contact at its place.
     """
 
@@ -104,15 +108,16 @@ def fit_sphere(plate: Plate, measured: Measured, start: Candidate, place: Place 
     pulse = (start.impulse, start.duration, case.sphere.material.density, contact_pair(case).effective_modulus)
     radius, speed = sphere_of_pulse(*pulse, _RESTITUTION)
     parameters = np.array([*(start.place if place is None else place), np.log(radius), np.log(speed), start.touch])
-    prior = np.append(np.ones(2 + len(measured.sensors)), plate.frequency_errors)
-    expected, own = np.eye(len(prior))[0], np.append(np.ones(_FITTED), prior)  # unknowns are in their deviations
-    most = np.array([*(0.06 * np.array(plate.half)), 0.3, 0.3, 1.0 / measured.rate, *np.full(len(prior), np.inf)])
-    by_prior = np.concatenate([np.zeros((len(prior), _FITTED)), np.eye(len(prior))], axis=1)
-    free = np.concatenate([np.full(2, place is None), np.ones(3), prior])
+    lacking, deviation = compliance_error(plate, plate.problem)
+    unknowns = 3 + len(measured.sensors) + len(plate.frequency_errors)  # in their deviations
+    expected = np.append([1.0 / _NEXT_OCTAVE, 1.0, lacking / deviation if deviation else 0.0], np.zeros(unknowns - 3))
+    most = np.array([*(0.06 * np.array(plate.half)), 0.3, 0.3, 1.0 / measured.rate, *np.full(unknowns, np.inf)])
+    by_prior = np.concatenate([np.zeros((unknowns, _FITTED)), np.eye(unknowns)], axis=1)
+    free = np.concatenate([np.full(2, place is None), np.ones(3 + unknowns)])
 
     @lru_cache(maxsize=2)
     def explained(given: bytes) -> _Explained:
-        return _explained(plate, measured, np.frombuffer(given) * own)
+        return _explained(plate, measured, np.frombuffer(given))
 
     def weighted(given: Floats, noise: Floats) -> tuple[Floats, Floats]:
         found = explained(given.tobytes())
@@ -148,43 +153,37 @@ def _noise_of(left: Floats, slopes: Floats, covariance: Floats) -> Floats:
 
 
 def _explained(plate: Plate, measured: Measured, parameters: Floats) -> _Explained:
-    """Return what a sphere makes of the records, from its parameters and the unknowns, each in its own unit."""
+    """Return what a sphere makes of the records, from its parameters and the unknowns, in their deviations."""
     case, names = plate.case, [sensor.name for sensor in measured.sensors]
     heard, bound, samples = plate.heard(names), np.array(plate.half), measured.value.shape[1]
     place, (radius, speed, touch), unknown = np.clip(parameters[:2], -bound, bound), parameters[2:_FITTED], parameters[_FITTED:]
     there = plate.at((float(place[0]), float(place[1])))
-    shapes, compliances = shapes_of(there), compliances_of(there, names)
-    answers = heard.at(shapes, compliances)
+    answers = heard.at(shapes_of(there), compliances_of(there, names))
     nudged = plate.deflections(place + _NUDGE * np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]))
     radii, speeds = np.exp(radius + _RATIO * np.array([0, 1, 0])), np.exp(speed + _RATIO * np.array([0, 0, 1]))
     force, *others = contact_forces(case, there, radii, speeds)
-    (whole,) = contact_forces(case, with_modes_left_out(there), radii[:1], speeds[:1])
-    (softer,) = contact_forces(case, with_compliance(there, compliance_error(there, plate.frequency_errors)), radii[:1], speeds[:1])
+    softer = with_compliance(there, compliance_error(plate, there)[1])
+    changed = [contact_forces(case, one, radii[:1], speeds[:1])[0] for one in (*with_modes_left_out(there), softer)]
 
     def signals(at: Floats, of: ContactForce = force, later: float = 0.0) -> Floats:
         return sampled_responses(at, measured.rate, touch + later + of.time, of.impulse, samples)
 
     bare, later = signals(answers), _LEAP / measured.rate
-    static = signals(compliances[:, None] * heard.residual)
-    detuned = signals((shapes[:, None, None] * plate.detuned(names)).reshape(len(shapes) * len(names), -1))
+    of_model = model_error_signals(plate, there, names, measured.rate, touch + force.time, force.impulse, samples)
+    deviations = np.array([_NEXT_OCTAVE, 1.0, 1.0])
+    errors = np.concatenate([deviations[:, None, None] * [signals(answers, one) - bare for one in changed], of_model])
     none = np.zeros(len(names))
-    errors = np.concatenate(
-        [
-            np.stack([signals(answers, whole) - bare, signals(answers, softer) - bare]),
-            np.eye(len(names))[:, :, None] * static,
-            detuned.reshape(len(shapes), len(names), samples),
-        ]
-    )
     slopes = [
         *(signals(heard.at((one - nudged[0]) / _NUDGE, none)) for one in nudged[1:]),
         *((signals(answers, one) - bare) / _RATIO for one in others),
         (signals(answers, later=later) - bare) / later,
     ]
-    of_force = [*((one.facts - force.facts) / _RATIO for one in others), whole.facts - force.facts, softer.facts - force.facts]
+    of_unknowns = deviations * np.stack([one.facts - force.facts for one in changed], axis=1)
+    of_radius_and_speed = np.stack([(one.facts - force.facts) / _RATIO for one in others], axis=1)
     return _Explained(
         bare + np.tensordot(unknown, errors, 1) - measured.value,
         np.moveaxis(np.concatenate([np.stack(slopes), errors]), 0, -1),
-        replace(force, facts=force.facts + unknown[0] * of_force[2] + unknown[1] * of_force[3]),
-        np.stack(of_force, axis=1),
+        replace(force, facts=force.facts + of_unknowns @ unknown[: len(changed)]),
+        np.concatenate([of_radius_and_speed, of_unknowns], axis=1),
         there,
     )

@@ -1,8 +1,8 @@
 r"""Regularised deconvolution: a force in time from records that are linear in it.
 
-The force is piecewise linear between nodes, zero at both ends, and smooth: its second differences are normal, of a common standard
-deviation. Both that deviation and the estimate follow from the marginal likelihood of the records (D. J. C. MacKay, Bayesian
-interpolation, Neural Computation 4:415, 1992).
+The force is piecewise linear between nodes, zero at both ends, and smooth: its third differences are normal, of a common standard
+deviation, which may be larger by a factor where a contact begins and ends. Both that deviation and the estimate follow from the marginal
+likelihood of the records (D. J. C. MacKay, Bayesian interpolation, Neural Computation 4:415, 1992).
 A sign is not imposed: the contact laws of many programs pull before release, and where the records do not tell the force, the band says so.
 """
 
@@ -14,7 +14,7 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 
-_STRENGTHS = np.logspace(-10.0, 6.0, 161)
+_STRENGTHS = np.logspace(-12.0, 6.0, 181)
 """Strengths of the prior that are tried, over that of the data."""
 
 
@@ -30,11 +30,14 @@ class Deconvolved:
         Covariance of the force [N^2].
     strength : float
         Strength of the prior, over that of the data.
+    evidence : float
+        Logarithm of the marginal likelihood of the records, but for a constant.
     """
 
     force: Floats
     covariance: Floats
     strength: float
+    evidence: float
 
     @property
     def deviation(self) -> Floats:
@@ -46,7 +49,7 @@ class Deconvolved:
         return float(np.sqrt(weights @ self.covariance @ weights))
 
 
-def deconvolve(matrix: Floats, record: Floats) -> Deconvolved:
+def deconvolve(matrix: Floats, record: Floats, roughness: Floats | None = None) -> Deconvolved:
     """Return the force behind records.
 
     Parameters
@@ -55,6 +58,8 @@ def deconvolve(matrix: Floats, record: Floats) -> Deconvolved:
         The records of a unit force at each node, over the standard deviation of the noise.
     record : array, shape (samples,)
         The records, over the same.
+    roughness : array, shape (nodes + 3,), optional
+        Relative standard deviations of the third differences, which lie half a step beside the nodes; ones by default.
 
     Examples
     --------
@@ -69,14 +74,16 @@ def deconvolve(matrix: Floats, record: Floats) -> Deconvolved:
     from scipy.linalg import eigh
 
     nodes = matrix.shape[1]
-    bend = np.diff(np.eye(nodes + 4), 2, axis=0)[:, 2:-2]  # second differences of a force that is zero outside
-    normal, smooth, told = matrix.T @ matrix, bend.T @ bend, matrix.T @ record
+    differences = np.diff(np.eye(nodes + 6), 3, axis=0)[:, 3:-3]  # of a force that is zero outside
+    rough = differences if roughness is None else differences / roughness[:, None]
+    normal, smooth, told = matrix.T @ matrix, rough.T @ rough, matrix.T @ record
     # both quadratic forms are diagonal in the same coordinates
     values, vectors = eigh(normal, smooth)
     values, heard = np.maximum(values, 0.0), vectors.T @ told
     scale = float(values.max())
     strengths = scale * _STRENGTHS[:, None]
     evidence = 0.5 * (heard**2 / (values + strengths) - np.log1p(values / strengths)).sum(axis=1)
-    strength = float(strengths[int(np.argmax(evidence)), 0])
+    best = int(np.argmax(evidence))
+    strength = float(strengths[best, 0])
     covariance = (vectors / (values + strength)) @ vectors.T
-    return Deconvolved(np.asarray(covariance @ told), np.asarray(covariance), strength / scale)
+    return Deconvolved(np.asarray(covariance @ told), np.asarray(covariance), strength / scale, float(evidence[best]))

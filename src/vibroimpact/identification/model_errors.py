@@ -1,0 +1,45 @@
+"""Effect of the errors of a plate's model on the records of its sensors."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.sensors.place_responses import sampled_responses
+from vibroimpact.identification.plate import Plate, compliances_of, shapes_of
+
+
+def model_error_signals(
+    plate: Plate, there: Problem, names: Sequence[str], rate: float, times: Floats, impulses: Floats, samples: int
+) -> Floats:
+    """Return the changes of the records of a force by one standard deviation of each error of the plate's model, (S + modes, S, samples).
+
+    The errors are those of the static response of the modes left out to each sensor, whose standard deviation is that response, as it
+    grows towards their frequencies, and those of the frequencies.
+
+    Parameters
+    ----------
+    plate : Plate
+        The plate.
+    there : Problem
+        The problem with the contact at the place of the force.
+    names : sequence of str
+        Names of the S sensors.
+    rate : float
+        Samples per second [Hz].
+    times, impulses : array, shape (n,)
+        When the force acts, after the first sample [s], and its impulses [N s].
+    samples : int
+        Number of samples of a record.
+    """
+    shapes, residual = shapes_of(there), plate.heard(names).residual
+
+    def signals(at: Floats) -> Floats:
+        return sampled_responses(at, rate, times, impulses, samples)
+
+    static = np.eye(len(names))[:, :, None] * signals(compliances_of(there, names)[:, None] * residual)
+    scaled = (plate.frequency_errors * shapes)[:, None, None] * plate.detuned(names)
+    return np.concatenate([static, signals(scaled.reshape(len(shapes) * len(names), -1)).reshape(len(shapes), len(names), samples)])
