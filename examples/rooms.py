@@ -34,7 +34,7 @@ FLOORS = {  # top to bottom: what a floor is, its colour, its rooms and what the
         {
             "identification": "force, place, size\nand speed from records",
             "correlation": "tests laid over\nsimulations",
-            "bounds": "what no classifier\ncan tell",
+            "bounds": "lowest possible\nclassification error",
             "recognition": "classifiers that can't\nfool themselves",
         },
     ),

@@ -36,7 +36,7 @@ class Recognised:
     probabilities : array, shape (signals, classes)
         Probability of each class.
     counted : tuple of float
-        Part of the signals taken for each class.
+        Fraction of the signals classified as each class.
     fractions : mapping of str to Estimate
         The fraction of each class, corrected by what the model confuses.
     accuracy : float, optional
