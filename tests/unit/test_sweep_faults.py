@@ -121,7 +121,7 @@ def test_ctrl_c_says_how_to_go_on(tmp_path: Path) -> None:
     assert running.returncode == 130
     first, last = told.strip().splitlines()
     assert first == "vibroimpact: stopping after the drops that are under way; Ctrl-C once more stops at once"
-    assert last.startswith("vibroimpact: interrupted; the drops that are done stay; go on with: vibroimpact sweep")
+    assert last.startswith("vibroimpact: interrupted; completed drops are kept; continue with: vibroimpact sweep")
     assert f"-o {folder} --resume" in last
     assert 0 < chunks_done(folder) < 40
     compute_study(vi.load_sweep(study), folder, resume=True)

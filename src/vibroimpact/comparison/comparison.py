@@ -110,7 +110,7 @@ _COLUMNS = ("max_indentation_m", "max_force_N", "duration_s", "rebound_height_m"
 def comparison_title(comparison: Comparison) -> str:
     """Return the title of a comparison, without the name of the case, which may mention a law that is not compared."""
     number = len(comparison.results)
-    return f"One drop under {number} contact law{'' if number == 1 else 's'}"
+    return f"One drop with {number} contact law{'' if number == 1 else 's'}"
 
 
 def comparison_subtitle(comparison: Comparison) -> str:

@@ -269,7 +269,7 @@ def _acting(problem: Problem, acquired: Acquired, hears: Listening, window: floa
         acting = _Acting(Pushes(time, acquired.force / rate, np.empty((0, 2))), 0.0, length, over)
     if length * rate < _LEAST:
         words = f"there are {max(0, int(length * rate))} samples from the first touch to the next, or to the end of the records"
-        raise InputError(f"{words}; {_LEAST} are needed, which are {1e3 * _LEAST / rate:.3g} ms at {rate:g} Hz; state a window")
+        raise InputError(f"{words}; {_LEAST} are needed, that is {1e3 * _LEAST / rate:.3g} ms at {rate:g} Hz; state a window")
     return acting
 
 
