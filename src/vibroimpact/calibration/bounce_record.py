@@ -67,5 +67,5 @@ def impacts_in_bounces(bounces: Bounces, *, gravity: float, first_speed: float, 
         noise_from="the times of the touches",
         doubts=bounces.doubts,
         flights=flights,
-        notes=(f"{number + 1} touches are heard{others}{'' if heard else first}.",),
+        notes=(f"{number + 1} touches are detected{others}{'' if heard else first}.",),
     )

@@ -78,7 +78,7 @@ class ImpactTarget(Section):
     def _one_rebound(self) -> ImpactTarget:
         given = [key for key in ("separation_speed", "rebound_height", "restitution") if getattr(self, key) is not None]
         if len(given) > 1:
-            raise InputError(f"{' and '.join(given)} say the same; give one of them", given[1])
+            raise InputError(f"{' and '.join(given)} are equivalent; give one of them", given[1])
         return self
 
 
@@ -87,13 +87,13 @@ class FileTarget(Section):
 
     file: str = Field(
         description="a CSV file whose header names its columns with their units, a universal file (UFF 58) with a record, or a WAV or "
-        "NetCDF file in which bounces are heard"
+        "NetCDF file with a record of bounces"
     )
     function: str | None = Field(None, description="which function of a universal file, by its first line of identification or its number")
     channel: str | None = Field(
-        None, description="the channel in which bounces are heard: of a WAV or NetCDF file that has several, or of a file of another kind"
+        None, description="the channel with the bounces: of a WAV or NetCDF file that has several, or of a file of another kind"
     )
-    contact_duration: Annotated[float, Quantity("s", "how long the contacts last between flights that are heard", _POSITIVE)] | None = None
+    contact_duration: Annotated[float, Quantity("s", "contact time of the impacts in a record of bounces", _POSITIVE)] | None = None
 
 
 Target = ContactSection | RestitutionTarget | HeightsTarget | ImpactTarget | FileTarget
@@ -191,8 +191,8 @@ class CalibrateSection(Section):
     )
     air: StrictBool | None = Field(
         None,
-        description="whether the sphere was measured in air, whose drag its flights then have, as drop.air says, or at 20 C and sea "
-        "level; without both keys they are those of a vacuum, and a doubt says where drag matters",
+        description="whether the sphere was measured in air: its flights then have the drag of drop.air, or of air at 20 C and sea "
+        "level; without both keys they are those in a vacuum, and a doubt is raised where drag matters",
     )
     match: Annotated[Any, BeforeValidator(_read_match), JsonSchema("what of an impact is matched", _match_schema)] = Field(
         None, description="what of an impact is matched: one, or a table of several with weights; by default the rebound, if it is there"

@@ -44,7 +44,7 @@ IMPACT_COLUMNS: dict[str, Column] = {
     "max_force_N": Column("N", "largest contact force", "Largest force", "force"),
     "max_acceleration_m_s2": Column("m/s2", "largest magnitude of the sphere's acceleration", "Largest acceleration", "acceleration"),
     "rebound_height_m": Column("m", "height of the sphere's centre above the plate at the top of the rebound", "Rebound height", "rebound"),
-    "energy_lost_J": Column("J", "energy dissipated in the contact, without what goes into vibration", "Energy lost", "lost"),
+    "energy_lost_J": Column("J", "energy dissipated in the contact, without the energy of vibration", "Energy lost", "lost"),
     "plastic_work_J": Column("J", "the part of the energy lost that went into plastic deformation"),
     "restitution_asked": Column(
         "1", "restitution asked of the contact law, where it has one", "Restitution asked", "e\u00a0asked", "ratio"

@@ -63,7 +63,7 @@ PEAK_TABLE: dict[str, PeakVariable] = {
     "first_rebound_angle_deg": _first("rebound_angle_deg", "angle of the first rebound from the normal, positive onwards"),
     "first_duration_s": _first("duration_s", "duration of the first contact", "Duration of the first contact", "Duration of contact"),
     "total_energy_lost_J": _total(
-        "energy_lost_J", "energy dissipated in all contacts, without what goes into vibration", "Energy lost in all contacts"
+        "energy_lost_J", "energy dissipated in all contacts, without the energy of vibration", "Energy lost in all contacts"
     ),
     "first_rebound_height_m": _first(
         "rebound_height_m", "height of the sphere's centre at the top of the first rebound", "Height of the first rebound"
