@@ -78,14 +78,14 @@ PEAK_TABLE: dict[str, PeakVariable] = {
     "end_time_s": PeakVariable("s", "time at which the run ended", "Time at the end of the run", "Time at the end", is_drawn=False),
     "left_in_vibration_J": PeakVariable(
         "J",
-        "energy left in vibration where the sphere came to rest, or rides, on what vibrates",
+        "energy left in vibration where the sphere came to rest, or rides, on a vibrating body",
         "Energy left in vibration",
         "Left in vibration",
         is_drawn=False,
     ),
     "closure_relative": PeakVariable(
         "1",
-        "what is missing in the energy ledger, as a part of the energy put in",
+        "closure error of the energy ledger, relative to the energy put in",
         "Closure of the energy, relative",
         "Closure of the energy",
         is_drawn=False,

@@ -160,7 +160,7 @@ def read_axis(value: Any, quantity: Quantity | None) -> Axis:
         table = read_table(_DISTRIBUTIONS[kind], value)
         return _normal(table, quantity) if isinstance(table, NormalTable) else _spaced(table, quantity, is_random=True)
     if "from" not in value and "to" not in value:
-        raise InputError(f"{', '.join(value) or 'an empty table'} says nothing; it must be {_ASKED}")
+        raise InputError(f"{', '.join(value) or 'an empty table'} has no values; it must be {_ASKED}")
     return _spaced(read_table(RangeTable, value), quantity, is_random=False)
 
 
