@@ -40,7 +40,7 @@ def contact(**keys: Any) -> dict[str, Any]:
         ({"sensors": [{**SENSOR, "position": [0.3, 0.0]}]}, r'sensors\."a1"\.position: \(0\.3, 0\) m lies outside the plate'),
         ({"sensors": [{**SENSOR, "rate": 0}]}, r'sensors\."a1"\.rate: 0 is not allowed; it must be greater than 0 Hz'),
         ({"sensors": [{**SENSOR, "direction": [0, 0, 0]}]}, r'sensors\."a1"\.direction: it has no length'),
-        ({"sensors": [{**SENSOR, "quantity": "velocity", "accelerometer": {}}]}, "an accelerometer reads acceleration"),
+        ({"sensors": [{**SENSOR, "quantity": "velocity", "accelerometer": {}}]}, "an accelerometer measures acceleration"),
         (
             {"plate": {"material": "rigid", "model": "rigid", "modes": None, "supports": None}, "sensors": [SENSOR]},
             "sensors: the plate is rigid",

@@ -147,7 +147,7 @@ class SpeedsTable(Section):
 
     start: Annotated[float, Quantity("m/s", "slowest", _POSITIVE)] = Field(alias="from")
     end: Annotated[float, Quantity("m/s", "fastest", _POSITIVE)] = Field(alias="to")
-    number: Annotated[int, Field(ge=2, le=MOST_SPEEDS, strict=True)] = Field(50, description="how many")
+    number: Annotated[int, Field(ge=2, le=MOST_SPEEDS, strict=True)] = Field(50, description="number of speeds")
     scale: Literal["linear", "log"] = "linear"
 
     @model_validator(mode="after")
@@ -176,37 +176,38 @@ def _match_schema() -> dict[str, Any]:
 
 
 class CalibrateSection(Section):
-    """What `vibroimpact calibrate` does with the case; a run takes no notice of it."""
+    """Settings of `vibroimpact calibrate`; a run ignores them."""
 
-    target: Annotated[Any, BeforeValidator(_read_target), JsonSchema("what impacts are to be like", _target_schema)] = Field(
-        None, description="what impacts are to be like; by default what they are under the law of the case, and the model is Adams' IMPACT"
+    target: Annotated[Any, BeforeValidator(_read_target), JsonSchema("target of the calibration", _target_schema)] = Field(
+        None, description="target of the calibration; by default the law of the case, and the model is Adams' IMPACT"
     )
     model: Annotated[Any, BeforeValidator(_read_model), JsonSchema(_LAW, law_schema)] = Field(
-        None, description="the contact law that is tuned; by default that of the case"
+        None, description="the tuned contact law; by default that of the case"
     )
     parameter: Annotated[Name | tuple[Name, ...], at_most(_MOST_PARAMETERS, "parameters")] | None = Field(
         None,
-        description='what is tuned: a parameter of the law, "sphere.damping" or "plate.damping"; or one or a list of those of the friction '
-        'law, such as "friction.coefficient"; by default what sets the law\'s loss',
+        description='the tuned parameter: one of the law, "sphere.damping" or "plate.damping"; or one or a list of those of the friction '
+        'law, such as "friction.coefficient"; by default the loss parameter of the law',
     )
     air: StrictBool | None = Field(
         None,
         description="whether the sphere was measured in air: its flights then have the drag of drop.air, or of air at 20 C and sea "
         "level; without both keys they are those in a vacuum, and a doubt is raised where drag matters",
     )
-    match: Annotated[Any, BeforeValidator(_read_match), JsonSchema("what of an impact is matched", _match_schema)] = Field(
-        None, description="what of an impact is matched: one, or a table of several with weights; by default the rebound, if it is there"
+    match: Annotated[Any, BeforeValidator(_read_match), JsonSchema("matched quantity of an impact", _match_schema)] = Field(
+        None,
+        description="the matched quantity: one, or a table of several with weights; by default the rebound, if it was measured",
     )
     degree: Annotated[int, Field(ge=0, le=12, strict=True)] | None = Field(
-        None, description="of the polynomial of the approach speed; by default 2, or less where there are fewer speeds"
+        None, description="degree of the polynomial of the approach speed; by default 2, or less where there are fewer speeds"
     )
-    speeds: SpeedsTable | None = Field(None, description="what the polynomial is fitted over, instead of the impacts of the drop")
-    confidence: Annotated[float, Quantity("", "of the intervals", Range(above=0, below=1))] = 0.95
+    speeds: SpeedsTable | None = Field(None, description="speeds over which the polynomial is fitted, instead of those of the impacts")
+    confidence: Annotated[float, Quantity("", "confidence level of the intervals", Range(above=0, below=1))] = 0.95
     bootstrap: Annotated[int, Field(ge=0, le=100_000, strict=True)] | None = Field(
         None,
-        description="how often the measurement is drawn again for the intervals, 0 or at least 20; by default where they are wide",
+        description="number of bootstrap samples for the intervals, 0 or at least 20; by default some hundred where they are wide",
     )
-    seed: Annotated[int, Field(ge=0, strict=True)] = Field(0, description="of the drawing")
+    seed: Annotated[int, Field(ge=0, strict=True)] = Field(0, description="seed of the bootstrap")
 
 
 def friction_names(parameter: Any) -> tuple[str, ...]:
