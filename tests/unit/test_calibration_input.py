@@ -98,7 +98,7 @@ FAULTS = [
     ({"target": SEVERAL, "speeds": {"from": 1, "to": 3}}, "calibrate.speeds: what was measured is known at its own speeds alone"),
     (
         {"target": RESTITUTION, "model": {"law": "hertz"}},
-        "calibrate.parameter: hertz has no parameter that sets its loss; name another law, or one",
+        "calibrate.parameter: hertz has no loss parameter; name another law, or one",
     ),
     ({"target": RESTITUTION, "model": {"law": "adams-impcat"}}, 'Did you mean "adams-impact"?'),
     ({"target": "nowhere.csv"}, "nowhere.csv: there is no such file"),

@@ -379,13 +379,13 @@ def test_a_run_without_impact_is_saved(response: vi.Response, tmp_path: Path) ->
 def test_contacts_are_shown_where_a_visit_has_several(result: Result) -> None:
     several = replace(result, impacts={**result.impacts, "contacts": np.array([1.0, 3.0])})
     headers, rows, *_ = impact_table(several)
-    assert headers[-1] == ("Contacts in the visit", "")
+    assert headers[-1] == ("Contacts in the impact", "")
     assert [row[-1] for row in rows] == ["1", "3"]
     for width in (80, 110, 120):
         assert " contacts " in printed(several, width)
         assert "…" not in printed(several, width)
     once = replace(result, impacts={**result.impacts, "contacts": np.ones(2)})
-    assert ("Contacts in the visit", "") not in impact_table(once).headers
+    assert ("Contacts in the impact", "") not in impact_table(once).headers
 
 
 def test_frames_follow_the_visit_and_stay_in_the_run() -> None:

@@ -65,7 +65,7 @@ def case(**sensor: Any) -> vi.Case:
             {"microphone": MICROPHONE, "direction": "x"},
             r'"a1"\.direction: a microphone is omnidirectional',
         ),
-        ({"microphone": MICROPHONE, "filter": "none"}, r'"a1"\.filter: the samples of a microphone are those behind "sigma-delta"'),
+        ({"microphone": MICROPHONE, "filter": "none"}, r'"a1"\.filter: a microphone has the filter "sigma-delta"'),
         ({"microphone": MICROPHONE, "position": "a set"}, r'"a1"\.position: a plate that is meshed here has no set "a set"'),
         ({"microphone": {**MICROPHONE, "sensitivity": "50 mV"}}, "is a voltage; what is wanted is a voltage over pressure"),
         ({"instrument": "force", "quantity": "voltage"}, "a force sensor measures force; leave out quantity"),
@@ -118,7 +118,7 @@ def test_a_converter_that_clips_or_reads_nothing_is_doubted() -> None:
     (clipped,) = sensor_doubts({"sensors": [sensor]}, {"a1": signal}, 1e4, 1e-4)  # type: ignore[list-item]
     assert 'the converter of sensor "a1" clips 2 of 4 samples at its range of 1.000' in clipped
     (silent,) = sensor_doubts({"sensors": [sensor]}, {"a1": Signal(signal.sensor, np.zeros(4))}, 1e4, 1e-4)  # type: ignore[list-item]
-    assert "reads nothing: its step is 7.812" in silent
+    assert "has no signal: its step is 7.812" in silent
 
 
 def test_every_quantity_has_a_type_in_universal_files_and_a_header() -> None:
@@ -191,9 +191,9 @@ def test_low_sound_of_a_plate_in_no_baffle_is_doubted() -> None:
 def test_microphones_of_the_plates_modes_are_needed() -> None:
     response = vi.simulate(case(microphone=MICROPHONE, rate="10 kHz"))
     microphone = vi.Microphone()
-    with pytest.raises(vi.InputError, match='do not know the paths of sound to a microphone "other"'):
+    with pytest.raises(vi.InputError, match='have no paths of sound to a microphone "other"'):
         response.signals(vi.Sensor("other", "pressure", instrument=microphone))
-    with pytest.raises(vi.InputError, match="serve for 10000 samples per second at most; ask for a lower rate than 20000 Hz"):
+    with pytest.raises(vi.InputError, match="are valid for 10000 samples per second at most; ask for a lower rate than 20000 Hz"):
         response.signals(vi.Sensor("a1", "pressure", rate=20e3, instrument=microphone))
     slower = response.signals(vi.Sensor("a1", "pressure", rate=5e3, instrument=microphone))["a1"]
     assert slower.largest > 0.0

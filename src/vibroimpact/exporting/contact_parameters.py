@@ -41,7 +41,7 @@ def approach_speeds(drop: Drop) -> list[float]:
         raise InputError("there is no gravity in this run; a drop that is written for another program needs it, to come back")
     speeds = [float(speed) for speed in drop.impacts["approach_speed_m_s"]]
     if not speeds:
-        raise InputError("the sphere does not reach the plate in this run; another program needs at least one impact to be told of")
+        raise InputError("the sphere does not reach the plate in this run; an export needs at least one impact")
     return speeds
 
 
