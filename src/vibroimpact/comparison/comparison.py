@@ -25,7 +25,7 @@ _SPEEDS = 61
 
 @dataclass(frozen=True)
 class Comparison:
-    """One drop under several contact laws.
+    """One drop with several contact laws.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ def compare_laws(
     achieving: float | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Comparison:
-    """Run a case under each of several contact laws.
+    """Run a case with each of several contact laws.
 
     Parameters
     ----------

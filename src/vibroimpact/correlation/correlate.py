@@ -35,7 +35,7 @@ _FEW = 4
 
 @dataclass(frozen=True, eq=False)
 class Correlation:
-    """Records of a test beside the simulation of its case.
+    """Comparison of the records of a test with the simulation of its case.
 
     Parameters
     ----------
@@ -133,7 +133,7 @@ def correlate(
     band: tuple[float, float] | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Correlation:
-    r"""Return records of a test beside the simulation of a case: overlay, residual, frequency responses, and the modes of both.
+    r"""Compare records of a test with the simulation of a case: overlay, residual, frequency responses, and the modes of both.
 
     Parameters
     ----------
