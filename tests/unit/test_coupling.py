@@ -118,7 +118,7 @@ def test_too_few_modes_and_an_overdriven_accelerometer_are_doubted() -> None:
     few, driven, *_ = (doubt for doubt in found if "modes" in doubt or "accelerometer" in doubt)
     assert few.startswith("the modes of the plate end at ")
     assert "max_frequency" in few
-    assert driven.startswith('the accelerometer of sensor "a1" is driven beyond its range of 0.001 m/s2 for ')
+    assert driven.startswith('the accelerometer of sensor "a1" is overloaded beyond its range of 0.001 m/s2 for ')
     assert "take one with a range of " in driven
 
 

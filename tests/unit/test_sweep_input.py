@@ -45,7 +45,7 @@ FAULTS: list[tuple[object, str]] = [
     (over(sphere__radius=[]), f"{RADIUS}: the list is empty"),
     (over(sphere__radius=0.01), f"{RADIUS}: 0.01 is not allowed; it must be a list of values, a range"),
     (over(sphere__radius=[0.01, -0.02]), f"{RADIUS}: -0.02 is not allowed; it must be greater than 0 m"),
-    (over(sphere__radius=["1 kg"]), f'{RADIUS}: "1 kg" is a mass; what is wanted is a length'),
+    (over(sphere__radius=["1 kg"]), f'{RADIUS}: "1 kg" is a mass; expected a length'),
     (over(sphere__radius={"from": 0.01}), f"{RADIUS}.to: this key is missing"),
     (
         over(sphere__radius={"fro": 0.01, "to": 0.02}),

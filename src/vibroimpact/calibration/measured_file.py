@@ -219,7 +219,7 @@ def _table(file: str) -> TableFile:
     try:
         return read_table_file(file, _COLUMNS)
     except InputError as error:
-        if "acceleration; what is wanted is a " in error.message:  # given where a force or a position is required
+        if "acceleration; expected a " in error.message:  # given where a force or a position is required
             what = error.message.partition(" (a number in ")[0]  # without the hint how to write a force
             raise InputError(f"{what}. In a record {_WHOSE}", "target") from None
         raise InputError(error.message, "target") from None

@@ -47,7 +47,7 @@ class ClassTable(Section):
 
 
 class SweepSection(Section):
-    """What `vibroimpact sweep` does with the case; a run takes no notice of it."""
+    """Settings of `vibroimpact sweep`; a run ignores them."""
 
     design: Annotated[str, BeforeValidator(_read_design), WithJsonSchema({"enum": list(designs())})] = Field(
         "grid", description="design, the choice of the points: " + "; ".join(f"{one.name}: {one.meaning}" for one in designs().values())
