@@ -67,7 +67,7 @@ class InputError(VibroimpactError, ValueError):
     ...     vi.to_si("2 mm", "kg")
     ... except vi.InputError as error:
     ...     print(error)
-    "2 mm" is a length; what is wanted is a mass (a number in kg, or a string such as "90 g")
+    "2 mm" is a length; expected a mass (a number in kg, or a string such as "90 g")
     """
 
     def __init__(self, message: str, key: str = "") -> None:

@@ -26,7 +26,7 @@ FAULTS = [
     ({"contact__restitution": None}, "contact.restitution: this key is missing"),
     ({"contact__law": None}, "contact: it needs law"),
     ({"contact__law": "lankarani"}, 'Did you mean "lankarani-nikravesh"?'),
-    ({"sphere__radius": "25 kg"}, 'sphere.radius: "25 kg" is a mass; what is wanted is a length'),
+    ({"sphere__radius": "25 kg"}, 'sphere.radius: "25 kg" is a mass; expected a length'),
     ({"sphere__radius": "25"}, 'sphere.radius: "25" has no unit: write 25 (it is then in m) or "25 m"'),
     ({"sphere__radius": "25 lightbulbs"}, '"lightbulbs" in "25 lightbulbs" is not a unit'),
     ({"sphere__radius": "9**9**9 m"}, "is not a unit that is known"),

@@ -70,7 +70,7 @@ def test_the_folder(bound: Bound, tmp_path: Path) -> None:
     summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     assert summary["falls"] == 4000
     page = (folder / "report.html").read_text(encoding="utf-8")
-    assert "best classifier there can be" in page
+    assert "best possible classifier" in page
     with pytest.raises(vi.InputError, match="is there already"):
         save_bound(bound, folder)
     save_bound(replace(bound, name="again"), folder, force=True)

@@ -105,7 +105,7 @@ def test_one_measured_impact_at_another_speed_is_not_the_first_of_the_drop() -> 
 
 def test_beyond_the_speeds_that_were_measured_is_told() -> None:
     found, _ = calibrated({"target": {"restitution": [0.8, 0.79, 0.78], "approach_speed": [1.0, 1.5, 2.0]}, "degree": 1})
-    assert any("what it says there is a guess" in doubt for doubt in found.doubts)
+    assert any("there it is an extrapolation" in doubt for doubt in found.doubts)
 
 
 @pytest.mark.slow

@@ -35,7 +35,7 @@ FAULTS = [
     ({"target": {}}, "calibrate.target: it needs one of law, file, rebound_heights, max_force"),
     ({"target": 3}, "calibrate.target: 3 is not allowed; it must be a table with law, file"),
     ({"target": RESTITUTION, "dergee": 1}, 'calibrate.dergee: unknown key "dergee"'),
-    ({}, "calibrate.target: nothing says what impacts are to be like, since the law of the case is adams-impact itself"),
+    ({}, "calibrate.target: there is no target, since the law of the case is adams-impact itself"),
     ({"target": {"law": "hertzz"}}, 'calibrate.target: there is no contact law "hertzz"'),
     ({"target": {"law": "newton"}}, "restitution: this key is missing"),
     ({"target": {"law": "newton", "restitution": 2}}, "restitution: 2 is not allowed"),
@@ -50,23 +50,23 @@ FAULTS = [
     ({"target": {"restitution": 0.7, "standard_deviation": 0.1}}, "one restitution holds at any approach speed"),
     ({"target": {**SEVERAL, "standard_deviation": 0}}, "calibrate.target.standard_deviation: 0 is not allowed"),
     ({"target": {**SEVERAL, "approach_speed": [1, -2, 3]}}, "calibrate.target.approach_speed (the 2nd): -2 is not allowed"),
-    ({"target": {**SEVERAL, "approach_speed": ["1 m", 2, 3]}}, '"1 m" is a length; what is wanted is a speed'),
+    ({"target": {**SEVERAL, "approach_speed": ["1 m", 2, 3]}}, '"1 m" is a length; expected a speed'),
     ({"target": {"rebound_heights": []}}, "calibrate.target.rebound_heights"),
     ({"target": {"rebound_heights": [0.3, -0.1]}}, "calibrate.target.rebound_heights (the 2nd): -0.1 is not allowed"),
-    ({"target": {"rebound_heights": [0.3, "2 kg"]}}, '"2 kg" is a mass; what is wanted is a length'),
+    ({"target": {"rebound_heights": [0.3, "2 kg"]}}, '"2 kg" is a mass; expected a length'),
     ({"target": {"rebound_heights": [0.3, 0.025]}}, "impact 2: 0.025 m is not above where the sphere lies on the plate"),
     ({"target": {"rebound_heights": [0.3], "standard_deviation": -1}}, "calibrate.target.standard_deviation: -1 is not allowed"),
     ({"target": {"rebound_heights": [0.6]}}, "impact 1: 0.6 m is higher than the 0.5 m from which the sphere fell"),
     ({"target": {"rebound_heights": [0.3, 0.31]}}, "impact 2: 0.31 m is higher than the 0.3 m from which the sphere fell"),
     ({"target": {"max_force": 0}}, "calibrate.target.max_force: 0 is not allowed; it must be greater than 0 N"),
-    ({"target": {"max_force": "3 m"}}, '"3 m" is a length; what is wanted is a force'),
-    ({"target": {"separation_speed": 1, "restitution": 0.5}}, "separation_speed and restitution say the same"),
+    ({"target": {"max_force": "3 m"}}, '"3 m" is a length; expected a force'),
+    ({"target": {"separation_speed": 1, "restitution": 0.5}}, "separation_speed and restitution are equivalent"),
     ({"target": {"max_force": 3e3, "relative_deviation": 1}}, "calibrate.target.relative_deviation: 1 is not allowed"),
     (
         {"target": {"max_force": 3e3}, "match": "separation_speed"},
         "calibrate.match: separation_speed was not measured; there is max_force",
     ),
-    ({"target": RESTITUTION, "match": "max_force"}, "calibrate.match: max_force is not told by the target, newton"),
+    ({"target": RESTITUTION, "match": "max_force"}, "calibrate.match: max_force does not follow from the target, newton"),
     ({"tagret": RESTITUTION}, 'unknown key "tagret"; [calibrate] takes target, model'),
     ({"target": {"restituton": 0.7}}, 'Did you mean "restitution"?'),
     ({"target": {"restitution": "0,7"}}, '"0,7" has a comma in its number; write a point: 0.7'),
@@ -89,7 +89,7 @@ FAULTS = [
     ({"target": RESTITUTION, "degree": 1.5}, "calibrate.degree: 1.5 is not allowed"),
     ({"target": RESTITUTION, "confidence": 1}, "calibrate.confidence: 1 is not allowed"),
     ({"target": RESTITUTION, "confidence": 95}, "calibrate.confidence: 95 is not allowed"),
-    ({"target": SEVERAL, "bootstrap": 5}, "calibrate.bootstrap: 5 draws tell no interval; it must be 0, or at least 20"),
+    ({"target": SEVERAL, "bootstrap": 5}, "calibrate.bootstrap: 5 draws give no interval; it must be 0, or at least 20"),
     ({"target": SEVERAL, "bootstrap": -5}, "calibrate.bootstrap: -5 is not allowed"),
     ({"target": RESTITUTION, "seed": -1}, "calibrate.seed: -1 is not allowed"),
     ({"target": RESTITUTION, "speeds": {"from": 3, "to": 1}}, "calibrate.speeds.to: 1 m/s is not more than where it starts, 3 m/s"),
@@ -98,7 +98,7 @@ FAULTS = [
     ({"target": SEVERAL, "speeds": {"from": 1, "to": 3}}, "calibrate.speeds: what was measured is known at its own speeds alone"),
     (
         {"target": RESTITUTION, "model": {"law": "hertz"}},
-        "calibrate.parameter: hertz has no parameter that sets its loss; name another law, or one",
+        "calibrate.parameter: hertz has no loss parameter; name another law, or one",
     ),
     ({"target": RESTITUTION, "model": {"law": "adams-impcat"}}, 'Did you mean "adams-impact"?'),
     ({"target": "nowhere.csv"}, "nowhere.csv: there is no such file"),
@@ -128,7 +128,7 @@ def test_faults_of_the_case(changes: dict, words: str) -> None:
 
 
 def test_nothing_to_match_and_no_section() -> None:
-    with pytest.raises(vi.InputError, match="nothing says what impacts are to be like"):
+    with pytest.raises(vi.InputError, match="there is no target"):
         read_calibration(plain_case(contact={"law": "adams-impact", "damping_max": 100.0}))
 
 
@@ -158,10 +158,10 @@ FILES = [
     ("approach_speed_m_s,max_force_N\n1,100\n2,-5\n", "line 3: max_force is -5; it must be greater than 0"),
     ("approach_speed_m_s,restitution\n1,0.7\n2,1.5\n", "line 3: restitution is 1.5; it is 1 at most"),
     ("approach_speed_m_s\n1\n", "beside approach_speed a column is missing: restitution, separation_speed, max_force"),
-    ("restitution\n0.7\n", "the columns restitution do not tell of impacts; a file has approach_speed with restitution"),
-    ("time_s\n0\n1\n", "the columns time do not tell of impacts"),
-    ("position_m\n0.5\n0.4\n", "the columns position do not tell of impacts"),
-    ("force_N\n5\n4\n", "the columns force do not tell of impacts"),
+    ("restitution\n0.7\n", "the columns restitution do not describe impacts; a file has approach_speed with restitution"),
+    ("time_s\n0\n1\n", "the columns time do not describe impacts"),
+    ("position_m\n0.5\n0.4\n", "the columns position do not describe impacts"),
+    ("force_N\n5\n4\n", "the columns force do not describe impacts"),
     ("rebound_height_m\n0.3\n0.02\n", "line 3: 0.02 m is not above where the sphere lies on the plate"),
     ("rebound_height_m\n0.3\n\n0.2\n", "line 3: the line is empty; rebound heights are those of one impact after another"),
     ("rebound_height_m\n0.3\n0.4\n", "line 3: 0.4 m is higher than the 0.3 m from which the sphere fell"),

@@ -180,21 +180,21 @@ def test_what_the_measurement_does_not_determine_is_told() -> None:
 
 def test_a_degree_that_the_measurement_does_not_call_for_is_told() -> None:
     seen = restitutions(np.random.default_rng(4), known=True, part=0.02)
-    assert any("does not call for degree 5" in doubt for doubt in calibrate(drop(), seen, degree=5, bootstrap=0).doubts)
+    assert any("does not justify degree 5" in doubt for doubt in calibrate(drop(), seen, degree=5, bootstrap=0).doubts)
     assert not calibrate(drop(), seen, degree=2, bootstrap=0).doubts
 
 
 def test_a_degree_that_does_not_follow_the_measurement_is_told_and_widens_the_intervals() -> None:
     seen = restitutions(np.random.default_rng(4), known=True, part=0.02)
     line, parabola = (calibrate(drop(), seen, degree=degree, bootstrap=0) for degree in (1, 2))
-    assert any("does not follow the measurement" in doubt for doubt in line.doubts)
+    assert any("does not fit the measurement" in doubt for doubt in line.doubts)
     assert line.fit.freedom == 6
     assert parabola.fit.freedom == np.inf
 
 
 def test_as_many_impacts_as_coefficients_and_no_deviation() -> None:
     found = calibrate(drop(), heights(np.random.default_rng(5), known=False), degree=4)
-    assert any("nothing tells how well these are known" in doubt for doubt in found.doubts)
+    assert any("their uncertainty is unknown" in doubt for doubt in found.doubts)
     assert found.intervals is None
     assert np.isnan(found.fit.covariance).all()
 

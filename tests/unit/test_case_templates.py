@@ -63,8 +63,8 @@ def test_new_writes_a_case_that_runs(tmp_path: Path, monkeypatch: pytest.MonkeyP
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["a/b"], '"a/b" is no name of a file; give one without folders, such as my-plate'),
-        ([".toml"], '".toml" is no name of a file'),
+        (["a/b"], '"a/b" is not a file name; give one without folders, such as my-plate'),
+        ([".toml"], '".toml" is not a file name'),
         (["mine", "--from", "paper:type4"], "there is no shipped case"),
         (["mine", "--from", "nothing.toml"], "there is no such file"),
     ],

@@ -54,14 +54,14 @@ def test_given_parameters_come_first_and_a_laws_own_before_all() -> None:
             None,
             '"stiffness" is not the same in all laws: tsuji [N/m^1.5], walton-braun [N/m]',
         ),
-        (["flores"], {"hertz.exponent": 1.5}, None, '"hertz.exponent" is no parameter of flores'),
+        (["flores"], {"hertz.exponent": 1.5}, None, '"hertz.exponent" is not a parameter of flores'),
         (["flores"], {"restitution": 0}, None, "flores: contact.restitution: 0 is not allowed; it must be greater than 0 and at most 1"),
         (["adams-impact"], {}, None, "adams-impact needs largest damping C"),
         (["thornton"], {}, None, "no yield_strength is known of the materials"),
         (["lankarani-nikravesh"], {}, 0.5, "lankarani-nikravesh: reaches restitutions from 0.663"),
         (["walton-braun"], {}, 0.5, "walton-braun: contact.stiffness: this key is missing"),
         (["krijt"], {}, 0.5, "krijt: contact.work_of_adhesion: this key is missing"),
-        (["flores"], {"restitution": 0.6}, 0.5, "restitution is what is tuned to achieve 0.5, so it can't be given too"),
+        (["flores"], {"restitution": 0.6}, 0.5, "restitution is tuned to achieve 0.5, so it can't be given too"),
     ],
 )
 def test_what_is_refused(laws: list[str], given: dict, achieving: float | None, message: str) -> None:

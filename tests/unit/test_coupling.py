@@ -40,7 +40,7 @@ def contact(**keys: Any) -> dict[str, Any]:
         ({"sensors": [{**SENSOR, "position": [0.3, 0.0]}]}, r'sensors\."a1"\.position: \(0\.3, 0\) m lies outside the plate'),
         ({"sensors": [{**SENSOR, "rate": 0}]}, r'sensors\."a1"\.rate: 0 is not allowed; it must be greater than 0 Hz'),
         ({"sensors": [{**SENSOR, "direction": [0, 0, 0]}]}, r'sensors\."a1"\.direction: it has no length'),
-        ({"sensors": [{**SENSOR, "quantity": "velocity", "accelerometer": {}}]}, "an accelerometer reads acceleration"),
+        ({"sensors": [{**SENSOR, "quantity": "velocity", "accelerometer": {}}]}, "an accelerometer measures acceleration"),
         (
             {"plate": {"material": "rigid", "model": "rigid", "modes": None, "supports": None}, "sensors": [SENSOR]},
             "sensors: the plate is rigid",
@@ -118,7 +118,7 @@ def test_too_few_modes_and_an_overdriven_accelerometer_are_doubted() -> None:
     few, driven, *_ = (doubt for doubt in found if "modes" in doubt or "accelerometer" in doubt)
     assert few.startswith("the modes of the plate end at ")
     assert "max_frequency" in few
-    assert driven.startswith('the accelerometer of sensor "a1" is driven beyond its range of 0.001 m/s2 for ')
+    assert driven.startswith('the accelerometer of sensor "a1" is overloaded beyond its range of 0.001 m/s2 for ')
     assert "take one with a range of " in driven
 
 

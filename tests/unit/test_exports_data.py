@@ -641,7 +641,7 @@ def test_the_command(result_folder: Path, monkeypatch: pytest.MonkeyPatch, capsy
     assert status == 0
     assert "wrote drop-csv/impacts.csv wrote drop-csv/history.csv" in printed
     assert find_export_format("csv").tested in printed
-    assert "Note: The tables hold what came of the drop" in printed
+    assert "Note: The tables contain the results of the drop" in printed
     for arguments in ((), ("--formats",), ("drop",)):
         status, printed = outcome(monkeypatch, capsys, "export", *arguments)
         assert status == 0

@@ -26,9 +26,9 @@ def test_of_an_acceleration(text: str, times: float) -> None:
 def test_of_anything_else_it_is_the_gram() -> None:
     assert to_si("90 g", "kg") == pytest.approx(0.09)
     assert to_si("1.38 g/cm^3", "kg/m^3") == pytest.approx(1380.0)
-    with pytest.raises(vi.InputError, match='"90 g" is a mass; what is wanted is a length'):
+    with pytest.raises(vi.InputError, match='"90 g" is a mass; expected a length'):
         to_si("90 g", "m")
-    with pytest.raises(vi.InputError, match='"1 kg" is a mass; what is wanted is an acceleration'):
+    with pytest.raises(vi.InputError, match='"1 kg" is a mass; expected an acceleration'):
         to_si("1 kg", "m/s^2")
 
 

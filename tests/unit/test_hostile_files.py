@@ -103,7 +103,7 @@ def test_faces_without_area_are_told_without_a_warning(tmp_path: Path) -> None:
         ("time_s\n" + "1" * 100_001, "line 2: it has more than 100,000 characters; this is not a table"),
         (",".join(["time_s"] * 1001) + "\n1\n", "line 1: there are 1001 columns; a table has 1000 at most"),
         ("time_s\n1e31\n", 'line 2, column "time_s": "1e31" is not a measurement; it must be less than 1e30 in size'),
-        ("time [km]\n" + "1\n", "is a length; what is wanted is a time"),
+        ("time [km]\n" + "1\n", "is a length; expected a time"),
         ("a\x1b[31m\n1\n", r"no column is known among a\\x1b"),
         (",".join(f"column{number}" for number in range(40)) + "\n1\n", "column10, column11, ...; known are time [s]"),
     ],

@@ -232,7 +232,10 @@ def test_records_that_are_refused(change: Any, words: str) -> None:
         ({"drop": {"speed": 2.0, "angle": 0.2}}, "along the normal alone|is identified"),
         ({"sensors": [{**SMALL["sensors"][0], "filter": "none"}, SMALL["sensors"][1]]}, "anti-alias"),
         ({"contact": {"law": "hertz", "finite_sphere": True}}, "size of the sphere"),
-        ({"sensors": [{**SMALL["sensors"][0], "microphone": {"distance": 0.2}}, SMALL["sensors"][1]]}, "hears the whole plate|is in m/s2"),
+        (
+            {"sensors": [{**SMALL["sensors"][0], "microphone": {"distance": 0.2}}, SMALL["sensors"][1]]},
+            "the sound of the whole plate|is in m/s2",
+        ),
     ],
 )
 def test_cases_that_are_refused(changed: dict[str, Any], words: str) -> None:

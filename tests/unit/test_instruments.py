@@ -45,33 +45,33 @@ def case(**sensor: Any) -> vi.Case:
         ({"instrument": "geofone"}, r'"a1"\.instrument: "geofone" is not allowed; .* Did you mean "geophone"'),
         ({"instrument": "geophone"}, r'"a1"\.geophone: a geophone has properties; give them in a table geophone = \{ \.\.\. \}'),
         ({"geophone": {"natural_frequency": 10}}, r'"a1"\.geophone\.sensitivity: this key is missing'),
-        ({"geophone": {**GEOPHONE, "sensitivity": "27.6 V/m"}}, "is another kind of quantity; what is wanted is a voltage over velocity"),
+        ({"geophone": {**GEOPHONE, "sensitivity": "27.6 V/m"}}, "is another kind of quantity; expected a voltage over velocity"),
         ({"geophone": {**GEOPHONE, "lowpas": 1}}, r'unknown key "lowpas"; .* Did you mean "low_pass"'),
         (
             {"instrument": "accelerometer", "geophone": GEOPHONE},
             "its instrument is an accelerometer; leave out this table, or take instrument",
         ),
         ({"accelerometer": {}, "geophone": GEOPHONE}, "its instrument is an accelerometer; leave out this table"),
-        ({"quantity": "velocity", "geophone": GEOPHONE}, "a geophone reads voltage; leave out quantity, or the geophone"),
-        ({"quantity": "voltage"}, 'voltage is what an instrument puts out; name one, such as instrument = "geophone"'),
+        ({"quantity": "velocity", "geophone": GEOPHONE}, "a geophone measures voltage; leave out quantity, or the geophone"),
+        ({"quantity": "voltage"}, 'voltage is the output of an instrument; name one, such as instrument = "geophone"'),
         ({"instrument": "strain-gauge", "direction": "z"}, r'"a1"\.direction: a strain gauge lies in the face; give a direction along it'),
         ({"instrument": "strain-gauge", "direction": [1, 0, 1]}, "a strain gauge lies in the face"),
-        ({"instrument": "strain-gauge", "quantity": "voltage"}, "a strain gauge reads strain; leave out quantity"),
+        ({"instrument": "strain-gauge", "quantity": "voltage"}, "a strain gauge measures strain; leave out quantity"),
         ({"strain_gauge": {"sensitivty": 1}}, r'unknown key "sensitivty"; .* Did you mean "sensitivity"'),
         ({"instrument": "microphone"}, r'"a1"\.microphone: a microphone has properties; give them in a table microphone'),
         ({"microphone": {"distance": "0.1 mm"}}, r'"a1"\.microphone\.distance: "0.1 mm" is not allowed'),
         ({"microphone": {"distanse": "10 mm"}}, r'unknown key "distanse"; .* Did you mean "distance"'),
         (
             {"microphone": MICROPHONE, "direction": "x"},
-            r'"a1"\.direction: a microphone hears all directions alike',
+            r'"a1"\.direction: a microphone is omnidirectional',
         ),
-        ({"microphone": MICROPHONE, "filter": "none"}, r'"a1"\.filter: the samples of a microphone are those behind "sigma-delta"'),
+        ({"microphone": MICROPHONE, "filter": "none"}, r'"a1"\.filter: a microphone has the filter "sigma-delta"'),
         ({"microphone": MICROPHONE, "position": "a set"}, r'"a1"\.position: a plate that is meshed here has no set "a set"'),
-        ({"microphone": {**MICROPHONE, "sensitivity": "50 mV"}}, "is a voltage; what is wanted is a voltage over pressure"),
-        ({"instrument": "force", "quantity": "voltage"}, "a force sensor reads force; leave out quantity"),
-        ({"force": {"sensitivity": "10 mV"}}, "is a voltage; what is wanted is a voltage over force"),
+        ({"microphone": {**MICROPHONE, "sensitivity": "50 mV"}}, "is a voltage; expected a voltage over pressure"),
+        ({"instrument": "force", "quantity": "voltage"}, "a force sensor measures force; leave out quantity"),
+        ({"force": {"sensitivity": "10 mV"}}, "is a voltage; expected a voltage over force"),
         ({"force": {"sensitivitty": 1}}, r'unknown key "sensitivitty"; .* Did you mean "sensitivity"'),
-        ({"amplifier": {"noise": "1 mV"}}, r'"a1"\.amplifier\.noise: "1 mV" is a voltage; what is wanted is an acceleration'),
+        ({"amplifier": {"noise": "1 mV"}}, r'"a1"\.amplifier\.noise: "1 mV" is a voltage; expected an acceleration'),
         ({"amplifier": {"gain": 0}}, r'"a1"\.amplifier\.gain: 0 is not allowed'),
         ({"geophone": GEOPHONE, "converter": {"range": -1}}, r'"a1"\.converter\.range: -1 is not allowed; it must be greater than 0 V'),
         ({"converter": {"range": 1, "bit": 3}}, r'unknown key "bit"; .* takes range, bits\. Did you mean "bits"'),
@@ -118,7 +118,7 @@ def test_a_converter_that_clips_or_reads_nothing_is_doubted() -> None:
     (clipped,) = sensor_doubts({"sensors": [sensor]}, {"a1": signal}, 1e4, 1e-4)  # type: ignore[list-item]
     assert 'the converter of sensor "a1" clips 2 of 4 samples at its range of 1.000' in clipped
     (silent,) = sensor_doubts({"sensors": [sensor]}, {"a1": Signal(signal.sensor, np.zeros(4))}, 1e4, 1e-4)  # type: ignore[list-item]
-    assert "reads nothing: its step is 7.812" in silent
+    assert "has no signal: its step is 7.812" in silent
 
 
 def test_every_quantity_has_a_type_in_universal_files_and_a_header() -> None:
@@ -191,9 +191,9 @@ def test_low_sound_of_a_plate_in_no_baffle_is_doubted() -> None:
 def test_microphones_of_the_plates_modes_are_needed() -> None:
     response = vi.simulate(case(microphone=MICROPHONE, rate="10 kHz"))
     microphone = vi.Microphone()
-    with pytest.raises(vi.InputError, match='do not know the paths of sound to a microphone "other"'):
+    with pytest.raises(vi.InputError, match='have no paths of sound to a microphone "other"'):
         response.signals(vi.Sensor("other", "pressure", instrument=microphone))
-    with pytest.raises(vi.InputError, match="serve for 10000 samples per second at most; ask for a lower rate than 20000 Hz"):
+    with pytest.raises(vi.InputError, match="are valid for 10000 samples per second at most; ask for a lower rate than 20000 Hz"):
         response.signals(vi.Sensor("a1", "pressure", rate=20e3, instrument=microphone))
     slower = response.signals(vi.Sensor("a1", "pressure", rate=5e3, instrument=microphone))["a1"]
     assert slower.largest > 0.0

@@ -254,7 +254,7 @@ ELEMENT = {"law": "hertz", "local_compliance": "identified", "local_stiffness": 
     [
         ({"contact": {"law": "newton", "restitution": 0.5, "finite_sphere": True}}, "finite_sphere: newton gives no force"),
         ({"sphere__model": "elastic", "contact__finite_sphere": True}, "an elastic sphere deforms in its modes"),
-        ({"contact": {**ELEMENT, "finite_sphere": True}}, "stands for all"),
+        ({"contact": {**ELEMENT, "finite_sphere": True}}, "represents the whole deformation"),
         ({"contact__finite_sphere": 1}, "it must be true or false"),
     ],
 )

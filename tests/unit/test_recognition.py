@@ -143,7 +143,7 @@ def test_one_class_only(tmp_path: Path) -> None:
 
 
 def test_no_class(tmp_path: Path) -> None:
-    assert "no classes to learn from" in refused(tmp_path, lambda data: data.pop("class"))
+    assert "the signals have no classes" in refused(tmp_path, lambda data: data.pop("class"))
 
 
 @pytest.mark.parametrize(
@@ -199,7 +199,7 @@ def test_the_same_signal_twice_in_one_rock_and_silence_are_allowed(tmp_path: Pat
 
 def test_sampling_too_slow_is_said_with_the_number(tmp_path: Path) -> None:
     message = refused(tmp_path, lambda _: None, rate=2e3)
-    assert "a1 samples at 2000 Hz and shows up to 1000 Hz" in message
+    assert "a1 samples at 2000 Hz and resolves up to 1000 Hz" in message
     duration = float(message.split("contacts of ")[1].split(" us")[0]) * 1e-6
     needed = float(message.split("contact times need ")[1].split(" Hz")[0])
     assert needed == pytest.approx(2 * 0.67 / duration, rel=5e-3)
@@ -211,7 +211,7 @@ def test_slow_sampling_is_a_doubt_where_forces_tell_the_classes_too(tmp_path: Pa
 
     signals = vi.read_labelled_signals(write_knocks(tmp_path / "data", forceful, rate=2e3, **SMALL))
     (doubt,) = check_signals(signals, "rock", 5)
-    assert doubt.startswith("contact times can't be seen: a1 samples at 2000 Hz")
+    assert doubt.startswith("contact times can't be resolved: a1 samples at 2000 Hz")
 
 
 def test_groups_of_one_signal_are_a_doubt(folder: Path) -> None:
@@ -381,7 +381,7 @@ def test_the_folder(saved: Path, found: vi.Recognition) -> None:
         with (saved / name).open(newline="") as file:
             assert len(list(csv.DictReader(file))) == len(rows_of(found)) > 0
     page = (saved / "report.html").read_text()
-    assert "Errors, and optimism" in page
+    assert "Classification errors and optimism" in page
     assert "Bayes error" in page
     assert json.loads((saved / "summary.json").read_text())["recognition"]["best"] == found.best
 
@@ -416,7 +416,7 @@ def test_a_label_in_the_last_sample_is_found(tmp_path: Path) -> None:
 
     found = vi.recognise(write_knocks(tmp_path / "data", leak, bayes_error=False, **SMALL), folds=2, seeds=1)
     (doubt,) = (one for one in found.doubts if one.startswith("leak"))
-    assert "leak: length, first and last sample alone tell the classes (balanced accuracy 1.000), better than all features" in doubt
+    assert "leak: length, first and last sample alone classify better (balanced accuracy 1.000) than all features" in doubt
 
 
 def test_a_classifier_above_the_bound_is_a_leak(tmp_path: Path, found: vi.Recognition) -> None:
@@ -562,7 +562,7 @@ def test_the_command_trains_and_applies(
     assert "vibroimpact: cross-validation by rock" in printed.err
     other = write_knocks(tmp_path / "other", seed=4, **SMALL)
     assert run(monkeypatch, "recognise", str(other), "--model", out, "-o", str(tmp_path / "applied")) == 0
-    assert "96 signals, recognised by" in capsys.readouterr().out
+    assert "96 signals, classified by" in capsys.readouterr().out
     with (tmp_path / "applied" / "predictions.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == 96

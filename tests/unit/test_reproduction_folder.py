@@ -442,7 +442,7 @@ def test_bad_names_end_with_status_2(
 def test_an_interrupt_tells_how_to_go_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.setitem(PARTS, "fig3", ReportPart("fig3", chart=raises(KeyboardInterrupt())))
     assert command(monkeypatch, "reproduce", "--only", "table1,fig3", "-o", tmp_path / "paper") == 130
-    assert f"go on with: vibroimpact reproduce -o {tmp_path / 'paper'} --only fig3\n" in capsys.readouterr().err
+    assert f"continue with: vibroimpact reproduce -o {tmp_path / 'paper'} --only fig3\n" in capsys.readouterr().err
 
 
 def test_the_report_is_remade_and_other_files_stay(copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,4 +1,4 @@
-"""The implicit Euler method as a demonstration: its order, its limit, its ledger; and what the forensic section makes of it."""
+"""The implicit Euler method as a demonstration: its order, its limit, its ledger; and what the section on inferences concludes from it."""
 
 from __future__ import annotations
 
@@ -154,6 +154,6 @@ def test_the_section_says_what_is_missed(runs: Runs) -> None:
     }
     text = " ".join((*section.paragraphs, *section.conclusion))
     assert "Established" in text
-    assert "A reading" in text
+    assert "A hypothesis" in text
     assert "not a proof" in text
     assert all(len(row) == len(table.headers) for table in section.tables for row in table.cells)

@@ -198,5 +198,5 @@ def test_the_bound_of_the_force_is_met_and_not_passed() -> None:
 def test_a_write_off_of_less_than_nothing_fails_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("vibroimpact.dynamics.rigid.bodies.static_indentation", lambda law, weight: 0.0 * weight + 1.0)
     problem = vi.Problem(sphere=vi.Body(mass=1.0, contact_offset=0.1), plate=vi.rigid_plate(), laws=(LOSSY,), height=0.2, rest_speed=0.01)
-    with pytest.raises(vi.ComputationError, match=r"was laid to rest with .* J more than it and what it lies on had left"):
+    with pytest.raises(vi.ComputationError, match=r"was set to rest with .* J more than it and the bodies below it had left"):
         vi.simulate(replace(problem, impacts=None))

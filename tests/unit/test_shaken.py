@@ -555,7 +555,7 @@ def test_a_hard_ball_under_friction_is_followed_until_it_rides() -> None:
     response = vi.simulate(problem(Newton(restitution=0.3), oblique=oblique, motion=sideways, impacts=None, duration=0.5))
     assert response.outcomes == (vi.Outcome.RIDING,)
     assert response.status.endswith(
-        "rides on the plate, which is shaken, and a law without a force does not tell how it moves along it then."
+        "rides on the plate, which is shaken, and a law without a force does not determine its motion along the plate then."
     )
     assert response.energy["closure_relative"] <= 1e-9
 

@@ -339,7 +339,7 @@ def test_a_run_tells_that_it_leaves_the_study_out(
 def test_a_study_in_a_notebook(drawn: Study) -> None:
     figure = drawn.plot("restitution")
     assert figure.layout.title.text == "Restitution asked and achieved"
-    assert drawn.plot().layout.title.text == "What was drawn"
+    assert drawn.plot().layout.title.text == "Sampled keys"
     with pytest.raises(vi.InputError, match='there is no chart "restituton" of this study; there are inputs, ') as told:
         drawn.plot("restituton")
     assert told.value.message.endswith('Did you mean "restitution"?')

@@ -112,7 +112,7 @@ def test_grid_of_two_axes(grid: Study) -> None:
     assert float(ranges[0]["highest"]) == force[:, 2].max()
     page = page_of(grid)
     assert "12 drops; none failed." in page
-    assert "nothing of how likely" in page
+    assert "they are not probabilities" in page
     assert "contact.restitution" in page
     assert str(escape((folder / "study.toml").read_text(encoding="utf-8"))).rstrip() in page
     assert re.findall(r'(?:src|href)="(?!#)[^"]*"', page) == []
@@ -205,7 +205,7 @@ def test_laws_without_restitution_and_without_force(tmp_path: Path) -> None:
     over = {"contact.restitution": [0.3, 0.5], "drop.height": ["1 m", "2 m"]}
     newton = study_of(tmp_path / "newton", {"over": over}, contact={"law": "newton", "restitution": 0.5})
     assert charts_of(newton) == {"curves", "restitution", "sensitivity"}
-    assert "No drop has: largest force" in page_of(newton)
+    assert "Without a value in all drops: largest force" in page_of(newton)
 
 
 def test_signals_of_sensors_whatever_they_are_called(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -121,7 +121,7 @@ def test_ctrl_c_says_how_to_go_on(tmp_path: Path) -> None:
     assert running.returncode == 130
     first, last = told.strip().splitlines()
     assert first == "vibroimpact: stopping after the drops that are under way; Ctrl-C once more stops at once"
-    assert last.startswith("vibroimpact: interrupted; the drops that are done stay; go on with: vibroimpact sweep")
+    assert last.startswith("vibroimpact: interrupted; completed drops are kept; continue with: vibroimpact sweep")
     assert f"-o {folder} --resume" in last
     assert 0 < chunks_done(folder) < 40
     compute_study(vi.load_sweep(study), folder, resume=True)
@@ -337,7 +337,7 @@ def test_a_second_sweep_in_a_folder_is_refused(tmp_path: Path) -> None:
         for options in ({"resume": True}, {"force": True}, {}):
             with pytest.raises(vi.InputError, match="another sweep is at work in this folder"):
                 compute_study(sweep, folder, **options)  # type: ignore[arg-type]
-    with pytest.raises(vi.InputError, match=r"a study is there already; go on with it by --resume, replace it by --force"):
+    with pytest.raises(vi.InputError, match=r"a study is there already; continue it with --resume, replace it with --force"):
         compute_study(sweep, folder)
     compute_study(sweep, folder, resume=True)
 
@@ -388,7 +388,7 @@ def test_a_chunk_that_is_not_as_it_was_written_is_computed_again(tmp_path: Path)
     file = folder / "chunks" / "000001.h5"
     file.write_bytes(file.read_bytes()[:-1] + b"x")
     compute_study(sweep, folder, resume=True, tell=told.append)
-    assert told == ["chunk 1 is not on disk as it was written; it is computed again"]
+    assert told == ["chunk 1 on disk is damaged; it is computed again"]
     assert results(folder) == results(compute_study(sweep, tmp_path / "undisturbed", memory=SMALL))
 
 

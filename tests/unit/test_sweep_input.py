@@ -45,13 +45,13 @@ FAULTS: list[tuple[object, str]] = [
     (over(sphere__radius=[]), f"{RADIUS}: the list is empty"),
     (over(sphere__radius=0.01), f"{RADIUS}: 0.01 is not allowed; it must be a list of values, a range"),
     (over(sphere__radius=[0.01, -0.02]), f"{RADIUS}: -0.02 is not allowed; it must be greater than 0 m"),
-    (over(sphere__radius=["1 kg"]), f'{RADIUS}: "1 kg" is a mass; what is wanted is a length'),
+    (over(sphere__radius=["1 kg"]), f'{RADIUS}: "1 kg" is a mass; expected a length'),
     (over(sphere__radius={"from": 0.01}), f"{RADIUS}.to: this key is missing"),
     (
         over(sphere__radius={"fro": 0.01, "to": 0.02}),
         f'{RADIUS}.fro: unknown key "fro"; it takes from, to, number, scale. Did you mean "from"?',
     ),
-    (over(sphere__radius={"form": 0.01}), f"{RADIUS}: form says nothing; it must be a list of values, a range"),
+    (over(sphere__radius={"form": 0.01}), f"{RADIUS}: form has no values; it must be a list of values, a range"),
     (over(sphere__radius={"from": 0.02, "to": 0.01}), f"{RADIUS}.to: 0.01 is not more than where it begins, 0.02"),
     (over(sphere__radius={"from": 0.01, "to": 0.02, "number": 0}), f"{RADIUS}.number"),
     (
@@ -70,8 +70,8 @@ FAULTS: list[tuple[object, str]] = [
     (normal(distribution="lognormal", mean="-25 mm"), f"{RADIUS}.mean: -0.025 is not allowed; the mean of a lognormal"),
     (normal(standard_deviation="25 mm"), f"{RADIUS}: -0.0161213 is not allowed; it must be greater than 0 m; truncate the distribution"),
     ({"design": "gird", **over(sphere__radius=[0.01])}, 'sweep.design: there is no design "gird"'),
-    ({"design": "sobol", **over(sphere__radius=[0.01])}, "sweep.samples: it is missing; sobol needs to know how many points it draws"),
-    ({"samples": 10, **over(sphere__radius=[0.01])}, "sweep.samples: grid has the points that its values give; leave this out"),
+    ({"design": "sobol", **over(sphere__radius=[0.01])}, "sweep.samples: it is missing; sobol needs the number of points to draw"),
+    ({"samples": 10, **over(sphere__radius=[0.01])}, "sweep.samples: grid has as many points as its values give; leave this out"),
     (drawn(samples=0), "sweep.samples: 0 is not allowed"),
     (drawn(samples=10.5), "sweep.samples: 10.5 is not allowed"),
     (drawn(samples=20_000_000), "sweep.samples: 20000000 is not allowed; it must be less than or equal to 10000000"),
@@ -117,7 +117,7 @@ def test_what_is_wrong_is_told(sweep: object, words: str) -> None:
 
 
 def test_a_case_without_a_sweep_is_told_what_is_missing() -> None:
-    with pytest.raises(vi.InputError, match=r"sweep: it is missing; it says what runs over what"):
+    with pytest.raises(vi.InputError, match=r"sweep: it is missing; it specifies the swept keys and their values"):
         vi.load_sweep("paper:type1-theory")
 
 

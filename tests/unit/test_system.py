@@ -116,7 +116,7 @@ def test_contacts_without_end_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_modes_must_know_the_contact() -> None:
     plate = vi.MovingBody(mass=math.inf, modes=modes_at(np.array([100.0]), 0.0, left=np.array([1.0])))
-    with pytest.raises(vi.InputError, match=r'contacts.right: the modes of "plate" do not tell how it moves there: add "right"'):
+    with pytest.raises(vi.InputError, match=r'contacts.right: the modes of "plate" have no shapes at its contact: add "right"'):
         vi.System(bodies={"ball": BALL, "plate": plate}, contacts={"right": vi.PointContact(above="ball", below="plate", law=HERTZ)})
 
 

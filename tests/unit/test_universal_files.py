@@ -142,11 +142,11 @@ def test_units(tmp_path: Path) -> None:
 
 def test_which_function_is_asked_for(tmp_path: Path) -> None:
     two = by_pyuff(tmp_path / "two.uff", {"id1": "load cell 1"}, {"id1": "load cell 2", "data": 2.0 * VALUES})
-    with pytest.raises(vi.InputError, match='say which function is meant: there are 1 "load cell 1", 2 "load cell 2"'):
+    with pytest.raises(vi.InputError, match='name the function to use: there are 1 "load cell 1", 2 "load cell 2"'):
         calibrated(str(two))
     assert read_universal_record(two, "2", False).values[0] == 2.0
     acceleration = by_pyuff(tmp_path / "a.uff", {"id1": "plate", "ordinate_spec_data_type": 12, "ordinate_axis_units_lab": "m/s2"})
-    with pytest.raises(vi.InputError, match='"plate": in a table, an acceleration tells a rebound only if it is the sphere'):
+    with pytest.raises(vi.InputError, match='"plate": in a table, only the acceleration of the sphere determines a rebound'):
         calibrated(str(acceleration))
     velocity = by_pyuff(tmp_path / "v.uff", {"id1": "vibrometer", "ordinate_spec_data_type": 11, "ordinate_axis_units_lab": "m/s"})
     with pytest.raises(vi.InputError, match='no force, displacement or acceleration over time in it; there are 1 "vibrometer"'):

@@ -29,7 +29,7 @@ _TESTED, _TESTED_OF_MAP, _FALLS_OF_MAP = 2000, 500, 8000
 
 @dataclass(frozen=True, eq=False)
 class Bound:
-    """The Bayes error of a population, below which no classifier gets.
+    """The Bayes error of a population, the lower bound on the error of any classifier.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ class Bound:
 def bound_of(
     population: Study | Sweep, channel: Channel | None = None, seed: int = 0, progress: Callable[[float], None] | None = None
 ) -> Bound:
-    """Return the Bayes error of a population, below which no classifier gets, by what is measured of an impact.
+    """Return the Bayes error of a population, the lower bound on the error of any classifier, for sets of measured quantities.
 
     A sensor hears the contact force through the plate, a linear system that is the same whatever falls. What it records of an impact is
     therefore no better than the force itself, and the force of a sphere is a pulse of an impulse and a duration.
@@ -100,7 +100,7 @@ def bound_of(
     falls = falls_of_study(population) if isinstance(population, Study) else falls_of_sweep(population)
     names, counts = np.unique(falls.classes, return_counts=True)
     if len(names) < 2:
-        raise InputError("falls of one class alone touched the plate, from which nothing can be told apart")
+        raise InputError("falls of one class alone touched the plate, so that there is nothing to classify")
     heard, steps = channel or Channel(), len(OBSERVATIONS) + BANDWIDTHS.size * SIGNAL_TO_NOISE.size
 
     def tell(done: int) -> None:

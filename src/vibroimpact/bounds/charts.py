@@ -41,12 +41,12 @@ def _errors(bound: Bound) -> Chart:
     upper = 100.0 * np.array([one.upper for one in found])
     low, high = 100.0 * np.array([(one.lower, one.upper + one.standard_error) for one in found]).T
     bars = Bars(np.arange(float(len(names))), upper, "", "detail", lying=True, low=low, high=high, texts=names)
-    panel = Panel(Axis("Falls that no classifier can tell right", "%", range=(0.0, float("nan"))), Axis(names=names), (bars,))
+    panel = Panel(Axis("Bayes error", "%", range=(0.0, float("nan"))), Axis(names=names), (bars,))
     caption = (
-        "The Bayes error of the population for what is measured of a fall: the best that any classifier can do. Each interval reaches from "
-        "the lower bound to one standard error above the upper one."
+        "The Bayes error of the population, the lowest error of any classifier, for each set of measured quantities. Each interval reaches "
+        "from the lower bound to one standard error above the upper one."
     )
-    return Chart("errors", "What cannot be told, whatever the classifier", ((panel,),), caption, 4.5)
+    return Chart("errors", "Lowest possible classification error", ((panel,),), caption, 4.5)
 
 
 def _impacts(bound: Bound) -> Chart:
@@ -56,18 +56,18 @@ def _impacts(bound: Bound) -> Chart:
     for number, name in enumerate(np.unique(falls.classes).tolist()):
         there = some[falls.classes[some] == name]
         marks.append(Points(falls.impulse[there], falls.duration[there], name, series(number)))
-    panel = Panel(Axis("Impulse", "N s", log=True), Axis("Duration of the contact", "s", log=True), tuple(marks))
-    caption = "Each fall a point: what one impact shows. Falls that share a place cannot be told apart by it, whatever else differs."
-    return Chart("impacts", "Falls as one impact shows them", ((panel,),), caption, 4.5)
+    panel = Panel(Axis("Impulse", "N s", log=True), Axis("Contact time", "s", log=True), tuple(marks))
+    caption = (
+        "Each point is a fall. Falls of different classes with the same impulse and contact time cannot be distinguished by one impact."
+    )
+    return Chart("impacts", "Impulse and contact time of the falls", ((panel,),), caption, 4.5)
 
 
 def _sensors(bound: Bound) -> Chart:
-    scale = Axis("Falls that cannot be told right from one impact", "%")
+    scale = Axis("Bayes error from one impact", "%")
     rows = tuple(f"{one / 1e3:g} kHz" for one in BANDWIDTHS)
     columns = tuple(f"{one:g} dB" for one in SIGNAL_TO_NOISE)
     values = Map(np.arange(float(len(columns))), np.arange(float(len(rows))), 100.0 * bound.map, scale)
-    panel = Panel(Axis("Peak of the median force over noise in 10 kHz", names=columns), Axis("Band", names=rows), (values,))
-    caption = (
-        "What a faster or a quieter sensor would buy, for impulse and contact time of one impact: the Bayes error over band and noise."
-    )
-    return Chart("sensors", "What band and noise cost", ((panel,),), caption, 4.0)
+    panel = Panel(Axis("Peak of the median force over noise in 10 kHz", names=columns), Axis("Bandwidth", names=rows), (values,))
+    caption = "The Bayes error from impulse and contact time of one impact, over bandwidth and signal-to-noise ratio of the sensor."
+    return Chart("sensors", "Bayes error over bandwidth and noise", ((panel,),), caption, 4.0)

@@ -56,7 +56,7 @@ def save_bound(bound: Bound, directory: str | PathLike[str], *, force: bool = Fa
         page = render_page(
             __package__,
             bound_charts(bound),
-            name=f"What can be told: {bound.name}",
+            name=f"Bounds on the classification error: {bound.name}",
             headline=headline(bound),
             heard=heard_words(bound),
             headers=HEADERS,

@@ -20,19 +20,19 @@ _LARGEST = 3.0  # standard deviation of a logarithm beyond which nothing is know
 
 @dataclass(frozen=True)
 class Channel:
-    """A measuring channel that hears the contact force: its band, noise and calibration.
+    """A channel that measures the contact force: its band, noise and calibration.
 
     Parameters
     ----------
     bandwidth : float, default 10e3
-        Upper end of the band that it hears [Hz].
+        Upper end of the band that it measures [Hz].
     signal_to_noise : float, default 40
         Peak of the force of the median fall over the rms of the noise in 10 kHz [dB].
     gain : float, default 0.02
         Relative standard deviation of its sensitivity.
     place : float, default 0.3
-        Relative standard deviation of what is heard if the place of the impact is not known: published plates differ by factors of 1.4 to
-        2.3 between places.
+        Relative standard deviation of the amplitude if the position of the impact is not known: the response of published plates varies
+        by factors of 1.4 to 2.3 between positions.
     height, size, interval : float
         Relative standard deviations of the approach speed where the height is known (0.02), of the radius where the rock is seen (0.05),
         and of the time between bounces (0.002).
@@ -62,16 +62,16 @@ class Observation(NamedTuple):
 
 
 OBSERVATIONS = (
-    Observation("impulse", "the impulse of one impact alone, as the amplitude of a slow sensor", ("impulse",)),
-    Observation("contact time", "the duration of one contact alone, as a normalised signal tells it", ("duration",)),
-    Observation("one impact", "impulse and contact time of one impact at a known place, as two sensors tell it", ("impulse", "duration")),
-    Observation("one impact, place unknown", "the same from one sensor that does not know how near it was", ("far impulse", "duration")),
+    Observation("impulse", "the impulse of one impact alone, as from the amplitude of a slow sensor", ("impulse",)),
+    Observation("contact time", "the duration of one contact alone, as from a normalised signal", ("duration",)),
+    Observation("one impact", "impulse and contact time of one impact at a known position, as from two sensors", ("impulse", "duration")),
+    Observation("one impact, place unknown", "the same from one sensor, at an unknown distance", ("far impulse", "duration")),
     Observation("with the bounce", "impulse and contact time, and the time to the next impact", ("impulse", "duration", "interval")),
     Observation("height known", "impulse and contact time, and the speed", ("impulse", "duration", "speed")),
     Observation(
         "height known, with the bounce", "with the speed and the time to the next impact", ("impulse", "duration", "speed", "interval")
     ),
-    Observation("size seen", "impulse and contact time, and the radius, as a camera tells it", ("impulse", "duration", "radius")),
+    Observation("size seen", "impulse and contact time, and the radius, as from a camera", ("impulse", "duration", "radius")),
     Observation("height, bounce and size", "all of these", ("impulse", "duration", "speed", "interval", "radius")),
 )
 """What may be measured, from little to much."""

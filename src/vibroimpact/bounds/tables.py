@@ -32,19 +32,19 @@ def headline(bound: Bound) -> str:
     time, impact = bound.errors["contact time"], bound.errors["one impact"]
     names = np.unique(bound.falls.classes).tolist()
     return (
-        f"Of {len(bound.falls):,} falls of {' and '.join(names)}, the best classifier there can be errs in {error_words(time)} by the "
-        f"contact time alone, and in {error_words(impact)} by one impact at a known place; naming the more frequent class errs in "
+        f"For {len(bound.falls):,} falls of {' and '.join(names)}, the error of the best possible classifier is {error_words(time)} "
+        f"from the contact time alone, and {error_words(impact)} from one impact at a known position; that of the majority class is "
         f"{100.0 * bound.majority:.1f} %."
     )
 
 
 def heard_words(bound: Bound) -> str:
-    """Return what hears the falls, in a sentence."""
+    """Return the measuring channel, in a sentence."""
     one = bound.channel
     return (
-        f"Heard up to {one.bandwidth / 1e3:g} kHz, the peak force of the median fall {one.signal_to_noise:g} dB above the noise in 10 kHz, "
-        f"with a sensitivity known to {100.0 * one.gain:g} %; an unknown place adds {100.0 * one.place:g} %; where they are known, the "
-        f"speed is so to {100.0 * one.height:g} %, and the radius to {100.0 * one.size:g} %."
+        f"Measured up to {one.bandwidth / 1e3:g} kHz, with the peak force of the median fall {one.signal_to_noise:g} dB above the noise in "
+        f"10 kHz. Relative standard deviations: sensitivity {100.0 * one.gain:g} %, amplitude at an unknown position "
+        f"{100.0 * one.place:g} %, speed where it is measured {100.0 * one.height:g} %, radius where it is measured {100.0 * one.size:g} %."
     )
 
 
@@ -53,7 +53,7 @@ def error_rows(bound: Bound) -> list[list[str]]:
     return [[one.name, error_words(bound.errors[one.name]), *(_part(value) for value in bound.remaining[one.name])] for one in OBSERVATIONS]
 
 
-HEADERS = ["Measured", "Told wrong", *(f"{name}, left" for name in PROPERTIES)]
+HEADERS = ["Measured", "Classification error", *(f"{name}, remaining" for name in PROPERTIES)]
 """Headers of these rows."""
 
 

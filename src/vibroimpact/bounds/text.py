@@ -15,9 +15,9 @@ def bound_summary(bound: Bound) -> RenderableType:
     names, errors, *left = zip(*error_rows(bound), strict=True)
     columns = [TerminalColumn(HEADERS[0], names, text=True), TerminalColumn(HEADERS[1], errors, text=True)]
     columns += [TerminalColumn(heading, cells) for heading, cells in zip(HEADERS[2:], left, strict=True)]
-    note = "Left: standard deviation of the logarithm after the best linear estimate, over that in the population."
+    note = "Remaining: standard deviation of the logarithm after the best linear estimate, over that in the population."
     return Group(
-        Text(f"What can be told: {bound.name}", style="bold"),
+        Text(f"Bounds on the classification error: {bound.name}", style="bold"),
         Text(headline(bound)),
         TerminalTable(columns),
         Text(f" {note}", style="dim"),

@@ -13,7 +13,7 @@ _UNLIKE = 1.25
 
 
 def impacts_in_bounces(bounces: Bounces, *, gravity: float, first_speed: float, flights: Flights | None = None) -> Observations:
-    r"""Return the impacts of a sphere that is heard to bounce.
+    r"""Return the impacts of a bouncing sphere from the times of its touches.
 
     Both speeds of a flight follow from its duration, :math:`g T / 2` in a vacuum. The first impact that is heard is that of the drop if its
     speed of approach gives it a restitution like that of the second; otherwise it only begins the first flight.
@@ -67,5 +67,5 @@ def impacts_in_bounces(bounces: Bounces, *, gravity: float, first_speed: float, 
         noise_from="the times of the touches",
         doubts=bounces.doubts,
         flights=flights,
-        notes=(f"{number + 1} touches are heard{others}{'' if heard else first}.",),
+        notes=(f"{number + 1} touches are detected{others}{'' if heard else first}.",),
     )

@@ -149,4 +149,4 @@ def _check(problem: Problem, confidence: float, bootstrap: int | None) -> None:
     if not 0.0 < confidence < 1.0:
         raise InputError(f"{confidence:g} is not allowed; it must lie between 0 and 1", "confidence")
     if bootstrap is not None and bootstrap != 0 and not bootstrap >= 20:
-        raise InputError(f"{bootstrap} draws tell no interval; it must be 0, or at least 20", "bootstrap")
+        raise InputError(f"{bootstrap} draws give no interval; it must be 0, or at least 20", "bootstrap")

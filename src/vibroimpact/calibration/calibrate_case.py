@@ -96,7 +96,7 @@ def read_calibration(table: Mapping[str, Any]) -> ToCalibrate:
             raise InputError(f"it is missing; {names[0]} is fitted to {_ITS_TARGET}", "calibrate.target")
         if not own:
             if contact.get("law") == MODEL and model is None:
-                words = f"nothing says what impacts are to be like, since the law of the case is {MODEL} itself"
+                words = f"there is no target, since the law of the case is {MODEL} itself"
                 raise InputError(f"{words}; give a target, such as {{ restitution = 0.7 }}", "calibrate.target")
             section["target"] = {key: value for key, value in contact.items() if key not in _LOCAL}
             model = {"law": MODEL} if model is None else model
@@ -139,9 +139,9 @@ def calibrate_case(
     case = what.case
     section = case.calibrate
     if section is None or section.target is None:
-        raise InputError("it is missing; it says what impacts are to be like, such as { restitution = 0.7 }", "calibrate.target")
+        raise InputError("it is missing; it specifies the rebound to match, such as { restitution = 0.7 }", "calibrate.target")
     if case.plate.motion is not None:
-        raise InputError("what is wanted is the rebound from a plate at rest, and this one moves; leave its motion out", "plate.motion")
+        raise InputError("only the rebound from a plate at rest can be matched; leave the motion out", "plate.motion")
     problem = problem_of(case, progress, tell)
     names = friction_names(section.parameter)
     if not names and problem.same_spot and getattr(problem.laws[0], "lasting", False) and impact_count(problem) > 1:

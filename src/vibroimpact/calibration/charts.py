@@ -95,7 +95,7 @@ def _differences_chart(found: Calibration) -> Chart:
         ticks = tuple(range(1, len(values) + 1)) if len(values) <= _FEW else ()
         panels.append(Panel(Axis("Impact", ticks=ticks, integer=True), Axis("Difference", "%"), tuple(marks), COMPARED[name]))
     rows = tuple(tuple(panels[start : start + 2]) for start in range(0, len(panels), 2))
-    caption = "Each impact of the drop beside what was wanted, with the value given in three ways: that of the first impact throughout "
+    caption = "Each impact of the drop compared with the target, with the value given in three ways: that of the first impact throughout "
     caption += "(constant), each impact its own (variable), and the polynomial of the approach speed (function)."
     return Chart("differences", "Remaining differences", rows, caption, height=2.3)
 

@@ -48,7 +48,7 @@ def evaluate(case: Case, measurement: Measurement, air: bool | None) -> Observat
     """
     own = case.drop.air
     if own is not None and air is False:
-        raise InputError("the sphere flies through air, as drop.air says; leave one of them out", "air")
+        raise InputError("the sphere flies through air, as given by drop.air; leave one of them out", "air")
     if case.drop.gravity == 0.0:  # no flight returns
         return measurement.evaluated(None)
     highest = max(measurement.highest, (case.drop.height or 0.0) - case.sphere.radius, 0.5 * touch_speed(case) ** 2 / case.drop.gravity)

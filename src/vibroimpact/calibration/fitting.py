@@ -150,7 +150,7 @@ def fit_observations(tunable: Tunable, observations: Observations, weights: Mapp
             noise = observations.noise[name] - along[:, None] * observations.speed_noise
             noises.append(noise / (1.0 if known else np.sqrt(weight)))
         if not any(np.any(row) for row in rows):
-            raise InputError(f"{tunable.name} has no influence on what was measured, which can't tell it", "parameter")
+            raise InputError(f"{tunable.name} has no influence on the measured quantities, which can't determine it", "parameter")
         # whiten by the Cholesky factor of the noise covariance, so that readings shared by two impacts count once
         noise = np.concatenate(noises)
         root = np.linalg.cholesky(noise @ noise.T)

@@ -79,7 +79,7 @@ def find_pulses(time: Floats, force: Floats) -> DetectedPulses:
             margin = _margin(begin, end)
             quiet[max(begin - margin, 0) : end + margin] = False
         if np.count_nonzero(quiet) < _FEWEST:
-            raise InputError("the record shows nothing but the impact; it takes some time before or after it, to tell the force at rest")
+            raise InputError("the record contains only the impact; some time before or after it is needed to determine the force at rest")
         if number < _PASSES - 1:
             rest = record_baseline(time, force, quiet)
     return DetectedPulses(force, noise, quiet, runs)

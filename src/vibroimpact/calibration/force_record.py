@@ -130,7 +130,7 @@ def _separations(
         scale = float(scales.mean())
         unsure = float(scales.std(ddof=1)) / np.sqrt(timed) if timed > 1 else 0.0
         if abs(scale - 1.0) > _GAIN:
-            words = f"the impulses are {100.0 * (1.0 / scale - 1.0):+.1f} % off from what the times of flight say"
+            words = f"the impulses are {100.0 * (1.0 / scale - 1.0):+.1f} % off from those computed from the times of flight"
             more = "" if timed == number else " (the rebound of the last impact is corrected)"
             doubts.append(f"{words}: the scale of the force, the mass or gravity can't be right{more}")
     else:

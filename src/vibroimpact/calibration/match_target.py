@@ -61,7 +61,7 @@ def match_drop(
     for name in weights:
         column = MATCHABLE[name].column
         if not np.all(table[column][: len(at)] > 0.0):
-            raise InputError(f"{name} is not told by the target, {target.laws[0].name}; match something else", "match")
+            raise InputError(f"{name} does not follow from the target, {target.laws[0].name}; match something else", "match")
 
     def wanted_at(fast: Floats) -> tuple[Observations, Floats]:
         outcomes = single_impacts(target, batched_law(target.laws, len(fast)), fast)

@@ -60,6 +60,6 @@ def check_weights(weights: Mapping[str, float]) -> None:
             raise InputError(f"{weight:g} is not allowed as a weight; it must be greater than 0", f"match.{name}")
     for alike in (REBOUNDS, DIRECTIONS):
         if len(given := [name for name in alike if name in weights]) > 1:
-            raise InputError(f"{' and '.join(given)} say the same; give one of them", "match")
+            raise InputError(f"{' and '.join(given)} are equivalent; give one of them", "match")
     if not weights:
         raise InputError(f"name at least one of {', '.join(known)}", "match")

@@ -111,12 +111,12 @@ def _limit(seen: Observations, case: Case) -> RestitutionLimit:
 
 
 def _by_noise(value: float, most: float, why: str) -> str:
-    return f"and {value:.4g} is more than the {most:.4g} that noise is believed to make ({why}); look at speeds, heights and their units"
+    return f"and {value:.4g} is more than the {most:.4g} that is attributed to noise ({why}); check speeds, heights and their units"
 
 
 def _check_above(case: Case, heights: Floats, labels: tuple[str, ...]) -> None:
     if case.drop.gravity == 0.0:
-        raise InputError("without gravity a sphere rises for ever; its rebound height tells nothing", "target")
+        raise InputError("without gravity a sphere rises for ever; there is no rebound height", "target")
     low = np.flatnonzero(heights <= case.sphere.radius)
     if low.size:
         what = f"{heights[low[0]]:g} m is not above where the sphere lies on the plate, with its centre at {case.sphere.radius:g} m"

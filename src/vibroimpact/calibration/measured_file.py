@@ -54,8 +54,8 @@ _KINDS = (
     "or a record of time with position, force or sphere_acceleration"
 )
 _WHOSE = (
-    "an acceleration tells a rebound only if it is the sphere's: call the column sphere_acceleration (upwards, measured in the sphere), "
-    "mass times which is the force. That of the plate tells none; give rebound heights or restitutions instead"
+    "only the acceleration of the sphere determines a rebound: call the column sphere_acceleration (upwards, measured in the sphere), "
+    "mass times which is the force. That of the plate does not; give rebound heights or restitutions instead"
 )
 
 
@@ -80,7 +80,7 @@ def file_measurement(case: Case, target: FileTarget, by_rebound: bool) -> Measur
     if target.channel is not None or Path(target.file).suffix.lower() in _HEARD:
         return _naming_file(target.file, _heard_measurement(case, target))
     if target.contact_duration is not None:
-        raise InputError("it goes with bounces that are heard; name their channel, or leave this out", "target.contact_duration")
+        raise InputError("it applies to a record of bounces; give its channel, or leave this out", "target.contact_duration")
     if is_universal(target.file):
         found = read_universal_record(target.file, target.function, by_rebound)
         if found.quantity == "acceleration" and found.identification != SPHERE_ACCELERATION:
@@ -88,7 +88,7 @@ def file_measurement(case: Case, target: FileTarget, by_rebound: bool) -> Measur
         column = "sphere_acceleration" if found.quantity == "acceleration" else found.quantity
         return _naming_file(target.file, _record_measurement(case, Recorded(found.time, {column: found.values}, None), by_rebound))
     if target.function is not None:
-        raise InputError("only a universal file has functions; the columns of a table say what they are", "target.function")
+        raise InputError("only a universal file has functions; the columns of a table are named in its header", "target.function")
     table = _table(target.file)
     columns = table.columns
     if "approach_speed" in columns:
@@ -104,7 +104,7 @@ def file_measurement(case: Case, target: FileTarget, by_rebound: bool) -> Measur
         if "acceleration" in columns and not set(_RECORDED) & set(columns):
             raise InputError(_WHOSE)
         if "time" not in columns or not set(_RECORDED) & set(columns):
-            raise InputError(f"the columns {', '.join(columns)} do not tell of impacts; a file has {_KINDS}")
+            raise InputError(f"the columns {', '.join(columns)} do not describe impacts; a file has {_KINDS}")
         table = strictly_increasing(table, "time")
         values = {name: table.columns[name] for name in _RECORDED if name in table.columns}
         return _naming_file(target.file, _record_measurement(case, Recorded(table.columns["time"], values, table.lines), by_rebound))
@@ -115,10 +115,10 @@ def file_measurement(case: Case, target: FileTarget, by_rebound: bool) -> Measur
 def _heard_measurement(case: Case, target: FileTarget) -> Measurement:
     """Return the measurement of a record in which bounces are heard."""
     if target.function is not None:
-        raise InputError("the channel says which record it is; leave this out", "target.function")
+        raise InputError("the record is selected by its channel; leave this out", "target.function")
     gravity = case.drop.gravity
     if gravity == 0.0:
-        raise InputError("without gravity a sphere rises for ever, and is heard once", "target")
+        raise InputError("without gravity a sphere rises for ever, and does not bounce", "target")
     try:
         bounces = find_bounces(one_record(target.file, target.channel), target.contact_duration or 0.0)
     except InputError as error:
@@ -134,7 +134,7 @@ def _record_measurement(case: Case, record: Recorded, by_rebound: bool) -> Measu
     time, values, lines = record
     if "position" in values and (by_rebound or len(values) == 1):
         if case.drop.gravity == 0.0:
-            raise InputError("without gravity a sphere rises for ever; a record of its position tells nothing")
+            raise InputError("without gravity a sphere rises for ever; a record of its position does not determine a rebound")
         radius, gravity, position = case.sphere.radius, case.drop.gravity, values["position"]
 
         def in_position(flights: Flights | None) -> Observations:
@@ -219,7 +219,7 @@ def _table(file: str) -> TableFile:
     try:
         return read_table_file(file, _COLUMNS)
     except InputError as error:
-        if "acceleration; what is wanted is a " in error.message:  # given where a force or a position is required
+        if "acceleration; expected a " in error.message:  # given where a force or a position is required
             what = error.message.partition(" (a number in ")[0]  # without the hint how to write a force
             raise InputError(f"{what}. In a record {_WHOSE}", "target") from None
         raise InputError(error.message, "target") from None

@@ -47,7 +47,7 @@ def _force_chart(overlays: Sequence[Overlay]) -> Chart:
         upper += [_measured(one.touch + measured_at, force), Line(one.touch + at, simulated, "simulated", "detail")]
         lower.append(Line(one.touch + measured_at, apart, "measured less simulated", "matched"))
     panels = (Panel(time, Axis("Contact force", "N"), tuple(upper)),), (Panel(time, Axis("Difference", "N"), tuple(lower)),)
-    caption = "The record around each contact, and what is simulated with the values found: each impact at the speed with which it came."
+    caption = "The record around each contact, and the simulation with the calibrated values: each impact at its measured approach speed."
     return Chart("record", "Measured and simulated contact force", panels, caption, height=2.3)
 
 
@@ -68,7 +68,7 @@ def _position_chart(one: Overlay) -> Chart:
     lower = (Line(*_drawn(one.measured[0][known], apart[known]), "measured less simulated", "matched"),)
     panels = (Panel(time, Axis("Height", "m"), upper),), (Panel(time, Axis("Difference", "m"), lower),)
     caption = (
-        "The height of the sphere's centre as measured, and as simulated with the values found, from the first impact on: each rebound "
+        "The height of the sphere's centre as measured, and simulated with the calibrated values, from the first impact on: each rebound "
         "begins when the one before has ended."
     )
     return Chart("record", "Measured and simulated height", panels, caption, height=2.3)

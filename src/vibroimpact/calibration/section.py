@@ -78,7 +78,7 @@ class ImpactTarget(Section):
     def _one_rebound(self) -> ImpactTarget:
         given = [key for key in ("separation_speed", "rebound_height", "restitution") if getattr(self, key) is not None]
         if len(given) > 1:
-            raise InputError(f"{' and '.join(given)} say the same; give one of them", given[1])
+            raise InputError(f"{' and '.join(given)} are equivalent; give one of them", given[1])
         return self
 
 
@@ -87,13 +87,13 @@ class FileTarget(Section):
 
     file: str = Field(
         description="a CSV file whose header names its columns with their units, a universal file (UFF 58) with a record, or a WAV or "
-        "NetCDF file in which bounces are heard"
+        "NetCDF file with a record of bounces"
     )
     function: str | None = Field(None, description="which function of a universal file, by its first line of identification or its number")
     channel: str | None = Field(
-        None, description="the channel in which bounces are heard: of a WAV or NetCDF file that has several, or of a file of another kind"
+        None, description="the channel with the bounces: of a WAV or NetCDF file that has several, or of a file of another kind"
     )
-    contact_duration: Annotated[float, Quantity("s", "how long the contacts last between flights that are heard", _POSITIVE)] | None = None
+    contact_duration: Annotated[float, Quantity("s", "contact time of the impacts in a record of bounces", _POSITIVE)] | None = None
 
 
 Target = ContactSection | RestitutionTarget | HeightsTarget | ImpactTarget | FileTarget
@@ -147,7 +147,7 @@ class SpeedsTable(Section):
 
     start: Annotated[float, Quantity("m/s", "slowest", _POSITIVE)] = Field(alias="from")
     end: Annotated[float, Quantity("m/s", "fastest", _POSITIVE)] = Field(alias="to")
-    number: Annotated[int, Field(ge=2, le=MOST_SPEEDS, strict=True)] = Field(50, description="how many")
+    number: Annotated[int, Field(ge=2, le=MOST_SPEEDS, strict=True)] = Field(50, description="number of speeds")
     scale: Literal["linear", "log"] = "linear"
 
     @model_validator(mode="after")
@@ -176,37 +176,38 @@ def _match_schema() -> dict[str, Any]:
 
 
 class CalibrateSection(Section):
-    """What `vibroimpact calibrate` does with the case; a run takes no notice of it."""
+    """Settings of `vibroimpact calibrate`; a run ignores them."""
 
-    target: Annotated[Any, BeforeValidator(_read_target), JsonSchema("what impacts are to be like", _target_schema)] = Field(
-        None, description="what impacts are to be like; by default what they are under the law of the case, and the model is Adams' IMPACT"
+    target: Annotated[Any, BeforeValidator(_read_target), JsonSchema("target of the calibration", _target_schema)] = Field(
+        None, description="target of the calibration; by default the law of the case, and the model is Adams' IMPACT"
     )
     model: Annotated[Any, BeforeValidator(_read_model), JsonSchema(_LAW, law_schema)] = Field(
-        None, description="the contact law that is tuned; by default that of the case"
+        None, description="the tuned contact law; by default that of the case"
     )
     parameter: Annotated[Name | tuple[Name, ...], at_most(_MOST_PARAMETERS, "parameters")] | None = Field(
         None,
-        description='what is tuned: a parameter of the law, "sphere.damping" or "plate.damping"; or one or a list of those of the friction '
-        'law, such as "friction.coefficient"; by default what sets the law\'s loss',
+        description='the tuned parameter: one of the law, "sphere.damping" or "plate.damping"; or one or a list of those of the friction '
+        'law, such as "friction.coefficient"; by default the loss parameter of the law',
     )
     air: StrictBool | None = Field(
         None,
-        description="whether the sphere was measured in air, whose drag its flights then have, as drop.air says, or at 20 C and sea "
-        "level; without both keys they are those of a vacuum, and a doubt says where drag matters",
+        description="whether the sphere was measured in air: its flights then have the drag of drop.air, or of air at 20 C and sea "
+        "level; without both keys they are those in a vacuum, and a doubt is raised where drag matters",
     )
-    match: Annotated[Any, BeforeValidator(_read_match), JsonSchema("what of an impact is matched", _match_schema)] = Field(
-        None, description="what of an impact is matched: one, or a table of several with weights; by default the rebound, if it is there"
+    match: Annotated[Any, BeforeValidator(_read_match), JsonSchema("matched quantity of an impact", _match_schema)] = Field(
+        None,
+        description="the matched quantity: one, or a table of several with weights; by default the rebound, if it was measured",
     )
     degree: Annotated[int, Field(ge=0, le=12, strict=True)] | None = Field(
-        None, description="of the polynomial of the approach speed; by default 2, or less where there are fewer speeds"
+        None, description="degree of the polynomial of the approach speed; by default 2, or less where there are fewer speeds"
     )
-    speeds: SpeedsTable | None = Field(None, description="what the polynomial is fitted over, instead of the impacts of the drop")
-    confidence: Annotated[float, Quantity("", "of the intervals", Range(above=0, below=1))] = 0.95
+    speeds: SpeedsTable | None = Field(None, description="speeds over which the polynomial is fitted, instead of those of the impacts")
+    confidence: Annotated[float, Quantity("", "confidence level of the intervals", Range(above=0, below=1))] = 0.95
     bootstrap: Annotated[int, Field(ge=0, le=100_000, strict=True)] | None = Field(
         None,
-        description="how often the measurement is drawn again for the intervals, 0 or at least 20; by default where they are wide",
+        description="number of bootstrap samples for the intervals, 0 or at least 20; by default some hundred where they are wide",
     )
-    seed: Annotated[int, Field(ge=0, strict=True)] = Field(0, description="of the drawing")
+    seed: Annotated[int, Field(ge=0, strict=True)] = Field(0, description="seed of the bootstrap")
 
 
 def friction_names(parameter: Any) -> tuple[str, ...]:

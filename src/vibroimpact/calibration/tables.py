@@ -37,7 +37,7 @@ def values_table(found: Calibration) -> Cells:
     for name in found.weights:
         header = MATCHABLE[name].phrase.capitalize()
         unit, cells = formatted_column(MATCHABLE[name].column, np.concatenate([seen.wanted[name], found.outcomes[name]]))
-        headers += [(f"{header} wanted", unit), ("found", unit)]
+        headers += [(f"{header} of the target", unit), ("calibrated", unit)]
         columns += [cells[: len(seen.speeds)], cells[len(seen.speeds) :]]
         if found.as_given:
             headers.append(("as given, off by", "%"))
@@ -93,15 +93,17 @@ def fit_sentences(found: Calibration) -> list[str]:
     if seen.measured:
         half = fit.half_widths(found.confidence)
         if np.isfinite(half).all():
-            told.append(f"Its coefficients are known to ± {', '.join(digits(value, 3) for value in half)} at {_percent(found.confidence)}.")
-        way = f"by drawing the measurement {found.bootstrap} times again" if found.bootstrap else "to first order"
+            told.append(
+                f"Uncertainty of its coefficients: ± {', '.join(digits(value, 3) for value in half)} at {_percent(found.confidence)}."
+            )
+        way = f"by bootstrap with {found.bootstrap} draws" if found.bootstrap else "to first order"
         if found.intervals is not None:
-            told.append(f"Intervals are {way}, from {seen.noise_from if seen.deviations_known else 'the scatter of what was measured'}.")
+            told.append(f"Intervals are {way}, from {seen.noise_from if seen.deviations_known else 'the scatter of the measurement'}.")
         if seen.deviations_known and np.isfinite(fit.scatter):
             told.append(f"Residuals are {digits(fit.scatter, 3)} times as large as their standard deviations.")
     else:
         where = "over these speeds" if found.curve is not None else "at the impacts"
-        told.append(f"It is off by {digits(largest_misfit(found), 3)} {found.unit} at most {where}.".replace("  ", " "))
+        told.append(f"Its largest deviation is {digits(largest_misfit(found), 3)} {found.unit} {where}.".replace("  ", " "))
     return told
 
 
@@ -121,26 +123,26 @@ def given_sentences(found: Calibration) -> list[str]:
         instead, asked = (text(float(value), MATCHABLE[name].unit, 5) for value in (comes[worst], wanted[worst]))
         misses = abs(off[worst]) > _MET
         within = found.intervals is not None and bool(np.prod(found.intervals[worst] - found.given[worst]) <= 0.0)
-        verdict = ", no more than the measurement leaves open" if within else ": the target can't be met so" if misses else ""
-        told.append(f"{words} is {instead} instead of {asked}, off by {_off(off[worst])[0]} %{verdict}. With {meets} it is met.")
+        verdict = ", within the uncertainty of the measurement" if within else ": it does not meet the target" if misses else ""
+        told.append(f"{words} is {instead} instead of {asked}, a deviation of {_off(off[worst])[0]} %{verdict}. {meets} meets the target.")
         missed |= misses and not within
     if missed and found.others:
         each = [f"{name} = {digits(value, 6)} {law_parameter(found.problem, name).unit}".rstrip() for name, value in found.others.items()]
-        told.append(f"So would, at the first impact and with the rest as given: {'; '.join(each)}.")
+        told.append(f"Other values that meet it at the first impact, with the rest as given: {'; '.join(each)}.")
     return told
 
 
 def match_words(found: Calibration) -> str:
     """Return in words what was matched."""
     if len(found.weights) == 1:
-        return f"the {MATCHABLE[next(iter(found.weights))].phrase} of each impact comes out as wanted"
+        return f"the {MATCHABLE[next(iter(found.weights))].phrase} of each impact matches the target"
     every = " and ".join(f"the {MATCHABLE[name].phrase} (weight {weight:g})" for name, weight in found.weights.items())
-    return f"{every} of each impact come as near to what is wanted as one number can make them"
+    return f"{every} of each impact are fitted to the target by a weighted least-squares fit of one value"
 
 
 def ways_words(found: Calibration) -> str:
     """Return in words the ways of prescribing the value."""
-    chain = "" if set(found.weights) & set(REBOUNDS) else ". The rebound is not matched, so later impacts come at other speeds"
+    chain = "" if set(found.weights) & set(REBOUNDS) else ". The rebound is not matched, so that the speeds of later impacts differ"
     return "; ".join(f"{way}: {_MEANING[way]}" for way in WAYS) + chain
 
 

@@ -29,7 +29,7 @@ def calibration_summary(case: Case, told: CalibrationReport) -> RenderableType:
     if told.given:
         parts += [Text(), *(Text(sentence) for sentence in told.given)]
     if told.differences:
-        parts += [Text(), Text("What is still wrong", style="bold")]
+        parts += [Text(), Text("Remaining differences", style="bold")]
         parts.append(Columns([Group(Text(f" {title}"), cells_table(cells)) for title, cells in told.differences.items()], padding=(0, 4)))
         parts.append(Text(f" {told.ways}", style="dim"))
     parts += [Text(), *(Text(f"Doubt: {doubt}.") for doubt in told.doubts)] if told.doubts else []

@@ -42,7 +42,7 @@ def law_parameter(problem: Problem, name: str | None = None) -> Tunable:
     laws, first = problem.laws, problem.laws[0]
     known = {item.name: item for item in fields(first) if not item.metadata["memory"] and getattr(first, item.name) is not None}
     if name is None and first.free_parameter is None:
-        raise InputError(f"{first.name} has no parameter that sets its loss; name another law, or one of {', '.join(known)}", "parameter")
+        raise InputError(f"{first.name} has no loss parameter; name another law, or one of {', '.join(known)}", "parameter")
     chosen = name or str(first.free_parameter)
     if chosen not in known:
         raise InputError(f'{first.name} has no parameter "{chosen}"; it has {", ".join(known)}.{did_you_mean(chosen, known)}', "parameter")

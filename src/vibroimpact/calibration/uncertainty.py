@@ -130,9 +130,9 @@ def undetermined_doubts(
     told, percent = [], f"{100.0 * confidence:g} %"
     if intervals is None:
         if fit.freedom > 0:
-            told.append(f"{tunable.name} has no influence on one of the impacts, so that no interval can be told")
+            told.append(f"{tunable.name} has no influence on one of the impacts, so that it has no interval")
         else:
-            told.append("as many impacts as coefficients, and no standard deviation: nothing tells how well these are known")
+            told.append("as many impacts as coefficients, and no standard deviation: their uncertainty is unknown")
         return told
     wide = np.flatnonzero(intervals[:, 1] - intervals[:, 0] > _DETERMINED * np.abs(values))
     for row in wide[:_MOST_TOLD]:
@@ -140,11 +140,11 @@ def undetermined_doubts(
         value = f"{values[row]:.4g} {tunable.unit}".rstrip()
         told.append(f"{observations.labels[row]} does not determine {tunable.name}: {value}, but {low:.4g} to {high:.4g} at {percent}")
     if len(wide) > _MOST_TOLD:
-        told.append(f"so it is with {len(wide) - _MOST_TOLD} more")
+        told.append(f"the same holds for {len(wide) - _MOST_TOLD} more impacts")
     highest, half = fit.function.coefficients[-1], fit.half_widths(confidence)[-1]
     if fit.function.degree and not abs(highest) > half:
         known = f"the highest coefficient is {highest:.3g}, known to {half:.2g} at {percent}"
-        told.append(f"the measurement does not call for degree {fit.function.degree}: {known}; a lower degree will do")
+        told.append(f"the measurement does not justify degree {fit.function.degree}: {known}; use a lower degree")
     return told
 
 
@@ -159,22 +159,22 @@ def fit_doubts(
     if np.isfinite(fit.freedom) and seen.deviations_known and fit.freedom > 0:
         told.append(
             f"residuals are {fit.scatter:.3g} times as large as their standard deviations: a polynomial of degree {function.degree} does "
-            "not follow the measurement, or its noise is larger; the intervals of the polynomial are widened by that"
+            "not fit the measurement, or its noise is larger; the intervals of the polynomial are widened by that factor"
         )
     if curve is not None:
         off, size = function.misfit(*curve), np.nanmax(np.abs(curve[1]), initial=0.0)
         if off > _FOLLOWS * size:
             told.append(
-                f"the polynomial of degree {function.degree} is off by up to {off:.3g} {tunable.unit}, of {size:.3g} at most; take a "
+                f"the polynomial of degree {function.degree} deviates by up to {off:.3g} {tunable.unit}, of {size:.3g} at most; use a "
                 "higher degree, or a narrower range of speeds"
             )
     beyond = function.beyond(speeds)
     if beyond.size and function.degree:
         told.append(
             f"the drop has impacts at {beyond.min():.4g} to {beyond.max():.4g} m/s, and the polynomial was fitted over "
-            f"{function.slowest:.4g} to {function.fastest:.4g} m/s: what it says there is a guess"
+            f"{function.slowest:.4g} to {function.fastest:.4g} m/s: there it is an extrapolation"
         )
     rings = problem.sphere.modes is not None or problem.plate.modes is not None or problem.local_element is not None
     if rings and impact_count(problem) > 1:
-        told.append(f"{tunable.name} is matched on bodies at rest; at later impacts they still ring, and the rebound differs")
+        told.append(f"{tunable.name} is matched on bodies at rest; at later impacts they still vibrate, and the rebound differs")
     return told

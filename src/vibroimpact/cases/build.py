@@ -92,7 +92,7 @@ def _check_oblique(case: CaseTable, law: ContactLaw) -> None:
     if case.plate.radius is not None:
         raise InputError("a sphere may fall obliquely, spin or rub on a flat plate only, not on another sphere; leave this out", keys[0])
     if isinstance(case.plate.mesh, BroughtMeshTable):
-        words = "a mesh that is brought along does not say where the plate ends, over whose edge a sphere may fall"
+        words = "an imported mesh does not define the edges of the plate, over which a sphere may fall"
         raise InputError(f"{words}; give size and leave out mesh, or leave this out", keys[0])
     friction = friction_law_of(case)
     shaken = case.plate.motion is not None and isinstance(law, CompliantLaw)

@@ -64,12 +64,12 @@ class SphereSection(Section):
 
     radius: Annotated[float, Quantity("m", "radius", Range(above=0))]
     material: MaterialField
-    model: Literal["rigid", "elastic"] = Field("rigid", description="whether the sphere deforms beyond its contact")
-    modes: ModesField | None = Field(None, description="how many modes, the lowest")
+    model: Literal["rigid", "elastic"] = Field("rigid", description="rigid, or elastic with vibration modes")
+    modes: ModesField | None = Field(None, description="number of modes, from the lowest")
     max_frequency: FrequencyField | None = None
     damping: DampingField = None
     mesh: SphereMeshField = None
-    reduction: MethodField | None = Field(None, description="how the finite elements are reduced to modes; modal by default")
+    reduction: MethodField | None = Field(None, description="model reduction of the finite elements; modal by default")
     attachment_mode: StrictBool = Field(False, description="add a residual attachment mode at the contact point")
 
     @model_validator(mode="before")
@@ -91,7 +91,7 @@ class PlateSection(Section):
     """What the sphere falls on: a plate, or another sphere; held fixed, or free."""
 
     material: MaterialField
-    radius: Annotated[float, Quantity("m", "radius of a sphere that takes the place of the plate", Range(above=0))] | None = None
+    radius: Annotated[float, Quantity("m", "radius of a sphere in place of the plate", Range(above=0))] | None = None
     size: (
         tuple[
             Annotated[float, Quantity("m", "length", Range(above=0))],
@@ -100,22 +100,24 @@ class PlateSection(Section):
         ]
         | None
     ) = Field(None, description="length (x), width (y) and thickness (z) [m]")
-    model: Literal["rigid", "elastic"] = Field("rigid", description="whether the plate deforms beyond its contact")
-    element: Literal["plate", "solid"] | None = Field(None, description="what an elastic plate is made of; plate elements by default")
-    modes: ModesField | None = Field(None, description="how many modes, the lowest")
+    model: Literal["rigid", "elastic"] = Field("rigid", description="rigid, or elastic with vibration modes")
+    element: Literal["plate", "solid"] | None = Field(
+        None, description="type of the finite elements of an elastic plate; plate elements by default"
+    )
+    modes: ModesField | None = Field(None, description="number of modes, from the lowest")
     max_frequency: FrequencyField | None = None
     damping: DampingField = None
     supports: SupportsField = None
     inclination: (
         Annotated[
             float,
-            Quantity("rad", "inclination about y, which gives gravity a part along +x", Range(above=-_RIGHT_ANGLE, below=_RIGHT_ANGLE)),
+            Quantity("rad", "inclination about y, with a component of gravity along +x", Range(above=-_RIGHT_ANGLE, below=_RIGHT_ANGLE)),
         ]
         | None
     ) = None
-    motion: MotionTable | None = Field(None, description="how the supports move; at rest by default")
+    motion: MotionTable | None = Field(None, description="motion of the supports; at rest by default")
     mesh: PlateMeshField = None
-    reduction: MethodField | None = Field(None, description="how the finite elements are reduced to modes; modal by default")
+    reduction: MethodField | None = Field(None, description="model reduction of the finite elements; modal by default")
     attachment_mode: StrictBool = Field(False, description="add a residual attachment mode at the contact point")
 
     @model_validator(mode="after")
@@ -129,9 +131,10 @@ class DropSection(Section):
     """How the sphere comes down: from a height, or with a speed or velocity at first touch."""
 
     height: (
-        Annotated[float, Quantity("m", "height of the sphere's centre above the plate's upper surface, at rest", Range(above=0))] | None
+        Annotated[float, Quantity("m", "initial height of the sphere's centre above the plate's upper surface, at rest", Range(above=0))]
+        | None
     ) = None
-    speed: Annotated[float, Quantity("m/s", "speed at first touch, where the run then begins", Range(above=0))] | None = None
+    speed: Annotated[float, Quantity("m/s", "speed at first touch, at which the run then begins", Range(above=0))] | None = None
     angle: (
         Annotated[
             float, Quantity("rad", "angle of the speed from the plate's normal, towards +x", Range(above=-_RIGHT_ANGLE, below=_RIGHT_ANGLE))
@@ -151,7 +154,7 @@ class DropSection(Section):
     gravity: Annotated[float, Quantity("m/s^2", "acceleration of gravity", Range(at_least=0))] = STANDARD_GRAVITY
     air: AirField = None
     same_spot: StrictBool = Field(
-        True, description="does each impact fall where the last one did, into the dent that a law may leave, or on fresh surfaces?"
+        True, description="whether all impacts are at the same spot, with the dent of previous ones, or on undeformed surfaces"
     )
 
     @model_validator(mode="after")
@@ -164,7 +167,7 @@ class DropSection(Section):
             words = f"its z is {self.velocity[2]:g} m/s, which leads away from the plate"
             raise InputError(f"{words}; at first touch it is negative, or give the height at which the drop starts", "velocity")
         if self.angle is not None and self.speed is None:
-            raise InputError("an angle is that of the speed at first touch; give speed, or velocity in place of both", "angle")
+            raise InputError("an angle needs the speed at first touch; give speed, or velocity in place of both", "angle")
         return self
 
 
@@ -172,7 +175,7 @@ def _read_impacts(value: Any) -> Any:
     """Return a valid number of impacts, "all" or None."""
     if value is None or value == "all" or (type(value) is int and 1 <= value <= MOST_IMPACTS):
         return value
-    raise InputError(f'{shown(value)} is not allowed; it must be a whole number from 1 to {MOST_IMPACTS}, or "all" to go on to rest')
+    raise InputError(f'{shown(value)} is not allowed; it must be a whole number from 1 to {MOST_IMPACTS}, or "all" to continue until rest')
 
 
 _DIRECTIONS = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
@@ -191,32 +194,36 @@ def _one_of(names: Collection[str]) -> BeforeValidator:
 
 
 class SensorSection(Section):
-    """A point of the plate that is watched, or of the air that is listened to."""
+    """A sensor at a point of the plate, or a microphone in the air."""
 
-    name: Name = Field(min_length=1, description="what it is called in tables and figures")
+    name: Name = Field(min_length=1, description="name of the sensor in tables and figures")
     position: tuple[Annotated[float, Quantity("m", "x")], Annotated[float, Quantity("m", "y")]] | Name = Field(
-        description="x and y on the plate, from its centre [m]; or the name of a set of a mesh that was brought"
+        description="x and y on the plate, from its centre [m]; or the name of a set of an imported mesh"
     )
-    face: Literal["upper", "lower"] = Field("upper", description="the side of the plate that it is on, or that a microphone hears")
+    face: Literal["upper", "lower"] = Field("upper", description="the face of the plate that it is on, or that a microphone measures")
     instrument: Annotated[Literal["accelerometer", "geophone", "strain-gauge", "microphone", "force"] | None, _one_of(INSTRUMENTS)] = Field(
-        None, description="what reads it; by default that of the table that is given, or else the motion is read as it is"
+        None, description="type of the instrument; by default that of the table that is given, or else an ideal sensor of the motion"
     )
     quantity: Literal["acceleration", "velocity", "displacement", "voltage", "strain", "pressure", "force"] | None = Field(
-        None, description="what it takes: acceleration by default, or what the instrument puts out"
+        None, description="measured quantity: acceleration by default, or the output of the instrument"
     )
-    direction: Literal["x", "y", "z"] | tuple[float, float, float] = Field("z", description="along which it takes it; z is upwards")
-    rate: Annotated[float, Quantity("Hz", "samples per second", Range(above=0))] = 50e3
+    direction: Literal["x", "y", "z"] | tuple[float, float, float] = Field("z", description="direction of measurement; z is upwards")
+    rate: Annotated[float, Quantity("Hz", "sampling rate", Range(above=0))] = 50e3
     filter: Annotated[Literal["sigma-delta", "butterworth", "none"], _one_of(FILTERS)] = Field(
-        "sigma-delta", description="what keeps frequencies above half the rate from its samples"
+        "sigma-delta", description="anti-alias filter"
     )
-    corner: Annotated[float, Quantity("Hz", "corner of a Butterworth filter; 0.4 of the rate by default", Range(above=0))] | None = None
-    accelerometer: AccelerometerTable | None = Field(None, description="resonance, range, noise, resolution and sensitivity of one")
-    geophone: GeophoneTable | None = Field(None, description="natural frequency, sensitivity, damping and low-pass of one")
-    strain_gauge: StrainGaugeTable | None = Field(None, description="sensitivity of one")
+    corner: (
+        Annotated[float, Quantity("Hz", "corner frequency of a Butterworth filter; 0.4 of the rate by default", Range(above=0))] | None
+    ) = None
+    accelerometer: AccelerometerTable | None = Field(
+        None, description="resonance, range, noise, resolution and sensitivity of an accelerometer"
+    )
+    geophone: GeophoneTable | None = Field(None, description="natural frequency, sensitivity, damping and low-pass of a geophone")
+    strain_gauge: StrainGaugeTable | None = Field(None, description="sensitivity of a strain gauge")
     force: ForceTable | None = Field(None, description="sensitivity of a force sensor between the plate and the support at the position")
-    microphone: MicrophoneTable | None = Field(None, description="distance and sensitivity of one, and its air")
-    amplifier: AmplifierTable | None = Field(None, description="gain, noise and hum behind the instrument")
-    converter: ConverterTable | None = Field(None, description="range and bits of what samples it")
+    microphone: MicrophoneTable | None = Field(None, description="distance and sensitivity of a microphone, and its air")
+    amplifier: AmplifierTable | None = Field(None, description="gain, noise and mains hum of the amplifier")
+    converter: ConverterTable | None = Field(None, description="range and bits of the analogue-to-digital converter")
 
     @model_validator(mode="after")
     def _check_sensor(self) -> SensorSection:
@@ -226,11 +233,11 @@ class SensorSection(Section):
         if isinstance(instrument, StrainGauge):
             self._lay_in_face()
         if isinstance(instrument, Microphone) and self.direction not in ("z", (0.0, 0.0, 1.0)):
-            raise InputError("a microphone hears all directions alike; leave out the direction", "direction")
+            raise InputError("a microphone is omnidirectional; leave out the direction", "direction")
         if instrument is None and self.quantity not in (None, *MOTIONS):
-            raise InputError(f'{self.quantity} is what an instrument puts out; name one, such as instrument = "geophone"', "quantity")
+            raise InputError(f'{self.quantity} is the output of an instrument; name one, such as instrument = "geophone"', "quantity")
         if instrument is not None and self.quantity not in (None, instrument.quantity):
-            words = f"{INSTRUMENTS[str(self.instrument)]} reads {instrument.quantity}"
+            words = f"{INSTRUMENTS[str(self.instrument)]} measures {instrument.quantity}"
             raise InputError(f"{words}; leave out quantity, or the {self.instrument}", "quantity")
         sensor = self.sensor()  # raises if the filter does not take a corner frequency
         self.__dict__["quantity"] = sensor.quantity
@@ -283,10 +290,10 @@ class RunSection(Section):
     """When to stop, and how exact to be."""
 
     impacts: Annotated[int | Literal["all"] | None, BeforeValidator(_read_impacts)] = Field(
-        None, description='stop after so many impacts; "all": go on to rest; by default 5, or all if a duration is given'
+        None, description='number of impacts after which the run ends; "all": until rest; by default 5, or all if a duration is given'
     )
-    duration: Annotated[float, Quantity("s", "stop at this time", Range(above=0))] | None = None
-    rest_speed: Annotated[float, Quantity("m/s", "a sphere that leaves more slowly is at rest", Range(at_least=0))] | None = None
+    duration: Annotated[float, Quantity("s", "time at which the run ends", Range(above=0))] | None = None
+    rest_speed: Annotated[float, Quantity("m/s", "separation speed below which the sphere is at rest", Range(at_least=0))] | None = None
     tolerance: Annotated[
         float, Quantity("", "relative error allowed in the state at the end of a contact", Range(at_least=1e-13, at_most=1e-6))
     ] = 1e-9
@@ -300,17 +307,15 @@ class CaseTable(Section):
     """A case as a file has it: its sections, validated, in SI."""
 
     schema_version: Literal[1] = Field(1, description="version of this format")
-    name: Name = Field("", description="what the case is, in a few words")
+    name: Name = Field("", description="title of the case")
     sphere: SphereSection
     plate: PlateSection
     drop: DropSection
     contact: Annotated[ContactSection, BeforeValidator(read_contact)]
     run: RunSection = RunSection()
-    sensors: Annotated[tuple[SensorSection, ...], at_most(MOST_ITEMS, "sensors")] = Field(
-        (), description="the points of the plate that are watched"
-    )
-    calibrate: CalibrateSection | None = Field(None, description="what `vibroimpact calibrate` does with it")
-    sweep: SweepSection | None = Field(None, description="what `vibroimpact sweep` does with it")
+    sensors: Annotated[tuple[SensorSection, ...], at_most(MOST_ITEMS, "sensors")] = Field((), description="sensors on the plate")
+    calibrate: CalibrateSection | None = Field(None, description="settings of `vibroimpact calibrate`")
+    sweep: SweepSection | None = Field(None, description="settings of `vibroimpact sweep`")
 
     @model_validator(mode="after")
     def _check_consistency(self) -> Self:

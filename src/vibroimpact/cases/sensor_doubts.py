@@ -53,7 +53,7 @@ def sensor_doubts(case: ResolvedCase, signals: Mapping[str, Signal], highest: fl
         apart = _distance_in_thicknesses(case, places.get(name))
         if apart < _NEAR:
             part = _finite_or_zero(signal.uncertainty) + _thickness_error(case, signal, duration)
-            cause = f"{apart:.2g} thicknesses from the contact what the plate does through its thickness, and in the modes left out,"
+            cause = f"{apart:.2g} thicknesses from the contact, the motion through the thickness and the modes left out"
             remedy = _remedy(signal, highest) if signal.uncertainty > _PROMISED else f"beyond {_NEAR:g} thicknesses plate theory holds"
             alike.setdefault((cause, remedy), {})[name] = part
         elif signal.uncertainty > _PROMISED:
@@ -78,8 +78,8 @@ def _range_doubts(signal: Signal, end: float | None) -> list[str]:
     least, long = float(f"{_ENOUGH * signal.peak:.1g}"), text(signal.overload_time, "s", 2)
     least = least if least >= signal.peak else 2.0 * least
     return [
-        f'the accelerometer of sensor "{signal.sensor.name}" is driven beyond {limit} for {long} in all, by up to '
-        f"{signal.peak:.4g} m/s2: what lies beyond is cut off, and the signal around it is wrong; take one with a range of {least:g} m/s2 "
+        f'the accelerometer of sensor "{signal.sensor.name}" is overloaded beyond {limit} for {long} in all, by up to '
+        f"{signal.peak:.4g} m/s2: the signal is clipped there, and wrong around it; take one with a range of {least:g} m/s2 "
         "or so"
     ]
 
@@ -94,7 +94,7 @@ def _converter_doubts(signal: Signal, converter: Mapping[str, Any]) -> list[str]
         return [f'the converter of sensor "{name}" clips {part} at its range of {end}; give it a wider one, or the amplifier less gain']
     if read.step and not signal.value.any():
         return [
-            f'the converter of sensor "{name}" reads nothing: its step is {text(read.step, unit)}; give it more bits, or the amplifier gain'
+            f'the converter of sensor "{name}" has no signal: its step is {text(read.step, unit)}; give it more bits, or the amplifier gain'
         ]
     return []
 
@@ -111,8 +111,8 @@ def _baffle_doubts(case: ResolvedCase, signal: Signal, speed: float) -> list[str
         return []
     return [
         f'{_per_cent(part)} of the power of the microphone "{signal.sensor.name}" lies below {text(lowest, "Hz")}, where half a '
-        "wavelength is longer than the plate is wide: the plate is taken to lie in a rigid plane, and without one its two sides cancel "
-        "there; look at higher frequencies"
+        "wavelength is longer than the plate is wide: the plate is assumed to lie in a rigid baffle, and without one its two sides cancel "
+        "there; use higher frequencies"
     ]
 
 

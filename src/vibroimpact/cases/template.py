@@ -28,7 +28,7 @@ _WIDTH = 40  # columns of a key with its value, before its meaning
 
 
 def case_template(source: str | PathLike[str] = "paper:type1-theory", name: str = "", changes: Mapping[str, Any] | None = None) -> str:
-    """Return the text of a case file to start from: that of another case, with its unused keys as comments.
+    """Return the text of a new case file: that of another case, with its unused keys as comments.
 
     Parameters
     ----------

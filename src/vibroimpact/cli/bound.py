@@ -1,4 +1,4 @@
-"""The command `bound`, which tells what no classifier can do."""
+"""The command `bound`, which computes the lowest possible classification error of a population."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ def bound(
     output: Annotated[
         Path | None, typer.Option("-o", "--output", metavar="DIR", help="The folder to make; by default STUDY-bound.")
     ] = None,
-    samples: Annotated[int, typer.Option("--samples", metavar="N", min=100, help="How many falls are drawn of a study.")] = 20_000,
-    bandwidth: Annotated[str, typer.Option("--bandwidth", metavar="B", help="Upper end of the band that is heard.")] = "10 kHz",
+    samples: Annotated[int, typer.Option("--samples", metavar="N", min=100, help="Number of falls drawn from a study.")] = 20_000,
+    bandwidth: Annotated[str, typer.Option("--bandwidth", metavar="B", help="Upper end of the measured band.")] = "10 kHz",
     signal_to_noise: Annotated[
         float, typer.Option("--snr", metavar="DB", help="Peak force of the median fall over the noise in 10 kHz, in dB.")
     ] = 40.0,
     force: Force = False,
     as_json: Json = False,
 ) -> None:
-    """Tell what no classifier can do: the Bayes error of a population, by what is measured of a fall.
+    """Compute the lowest possible classification error (Bayes error) of a population, for sets of measured quantities.
 
-    Of a study the falls are computed on its plate as a rigid body; of a data set they are those that are there.
+    The falls of a study are computed on its plate as a rigid body; those of a data set are read from it.
     """
     from vibroimpact.bounds.bound import bound_of
     from vibroimpact.bounds.folder import bound_document, save_bound
@@ -54,7 +54,7 @@ def bound(
     if not -60.0 <= signal_to_noise <= 200.0:
         raise InputError(f"{signal_to_noise:g} is not allowed; it must be from -60 to 200", "--snr")
     screen = console(err=as_json)
-    with exit_on_interrupt(), patient_progress("what can be told", screen) as progress:
+    with exit_on_interrupt(), patient_progress("Bayes error", screen) as progress:
         found = read_study(population) if Path(population).is_dir() else load_sweep(population, samples)
         known = bound_of(found, Channel(bandwidth=band, signal_to_noise=signal_to_noise), progress=progress)
         folder = save_bound(known, target, force=force)

@@ -1,4 +1,4 @@
-"""The command `calibrate`, which finds the damping for a required or measured rebound, or the restitution of bounces that are heard."""
+"""The command `calibrate`, which finds the damping for a required or measured rebound, or the restitution of bounces in a record."""
 
 from __future__ import annotations
 
@@ -26,30 +26,30 @@ def calibrate(
         Path | None, typer.Option("-o", "--output", metavar="DIR", help="The folder to make; by default CASE-calibrated.")
     ] = None,
     changes: Changes = None,
-    channel: Annotated[
-        str | None, typer.Option("--channel", metavar="NAME", help="Of a record with several channels, the one to take.")
-    ] = None,
+    channel: Annotated[str | None, typer.Option("--channel", metavar="NAME", help="Channel to use, if a record has several.")] = None,
     gravity: Annotated[
         str | None,
-        typer.Option("--gravity", metavar="VALUE", help='Of the flights of a record, such as "9.81 m/s^2"; by default 9.80665 m/s^2.'),
+        typer.Option(
+            "--gravity", metavar="VALUE", help='Gravity during the flights of a record, such as "9.81 m/s^2"; by default 9.80665 m/s^2.'
+        ),
     ] = None,
     height: Annotated[
         str | None,
-        typer.Option("--height", metavar="LENGTH", help='Through which the ball fell before the first touch of a record, such as "0.3 m".'),
+        typer.Option("--height", metavar="LENGTH", help='Height of fall before the first touch of a record, such as "0.3 m".'),
     ] = None,
     contact: Annotated[
         str | None,
-        typer.Option("--contact", metavar="TIME", help='How long a contact of a record lasts, such as "0.2 ms"; by default no time.'),
+        typer.Option("--contact", metavar="TIME", help='Contact time of the impacts of a record, such as "0.2 ms"; by default 0.'),
     ] = None,
     figures: Figures = False,
     force: Force = False,
     as_json: Json = False,
 ) -> None:
-    """Find the damping with which a sphere bounces as it is wanted to, or was measured to; or the restitution of bounces that are heard.
+    """Calibrate the damping of a contact law to a specified or measured rebound, or estimate restitutions from a record of bounces.
 
-    The [calibrate] section of a case says what to match: a contact law, a restitution, or measurements. Without it the
-    damping of Adams' IMPACT is found with which the sphere bounces as under the law of the case. Of a record of sound or
-    vibration, the times between bounces give restitution and speed of each impact.
+    The [calibrate] section of a case specifies the target: a contact law, a restitution, or measurements. Without it the
+    damping of Adams' IMPACT is calibrated to the law of the case. From a record of sound or vibration, restitution and
+    speed of each impact follow from the times between bounces.
     """
     from vibroimpact.results.folder import check_free
 

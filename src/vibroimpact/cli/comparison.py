@@ -35,7 +35,7 @@ def compare(
             "--set",
             metavar="KEY=VALUE",
             autocompletion=complete_parameter,
-            help="A parameter for every law that has it, or LAW.KEY=VALUE for one; may be repeated.",
+            help="Parameter of every law that has it, or LAW.KEY=VALUE for one law; may be repeated.",
         ),
     ] = None,
     achieving: Annotated[
@@ -49,9 +49,9 @@ def compare(
     force: Force = False,
     as_json: Json = False,
 ) -> None:
-    """Run one case under several contact laws.
+    """Run one case with several contact laws, and compare the results.
 
-    Parameters that the case's own law has are used where another law has the same.
+    Parameters of the case's own law are also used for the other laws that have them.
     """
     from vibroimpact.cases.reader import load_case
     from vibroimpact.comparison.comparison import compare_laws

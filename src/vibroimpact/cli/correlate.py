@@ -1,4 +1,4 @@
-"""The command `correlate`, which lays records of a test over the simulation of the case."""
+"""The command `correlate`, which compares records of a test with the simulation of the case."""
 
 from __future__ import annotations
 
@@ -38,11 +38,11 @@ def correlate(
         Path | None, typer.Option("-o", "--output", metavar="DIR", help="The folder to make; by default CASE-correlated.")
     ] = None,
     hammer: Annotated[
-        str | None, typer.Option("--hammer", metavar="CHANNEL", help="The channel of the records that is the force of a hammer.")
+        str | None, typer.Option("--hammer", metavar="CHANNEL", help="Channel of the records with the force of the hammer.")
     ] = None,
     window: Annotated[
         str | None,
-        typer.Option("--window", metavar="TIME", help="Time from first touch on that is compared; by default to the next impact."),
+        typer.Option("--window", metavar="TIME", help="Compared time after first touch; by default until the next impact."),
     ] = None,
     band: Annotated[
         str | None,
@@ -53,10 +53,9 @@ def correlate(
     force: Force = False,
     as_json: Json = False,
 ) -> None:
-    """Lay records of a test over the simulation: residual, frequency responses, FRAC, and modal damping from the decay.
+    """Compare records of a test with the simulation: residual, frequency responses, FRAC, and modal damping from the decay.
 
-    The case gives the plate, the sensors, which have the names of the records, and the impact; of a hammer whose force was measured only
-    where it hits.
+    The case specifies the plate, the sensors, named as the records, and the impact; for a hammer with a measured force only its position.
     """
     from vibroimpact.cases.reader import load_case
     from vibroimpact.correlation.correlate import correlate as correlated

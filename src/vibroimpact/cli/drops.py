@@ -39,7 +39,7 @@ def demo(
 ) -> None:
     """Run the paper's Type 1 as a first example.
 
-    A rock sphere falls 4 m on a steel plate and bounces five times.
+    A rock sphere falls from 4 m onto a steel plate and bounces five times.
     """
     _run("paper:type1-variable", output, {}, None, figures=False, force=force, as_json=as_json)
 
@@ -54,21 +54,21 @@ def run(
     figures: Figures = False,
     drop: Annotated[
         int | None,
-        typer.Option("--drop", metavar="N", min=0, help="Of a case with a [sweep] section the drop of this number, as in drops.csv."),
+        typer.Option("--drop", metavar="N", min=0, help="Number of the drop to run, as in drops.csv, for a case with a [sweep] section."),
     ] = None,
     force: Force = False,
     as_json: Json = False,
 ) -> None:
     """Run a case and write its result folder.
 
-    The folder holds the case in full, the impact table, the data as NetCDF, and a report whose charts can be explored.
+    The folder contains the full case, the impact table, the data as NetCDF, and a report with interactive charts.
     """
     _run(case, output, settings_of(changes), drop, figures=figures, force=force, as_json=as_json)
 
 
 @app.command()
 def check(case: CaseArgument, changes: Changes = None, as_json: Json = False) -> None:
-    """Validate a case or a study and explain it; run nothing."""
+    """Validate and explain a case or a study, without running it."""
     from vibroimpact.calibration.section import check_target
     from vibroimpact.cases.build import check_drop
     from vibroimpact.cases.reader import load_case, load_table, prefix_errors
@@ -154,7 +154,7 @@ def modes(
 ) -> None:
     """Compute the modes of the elastic bodies of a case.
 
-    The folder holds a table of frequencies, a report that shows the first modes, and the meshes for ParaView, Nastran and Abaqus.
+    The folder contains a table of frequencies, a report with the first mode shapes, and the meshes for ParaView, Nastran and Abaqus.
     """
     from vibroimpact.cases.costs import describe_costs
     from vibroimpact.cases.elastic.modes import compute_modes
@@ -181,7 +181,7 @@ def modes(
 
 @app.command()
 def report(directory: Annotated[Path, typer.Argument(metavar="DIR", help="A result folder.")]) -> None:
-    """Remake the report of a result folder."""
+    """Regenerate the report of a result folder."""
     from vibroimpact.remake import remake_report
 
     say(f"wrote {remake_report(directory) / 'report.html'}")
@@ -190,14 +190,14 @@ def report(directory: Annotated[Path, typer.Argument(metavar="DIR", help="A resu
 @app.command()
 def figures(
     directory: Annotated[Path, typer.Argument(metavar="DIR", help="A result folder, or the folder of a study.")],
-    formats: Annotated[str, typer.Option("--format", metavar="NAMES", help="Any of png, svg and pdf, with commas.")] = "png",
+    formats: Annotated[str, typer.Option("--format", metavar="NAMES", help="Formats, separated by commas: png, svg, pdf.")] = "png",
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", metavar="FOLDER", help="Where they are written; by default DIR/figures.")
+        Path | None, typer.Option("-o", "--output", metavar="FOLDER", help="The folder to write to; by default DIR/figures.")
     ] = None,
 ) -> None:
     """Write the charts of a run or a study as files.
 
-    They are of print quality. Of a run whose plate deforms there is an animation too, plate.gif.
+    They are of print quality. For a run with an elastic plate an animation, plate.gif, is written too.
     """
     from vibroimpact.figures import save_figures
     from vibroimpact.report.progress import patient_progress

@@ -21,15 +21,20 @@ def export(
     ] = None,
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", metavar="PATH", help="The folder, or the file if there is one; by default the folder DIR-FORMAT."),
+        typer.Option(
+            "-o",
+            "--output",
+            metavar="PATH",
+            help="The folder, or the file of a format with a single file; by default the folder DIR-FORMAT.",
+        ),
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace files of the same names.")] = False,
     formats: Annotated[bool, typer.Option("--formats", help="List the formats.")] = False,
     as_json: Json = False,
 ) -> None:
-    """Write a result in a format of another program, or list the formats.
+    """Export a result in a format of another program, or list the formats.
 
-    What the format can't hold is said, and what the writer was tested against.
+    The output states what the format can't represent, and what the writer was tested against.
     """
     from vibroimpact.exporting.document import export_document, formats_document
     from vibroimpact.exporting.export_format import find_export_format

@@ -1,4 +1,4 @@
-"""The command `features`, which describes signals by numbers."""
+"""The command `features`, which computes features of signals."""
 
 from __future__ import annotations
 
@@ -25,28 +25,30 @@ def features(
     output: Annotated[Path | None, typer.Option("-o", "--output", metavar="CSV", help="Write the table into this file.")] = None,
     only: Annotated[
         str | None,
-        typer.Option("--only", metavar="NAMES", autocompletion=complete_features, help="Which features, separated by commas."),
+        typer.Option("--only", metavar="NAMES", autocompletion=complete_features, help="Features to compute, separated by commas."),
     ] = None,
     threshold: Annotated[
         float | None,
         typer.Option(
-            "--threshold", metavar="NUMBER", help="Of the envelope, in the SI unit of the signal; by default a tenth of its largest value."
+            "--threshold",
+            metavar="NUMBER",
+            help="Threshold of the envelope, in the SI unit of the signal; by default a tenth of its maximum.",
         ),
     ] = None,
     dead_time: Annotated[
-        str, typer.Option("--dead-time", metavar="TIME", help="How long the envelope is below the threshold before a packet is over.")
+        str, typer.Option("--dead-time", metavar="TIME", help="Time below the threshold after which a packet ends.")
     ] = "5 ms",
     window: Annotated[
-        str | None, typer.Option("--window", metavar="TIME", help='Of each record only so much from its onset, such as "40 ms".')
+        str | None, typer.Option("--window", metavar="TIME", help='Length of each record to use, from its onset on, such as "40 ms".')
     ] = None,
-    packets: Annotated[bool, typer.Option("--packets", help="A row for each packet of a record, in place of one for the record.")] = False,
+    packets: Annotated[bool, typer.Option("--packets", help="One row for each packet, instead of one for each record.")] = False,
     listed: Annotated[bool, typer.Option("--list", help="List the features: name, unit, equation, source.")] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
     as_json: Json = False,
 ) -> None:
-    """Describe signals by features: amplitudes, times, spectrum, packets; or list the features.
+    """Compute features of signals: amplitudes, times, spectrum, packets; or list the features.
 
-    A row of the table is a signal. Where a feature has no number, the last column says why.
+    Each row of the table is a signal. Where a feature has no value, the last column gives the reason.
     """
     from vibroimpact.cli.feature_text import feature_list, features_document, table_document, table_summary
 

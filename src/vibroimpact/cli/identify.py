@@ -1,4 +1,4 @@
-"""The command `identify`, which tells from records what hit the plate, where and how."""
+"""The command `identify`, which estimates force, position, size and speed of an impact from records."""
 
 from __future__ import annotations
 
@@ -33,7 +33,8 @@ def identify(
         Path | None, typer.Option("-o", "--output", metavar="DIR", help="The folder to make; by default CASE-identified.")
     ] = None,
     place: Annotated[
-        str | None, typer.Option("--place", metavar="X,Y", help='Where the force was, such as "60 mm, 40 mm"; by default it is sought.')
+        str | None,
+        typer.Option("--place", metavar="X,Y", help='Position of the impact, such as "60 mm, 40 mm"; by default it is estimated.'),
     ] = None,
     window: Annotated[
         str, typer.Option("--window", metavar="TIME", help="Time from first touch on that is used; it ends before the next impact.")
@@ -41,7 +42,9 @@ def identify(
     frequency_error: Annotated[
         float,
         typer.Option(
-            "--frequency-error", metavar="PART", help="How far the plate's frequencies may be off, beside the mesh: 0.01 for 1 %."
+            "--frequency-error",
+            metavar="PART",
+            help="Uncertainty of the plate's frequencies, in addition to the error of the mesh: 0.01 for 1 %.",
         ),
     ] = 0.0,
     changes: Changes = None,
@@ -49,9 +52,9 @@ def identify(
     force: Force = False,
     as_json: Json = False,
 ) -> None:
-    """Tell from records of sensors what hit the plate: force, place, size and speed, with intervals.
+    """Identify an impact from records of sensors: force, position, size and speed, with 95 % intervals.
 
-    The case gives the plate, the sensors, which have the names of the records, and the material of the sphere.
+    The case specifies the plate, the sensors, named as the records, and the material of the sphere.
     """
     from vibroimpact.cases.reader import load_case
     from vibroimpact.identification.document import summary_of_identification

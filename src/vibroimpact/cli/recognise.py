@@ -23,24 +23,24 @@ def recognise(
         Path | None, typer.Option("-o", "--output", metavar="DIR", help="The folder to make; by default DATASET-recognised.")
     ] = None,
     model: Annotated[
-        Path | None, typer.Option("--model", metavar="DIR", help="Train nothing: apply the model that an earlier recognise saved in DIR.")
+        Path | None, typer.Option("--model", metavar="DIR", help="Apply the model saved in DIR by an earlier recognise, without training.")
     ] = None,
     group: Annotated[
-        str, typer.Option("--group", metavar="NAME", help="What is never both trained on and tested on: rock, plate or fall.")
+        str, typer.Option("--group", metavar="NAME", help="Groups kept together in the cross-validation: rock, plate or fall.")
     ] = "rock",
-    folds: Annotated[int, typer.Option("--folds", metavar="N", help="Parts of the cross-validation.")] = 5,
-    seeds: Annotated[int, typer.Option("--seeds", metavar="N", help="How many seeds the scores are a mean over.")] = 5,
-    seed: Annotated[int, typer.Option("--seed", metavar="N", min=0, help="The first of them.")] = 0,
+    folds: Annotated[int, typer.Option("--folds", metavar="N", help="Number of folds of the cross-validation.")] = 5,
+    seeds: Annotated[int, typer.Option("--seeds", metavar="N", help="Number of seeds over which the scores are averaged.")] = 5,
+    seed: Annotated[int, typer.Option("--seed", metavar="N", min=0, help="The first seed.")] = 0,
     most: Annotated[
-        int, typer.Option("--most", metavar="N", help="Signals used at most; of more, whole groups are drawn at random.")
+        int, typer.Option("--most", metavar="N", help="Largest number of signals; of more, whole groups are drawn at random.")
     ] = 4000,
     figures: Figures = False,
     force: Force = False,
     as_json: Json = False,
 ) -> None:
-    """Train classifiers of what fell on a plate, and validate them so that they can't fool themselves.
+    """Train classifiers of impact signals, and estimate their accuracy by grouped cross-validation without leakage.
 
-    Baselines and four classifiers are compared with groups kept apart, beside a split at random; the best is saved, and --model applies it.
+    Baselines and four classifiers are compared in a grouped and in a random split; the best one is saved, and --model applies it.
     """
     from vibroimpact.recognition.apply import apply_recogniser, recognised_document, save_recognised
     from vibroimpact.recognition.folder import save_recognition

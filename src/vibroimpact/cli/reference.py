@@ -22,7 +22,7 @@ def cases(as_json: Json = False) -> None:
 
 @app.command()
 def new(
-    name: Annotated[str, typer.Argument(metavar="NAME", help="What the case is called; it becomes NAME.toml here.")],
+    name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the case; the file is NAME.toml in the current folder.")],
     source: Annotated[
         str,
         typer.Option(
@@ -35,7 +35,7 @@ def new(
     changes: Changes = None,
     force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
 ) -> None:
-    """Write a case to start from: that of another case, with the keys that it does not use as comments."""
+    """Write a new case file from an existing case, with all unused keys as comments."""
     from vibroimpact.cases.template import case_template
     from vibroimpact.files.atomic_write import write_text_file
     from vibroimpact.files.recover import recover
@@ -43,7 +43,7 @@ def new(
     title = name.removesuffix(".toml")
     path = Path(f"{title}.toml")
     if not title.strip() or title != path.stem:
-        raise InputError(f'"{name}" is no name of a file; give one without folders, such as my-plate')
+        raise InputError(f'"{name}" is not a file name; give one without folders, such as my-plate')
     if path.exists() and not force:
         raise InputError(f"{path} exists; take another name, or --force to replace it")
     text = case_template(source, title, settings_of(changes))
@@ -60,7 +60,7 @@ def units(
     ] = None,
     as_json: Json = False,
 ) -> None:
-    """Convert a parameter of a contact to another unit.
+    """Convert a contact parameter to another unit.
 
     A stiffness in N/m^n is 1000^n times one in N/mm^n, not 1000 times.
     """
@@ -79,8 +79,8 @@ def units(
 @app.command()
 def laws(
     name: Annotated[str | None, typer.Argument(metavar="[NAME]", autocompletion=complete_law, help="Show one law.")] = None,
-    output: Annotated[Path | None, typer.Option("-o", "--output", metavar="PNG", help="Draw its curves into this picture.")] = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace an existing picture.")] = False,
+    output: Annotated[Path | None, typer.Option("-o", "--output", metavar="PNG", help="Write its curves to this image file.")] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace an existing image file.")] = False,
     as_json: Json = False,
 ) -> None:
     """List the contact and friction laws, or show one: equation, parameters, sources; with -o PNG also the curves of a contact law."""
@@ -139,7 +139,7 @@ def doctor(
     clear_store: Annotated[bool, typer.Option("--clear-store", help="Empty the store of computed modes.")] = False,
     as_json: Json = False,
 ) -> None:
-    """Show versions and the store of modes, and test this installation."""
+    """Show versions and the store of computed modes, and test this installation."""
     from vibroimpact.cli.doctor import diagnose, diagnosis_rows, first_rebound_error
     from vibroimpact.runs.text import versions_table
 

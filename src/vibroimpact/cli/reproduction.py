@@ -14,20 +14,20 @@ from vibroimpact.cli.shared import Json, app, console, fail, names_in, note, sho
 
 @app.command()
 def reproduce(
-    output: Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="The folder to make, or to go on with.")] = Path(
+    output: Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="The folder to make, or to continue.")] = Path(
         "vibroimpact-paper"
     ),
     only: Annotated[
         str | None,
-        typer.Option("--only", metavar="A,B,C", autocompletion=complete_parts, help="Only these parts; made anew if they are there."),
+        typer.Option("--only", metavar="A,B,C", autocompletion=complete_parts, help="Only these parts; existing ones are computed again."),
     ] = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace an existing folder, with all parts that are in it.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Replace an existing folder with all its parts.")] = False,
     as_json: Json = False,
 ) -> None:
-    """Reproduce the paper: each printed number beside the computed one, and its figures.
+    """Reproduce the paper: its figures, and each printed value compared with the computed one.
 
-    The report says of each number whether it is reproduced, explained, or not reproduced, and why. It takes about half a minute. A
-    run that was interrupted goes on with the same command.
+    The report states for each value whether it is reproduced, explained, or not reproduced, and why. It takes about half a minute. An
+    interrupted run is continued with the same command.
 
     The parts: table1, section3.1, fig3, section3.2, fig4 to fig8, damping, table2, section4, fig9, section5.1, fig10 to fig13,
     section5.2, fig14 to fig17, section5.3, fig18 to fig23, conclusions, recovery, sampling, unresolved, corrections.
@@ -45,7 +45,7 @@ def reproduce(
     except KeyboardInterrupt:
         left = [name for name in missing_parts(output) if names is not None and name in names]
         some = f" --only {','.join(left)}" if left else ""
-        fail(f"interrupted; the parts that are done stay; go on with: vibroimpact reproduce -o {shlex.quote(str(output))}{some}", 130)
+        fail(f"interrupted; completed parts are kept; continue with: vibroimpact reproduce -o {shlex.quote(str(output))}{some}", 130)
     parts = read_parts(folder)
     show_folder(
         folder,

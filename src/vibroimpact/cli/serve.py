@@ -15,15 +15,13 @@ _PORT = 8421
 
 @app.command()
 def serve(
-    case: Annotated[
-        str | None, typer.Argument(metavar="[CASE]", help="The case to begin with, such as paper:type3 or a TOML file.")
-    ] = None,
-    port: Annotated[int, typer.Option("--port", metavar="N", help="Where it is served on this machine; 0 for any that is free.")] = _PORT,
+    case: Annotated[str | None, typer.Argument(metavar="[CASE]", help="The case to open, such as paper:type3 or a TOML file.")] = None,
+    port: Annotated[int, typer.Option("--port", metavar="N", help="Port on this machine; 0 for any free port.")] = _PORT,
     browser: Annotated[bool, typer.Option("--browser/--no-browser", help="Whether to open the browser.")] = True,
 ) -> None:
-    """Open a page in the browser that computes a case while you change it.
+    """Open a browser page that recomputes a case as its values are changed.
 
-    The page is served to this machine alone, until Ctrl-C.
+    The page is served on this machine only, until Ctrl-C.
     """
     try:
         from vibroimpact.app.server import HOST

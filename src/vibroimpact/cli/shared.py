@@ -40,11 +40,11 @@ Changes = Annotated[
         "--set",
         metavar="KEY=VALUE",
         autocompletion=complete_change,
-        help='Another value at a key, such as plate.size.thickness="10 mm"; may be repeated.',
+        help='Change the value of a key, such as plate.size.thickness="10 mm"; may be repeated.',
     ),
 ]
 Force = Annotated[bool, typer.Option("--force", help="Replace an existing result folder.")]
-Json = Annotated[bool, typer.Option("--json", help="Print one JSON document in place of tables, in SI units and full precision.")]
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON document instead of tables, in SI units and full precision.")]
 Figures = Annotated[bool, typer.Option("--figures", help="Write the charts of the report as files too, as PNG.")]
 
 
@@ -58,9 +58,9 @@ def _show_version(wanted: bool) -> None:
 
 @app.callback()
 def common(
-    version: Annotated[bool, typer.Option("--version", callback=_show_version, is_eager=True, help="Show the version and leave.")] = False,
+    version: Annotated[bool, typer.Option("--version", callback=_show_version, is_eager=True, help="Show the version and exit.")] = False,
 ) -> None:
-    """What happens when a particle hits a plate: contact, energy and vibration, in a second."""
+    """Simulate the impact of a particle on a plate: contact force, restitution, energy and vibration."""
 
 
 _LONGEST_STEM = 60  # leaves room, within the 255 bytes of a file name, for the suffixes of the commands and of exports

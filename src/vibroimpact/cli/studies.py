@@ -25,17 +25,17 @@ MOST_BYTES_UNCONFIRMED = 10e9
 
 
 Output = Annotated[Path | None, typer.Option("-o", "--output", metavar="DIR", help="The folder to make; by default STUDY-sweep.")]
-Resume = Annotated[bool, typer.Option("--resume", help="Go on with the study in the folder; where there is none, begin.")]
-Force = Annotated[bool, typer.Option("--force", help="Replace the folder of a study that is there.")]
-Yes = Annotated[bool, typer.Option("--yes", help=f"Run also more than {MOST_DROPS_UNCONFIRMED:,} drops, or 10 GB of results.")]
-Processes = Annotated[
-    int | None, typer.Option("--processes", metavar="N", min=1, help="How many processes compute; by default one a core.")
-]
+Resume = Annotated[bool, typer.Option("--resume", help="Continue the study in the folder, or start it if there is none.")]
+Force = Annotated[bool, typer.Option("--force", help="Replace the folder of an existing study.")]
+Yes = Annotated[bool, typer.Option("--yes", help=f"Confirm more than {MOST_DROPS_UNCONFIRMED:,} drops, or 10 GB of results.")]
+Processes = Annotated[int | None, typer.Option("--processes", metavar="N", min=1, help="Number of processes; by default one per core.")]
 Scheduler = Annotated[
     str | None,
-    typer.Option("--scheduler", metavar="ADDRESS", help='A Dask scheduler, such as tcp://10.0.0.5:8786; "local" starts one here.'),
+    typer.Option("--scheduler", metavar="ADDRESS", help='Dask scheduler, such as tcp://10.0.0.5:8786; "local" starts one on this machine.'),
 ]
-Memory = Annotated[str, typer.Option("--memory", metavar="SIZE", help="What each process may use for the drops that it computes at once.")]
+Memory = Annotated[
+    str, typer.Option("--memory", metavar="SIZE", help="Memory that each process may use for the drops that it computes at once.")
+]
 
 
 @app.command()
@@ -50,9 +50,9 @@ def sweep(
     memory: Memory = "500 MB",
     as_json: Json = False,
 ) -> None:
-    """Run many drops: all points of a study, on all cores or on the workers of a Dask scheduler.
+    """Run a parameter study: all its drops, on all cores or on the workers of a Dask scheduler.
 
-    The [sweep] section of the case says which keys run over what. What is done is kept, whatever stops the study: --resume goes on.
+    The [sweep] section of the case specifies the swept keys. Completed drops are kept if the study is interrupted; --resume continues it.
     """
     options = {"resume": resume, "force": force, "yes": yes, "processes": processes, "memory": memory}
     _interruptible("sweep", study, output, None, scheduler, as_json=as_json, **options)
@@ -67,7 +67,7 @@ def dataset(
         Path | None, typer.Option("-o", "--output", metavar="DIR", help="The folder to make; by default STUDY-dataset.")
     ] = None,
     samples: Annotated[
-        int | None, typer.Option("--samples", metavar="N", min=1, help="How many falls; by default as many as the study says.")
+        int | None, typer.Option("--samples", metavar="N", min=1, help="Number of falls; by default that of the study.")
     ] = None,
     resume: Resume = False,
     force: Force = False,
@@ -79,7 +79,7 @@ def dataset(
 ) -> None:
     """Compute a data set of labelled signals: falls of rocks of several classes on several plates.
 
-    What is done is kept, whatever stops it: --resume goes on. "vibroimpact recognise" learns from it.
+    Completed falls are kept if it is interrupted; --resume continues it. "vibroimpact recognise" trains classifiers on it.
     """
     options = {"resume": resume, "force": force, "yes": yes, "processes": processes, "memory": memory}
     _interruptible("dataset", study, output, samples, scheduler, as_json=as_json, **options)
@@ -93,7 +93,7 @@ def _interruptible(
     told = "" if scheduler is None else f" --scheduler {shlex.quote(scheduler)}"
     told += "" if samples is None else f" --samples {samples}"
     again = f"vibroimpact {command} {shlex.quote(study)} -o {shlex.quote(str(target))} --resume{told}"
-    message = f"interrupted; the drops that are done stay; go on with: {again}"
+    message = f"interrupted; completed drops are kept; continue with: {again}"
     try:
         with interrupt_flag(message) as stopped:  # entered first, so that no Ctrl-C is lost during imports
             _run_sweep(command, study, target, stopped, samples=samples, scheduler=scheduler, as_json=as_json, **options)

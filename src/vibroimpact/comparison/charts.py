@@ -63,7 +63,9 @@ def _position_chart(results: Mapping[str, Result], roles: Mapping[str, str]) -> 
         lines.append(Line(time, height, name, roles[name]))
     time_axis = Axis("Time", "s", views=_first_contact(results))
     panel = Panel(time_axis, Axis("Height above the plate", HISTORY_COLUMNS["position_m"].unit), tuple(lines))
-    caption = "The sphere's centre above the plate under each law, and enlarged the first impact, which begins at the same time under all."
+    caption = (
+        "Height of the sphere's centre above the plate with each law; the first impact, which begins at the same time for all, enlarged."
+    )
     return Chart("position", "Height of the sphere's centre", ((panel,),), caption, _HEIGHT)
 
 
@@ -86,7 +88,7 @@ def _force_chart(results: Mapping[str, Result], roles: Mapping[str, str]) -> Cha
         part = contact_history(one, impact)
         marks.append(Line(part["time_s"] - one.impacts["time_s"][impact], part["force_N"], name, roles[name]))
     panel = Panel(Axis("Time since first touch", "s"), Axis("Contact force", "N"), tuple(marks))
-    return Chart("force", "Contact force of the first impact", ((panel,),), "Time counts from first touch." + _WITHOUT, _HEIGHT)
+    return Chart("force", "Contact force of the first impact", ((panel,),), "Time is counted from first touch." + _WITHOUT, _HEIGHT)
 
 
 def _loops_chart(results: Mapping[str, Result], roles: Mapping[str, str]) -> Chart:
@@ -102,7 +104,7 @@ def _restitution_chart(comparison: Comparison, roles: Mapping[str, str]) -> Char
     for name, one in comparison.results.items():
         marks.append(Line(comparison.speeds, comparison.restitutions[name], name, roles[name]))
         impacts = one.impacts
-        texts = tuple(f"impact {impact + 1} under {name}" for impact in range(len(impacts["approach_speed_m_s"])))
+        texts = tuple(f"impact {impact + 1} with {name}" for impact in range(len(impacts["approach_speed_m_s"])))
         marks.append(Points(impacts["approach_speed_m_s"], impacts["restitution_achieved"], role=roles[name], texts=texts))
     asked = _asked(comparison.results)
     marks += [Level(value, role="dotted") for value in asked]
@@ -111,8 +113,8 @@ def _restitution_chart(comparison: Comparison, roles: Mapping[str, str]) -> Char
     speed = Axis("Approach speed", "m/s", log=True)
     panel = Panel(speed, Axis("Separation speed over approach speed", range=(0.0, _TOP)), tuple(marks))
     caption = (
-        "Lines: each law with the parameters of its first impact, on fresh surfaces and without gravity. Symbols: the impacts of the run; "
-        "under a law whose dent lasts those after the first lie above its line. Dotted: the restitution asked of a law."
+        "Lines: each law with the parameters of its first impact, on undeformed surfaces and without gravity. Symbols: the impacts of the "
+        "run; with a law that leaves a permanent dent, those after the first lie above its line. Dotted: the restitution asked of a law."
     )
     return Chart("restitution", "Restitution achieved", ((panel,),), caption, _HEIGHT)
 

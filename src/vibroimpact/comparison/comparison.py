@@ -25,7 +25,7 @@ _SPEEDS = 61
 
 @dataclass(frozen=True)
 class Comparison:
-    """One drop under several contact laws.
+    """One drop with several contact laws.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ def compare_laws(
     achieving: float | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Comparison:
-    """Run a case under each of several contact laws.
+    """Run a case with each of several contact laws.
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ _COLUMNS = ("max_indentation_m", "max_force_N", "duration_s", "rebound_height_m"
 def comparison_title(comparison: Comparison) -> str:
     """Return the title of a comparison, without the name of the case, which may mention a law that is not compared."""
     number = len(comparison.results)
-    return f"One drop under {number} contact law{'' if number == 1 else 's'}"
+    return f"One drop with {number} contact law{'' if number == 1 else 's'}"
 
 
 def comparison_subtitle(comparison: Comparison) -> str:

@@ -94,7 +94,7 @@ def _case_under(case: Case, law: type[ContactLaw], given: Mapping[str, Any], ach
         if achieving is None or tuned is None:
             return found
         if tuned in given or f"{law.name}.{tuned}" in given:
-            raise InputError(f"{tuned} is what is tuned to achieve {achieving:g}, so it can't be given too")
+            raise InputError(f"{tuned} is tuned to achieve {achieving:g}, so it can't be given too")
         return _tuned(found, table, tuned, achieving)
     except InputError as error:
         hint = " (give parameters with LAW.KEY=VALUE)" if "missing" in error.message or "needs" in error.message else ""
@@ -114,7 +114,7 @@ def _check_given(given: Mapping[str, Any], laws: Mapping[str, type[ContactLaw]])
     known = [*keys, *(f"{name}.{item.name}" for name, law in laws.items() for item in fields(law))]
     for key, value in given.items():
         if key not in known:
-            raise InputError(f"{shown(key)} is no parameter of {', '.join(laws)}.{did_you_mean(key, known)}")
+            raise InputError(f"{shown(key)} is not a parameter of {', '.join(laws)}.{did_you_mean(key, known)}")
         units = {name: _unit(item) for name, law in laws.items() for item in fields(law) if item.name == key}
         if len(set(units.values())) > 1 and not isinstance(value, str):
             of_each = ", ".join(f"{name} [{unit}]" for name, unit in units.items())

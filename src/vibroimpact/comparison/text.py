@@ -26,6 +26,6 @@ def comparison_summary(comparison: Comparison) -> RenderableType:
     free = facts([(name, free_parameter_words(law), comparison.results[name].status) for name, law in comparison.laws.items()], indent=1)
     words = "Indentation, force, duration, height and energy are those of the first impact; energy lost is dissipated in its contact."
     note = Text(f" {words}", style="dim")
-    title = Text("What sets the loss, and how the run ended", style="bold")
+    title = Text("Loss parameters, and end of each run", style="bold")
     heading = (Text(comparison_title(comparison), style="bold"), Text(comparison_subtitle(comparison)))
     return Group(*heading, table, note, Text(), title, free, *doubt_lines(comparison_doubts(comparison)))

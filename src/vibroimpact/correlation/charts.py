@@ -52,7 +52,7 @@ def _overlay(found: Correlation) -> Chart:
     early = found.time <= max(_BEGIN, float(found.time[0]) + _BEGIN)
     for number, sensor in enumerate(found.sensors[:MOST]):
         level = Axis(sensor.quantity.capitalize(), sensor.unit)
-        shown = ((begin, early, "the beginning"), (whole, slice(None), f"residual {100.0 * found.relative_residual[number]:.1f} % (rms)"))
+        shown = ((begin, early, "first part"), (whole, slice(None), f"residual {100.0 * found.relative_residual[number]:.1f} % (rms)"))
         panels = []
         for axis, part, words in shown:
             values = (found.measured[number, part], found.simulated[number, part], found.residual[number, part])
@@ -60,7 +60,7 @@ def _overlay(found: Correlation) -> Chart:
             panels.append(Panel(axis, level, tuple(lines), f"{_name(found, number)}: {words}"))
         rows.append(tuple(panels))
     caption = (
-        f"Each record, aligned by its beginning, the simulation, and the difference; of all what lies from {found.band[0]:.4g} to "
+        f"Each record, aligned in time by its first 5 ms, the simulation, and the difference, within the band from {found.band[0]:.4g} to "
         f"{found.band[1]:.4g} Hz."
     )
     return Chart("overlay", "Records and simulation", tuple(rows), caption, _HEIGHT)
@@ -89,7 +89,7 @@ def _responses(found: Correlation) -> Chart:
             )
         rows += [(panel,) for panel in panels]
     what = "Frequency responses to the force (estimator H1)" if found.hits else "Spectra of record and simulation"
-    caption = f"{what}, of one window for both, so that they leak alike. Ticks are the modes of the case."
+    caption = f"{what}, with the same window and spectral leakage. Ticks mark the modes of the case."
     return Chart("responses", "Frequency responses" if found.hits else "Spectra", tuple(rows), caption, _HEIGHT)
 
 
@@ -109,8 +109,8 @@ def _frac(found: Correlation) -> Chart:
     )
     panel = Panel(Axis("Band", names=names), Axis("FRAC", range=(0.0, 1.0)), marks)
     caption = (
-        f"Frequency response assurance criterion over each octave, of {what_frac_is_of(found)}. 1: alike but for a factor; "
-        "0: nothing in common. An octave with fewer than four frequencies has no bar."
+        f"Frequency response assurance criterion over each octave, of {what_frac_is_of(found)}. 1: equal except "
+        "for a factor; 0: uncorrelated. An octave with fewer than four frequencies has no bar."
     )
     return Chart("frac", "Frequency response assurance criterion", ((panel,),), caption, _HEIGHT)
 
@@ -124,9 +124,9 @@ def _damping(found: Correlation) -> Chart:
     computed = np.array([pair.damping_ratio for pair in of_case])
     marks = (
         Points(np.array([pair.frequency for pair in of_case]), computed, "case", "other mark"),
-        Points(places, ratios, "measured, with its 95 % interval", "matched", low=intervals[:, 0], high=intervals[:, 1]),
+        Points(places, ratios, "measured, with 95 % interval", "matched", low=intervals[:, 0], high=intervals[:, 1]),
     )
     top = 1.1 * float(np.nanmax(np.append(computed, intervals)))  # room for the marks of the largest
     panel = Panel(Axis("Frequency", "Hz", range=found.band), Axis("Damping ratio", range=(0.0, top)), marks)
-    caption = "Damping ratios from the decay of the records, and those of the case."
+    caption = "Damping ratios estimated from the decay of the records, and those of the case."
     return Chart("damping", "Modal damping", ((panel,),), caption, _HEIGHT)

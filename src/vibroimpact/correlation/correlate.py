@@ -35,7 +35,7 @@ _FEW = 4
 
 @dataclass(frozen=True, eq=False)
 class Correlation:
-    """Records of a test beside the simulation of its case.
+    """Comparison of the records of a test with the simulation of its case.
 
     Parameters
     ----------
@@ -133,7 +133,7 @@ def correlate(
     band: tuple[float, float] | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Correlation:
-    r"""Return records of a test beside the simulation of a case: overlay, residual, frequency responses, and the modes of both.
+    r"""Compare records of a test with the simulation of a case: overlay, residual, frequency responses, and the modes of both.
 
     Parameters
     ----------
@@ -269,7 +269,7 @@ def _acting(problem: Problem, acquired: Acquired, hears: Listening, window: floa
         acting = _Acting(Pushes(time, acquired.force / rate, np.empty((0, 2))), 0.0, length, over)
     if length * rate < _LEAST:
         words = f"there are {max(0, int(length * rate))} samples from the first touch to the next, or to the end of the records"
-        raise InputError(f"{words}; {_LEAST} are needed, which are {1e3 * _LEAST / rate:.3g} ms at {rate:g} Hz; state a window")
+        raise InputError(f"{words}; {_LEAST} are needed, that is {1e3 * _LEAST / rate:.3g} ms at {rate:g} Hz; state a window")
     return acting
 
 

@@ -57,7 +57,7 @@ def record_rows(found: Correlation) -> list[list[str]]:
     return [
         [
             visible(sensor.name),
-            "turned" if sign < 0.0 else "as simulated",
+            "inverted" if sign < 0.0 else "as simulated",
             f"{alike:.3f}",
             digits(scale, 4),
             f"{100.0 * part:.1f}",

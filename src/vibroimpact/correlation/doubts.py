@@ -40,13 +40,14 @@ def doubts_about(problem: Problem, acquired: Acquired, delay: Delay, band: tuple
     rates = {sensor.rate for sensor in problem.sensors if sensor.name in {one.name for one in acquired.sensors}} - {acquired.rate}
     if rates:
         others = ", ".join(f"{rate:g}" for rate in sorted(rates))
-        yield f"the records have {acquired.rate:g} samples per second, and the case says {others}: it was simulated at those of the records"
+        words = "it was simulated at the rate of the records"
+        yield f"the records have {acquired.rate:g} samples per second, and the case specifies {others}: {words}"
     for sensor, value, sign, alike in zip(acquired.sensors, acquired.value, delay.polarity, delay.correlation, strict=True):
         name = shown(sensor.name)
         if sign < 0.0:
-            yield f"the record {name} is upside down, and is turned"
+            yield f"the record {name} has inverted polarity; its sign is changed"
         if alike < _ALIKE:
-            yield f"the beginnings of {name} and of its simulation are not alike (correlation {alike:.2f}): the delay may be a period off"
+            yield f"the first parts of {name} and of its simulation differ (correlation {alike:.2f}): the delay may be wrong by a period"
         yield from _clipped(f"the record {name}", value, acquired.rate)
     if acquired.force is not None:
         yield from _of_force(acquired, delay, band, over)
@@ -59,7 +60,7 @@ def doubts_about(problem: Problem, acquired: Acquired, delay: Delay, band: tuple
 def _clipped(what: str, value: np.ndarray, rate: float) -> Iterator[str]:
     part = float(CLIPPING.of(Block(value[None], rate))[0, 0])
     if part > 0.0:
-        yield f"{what} is clipped: {max(1, round(part * len(value)))} samples lie at its extremes; damping is determined by what follows"
+        yield f"{what} is clipped: {max(1, round(part * len(value)))} samples lie at its extremes; damping is estimated from what follows"
 
 
 def _of_force(acquired: Acquired, delay: Delay, band: tuple[float, float], over: float) -> Iterator[str]:
@@ -67,16 +68,16 @@ def _of_force(acquired: Acquired, delay: Delay, band: tuple[float, float], over:
     assert acquired.force is not None
     yield from _clipped("the force", acquired.force, acquired.rate)
     if (delay.polarity < 0.0).all():
-        yield "all records are upside down: it may be the force that is"
+        yield "all records have inverted polarity: the sign of the force may be wrong"
     samples = delay.time * acquired.rate
     if abs(samples) > _TOGETHER:
-        yield f"the records come {samples:.3g} samples after what the force lets expect: the channels were not sampled together"
+        yield f"the records come {samples:.3g} samples later than computed from the force: the channels were not sampled simultaneously"
     if acquired.pulses > len(acquired.onsets):
-        yield f"the hammer hit twice: there are {acquired.pulses} pulses of force in {len(acquired.onsets)} hits"
+        yield f"double hit of the hammer: there are {acquired.pulses} pulses of force in {len(acquired.onsets)} hits"
     begin = acquired.onsets[0]
     pulse = acquired.force[begin : begin + max(4, int(np.ceil(over * acquired.rate)) + 2)]
     spectrum = np.abs(np.fft.rfft(pulse, 4096))
     frequency = np.fft.rfftfreq(4096, 1.0 / acquired.rate)
     weak = frequency[(spectrum < _SOFT * spectrum[0]) & (frequency <= band[1])]
     if len(weak):
-        yield f"the force is 20 dB down at {weak[0]:.4g} Hz, and excites little above; take a harder tip, or a band that ends there"
+        yield f"the spectrum of the force has fallen by 20 dB at {weak[0]:.4g} Hz; use a harder tip, or a band that ends there"

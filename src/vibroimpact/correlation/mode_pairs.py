@@ -78,7 +78,7 @@ def pairs_of(problem: Problem, sensors: Sequence[Sensor], found: Sequence[DecayM
     rows = [*_of_case(modes.damping_ratios[inside], inside, places, response, found, partner)]
     taken = set(partner.values())
     nan = float("nan")
-    rows += [ModePair(None, nan, nan, nan, mode, "the case has no mode near") for number, mode in enumerate(found) if number not in taken]
+    rows += [ModePair(None, nan, nan, nan, mode, "no mode of the case nearby") for number, mode in enumerate(found) if number not in taken]
     return tuple(sorted(rows, key=lambda row: row.frequency if row.measured is None else row.measured.frequency.value))
 
 

@@ -55,11 +55,11 @@ def plate_problem(case: CaseTable, progress: Callable[[float], None] | None = No
     if case.plate.model == "rigid":
         raise InputError('the plate is rigid, so that its points do not move; give it model = "elastic"', "plate.model")
     if case.plate.motion is not None:
-        raise InputError("only an impact on a plate that is at rest before it is correlated; leave this out", "plate.motion")
+        raise InputError("only an impact on a plate at rest can be correlated; leave this out", "plate.motion")
     if keys := oblique_keys(case):
-        raise InputError("only an impact along the normal is correlated; leave this out", keys[0])
+        raise InputError("only a normal impact can be correlated; leave this out", keys[0])
     if not case.sensors:
-        raise InputError("the case has no sensors; say where those of the records are", "sensors")
+        raise InputError("the case has no sensors; give those of the records, with their positions", "sensors")
     return problem_of(case, progress)
 
 

@@ -93,7 +93,7 @@ def check_thin(density: Array, of_sphere: Array, key: str = "") -> None:
     part = float(np.max(density / of_sphere))
     if part > _DENSEST:
         raise InputError(
-            f"what the sphere falls through has {100.0 * part:.3g} % of its density, and {100.0 * _DENSEST:g} % are the most: drag alone "
+            f"the medium of the fall has {100.0 * part:.3g} % of its density, and {100.0 * _DENSEST:g} % are the most: drag alone "
             "acts on it, and in what is denser buoyancy, the mass of fluid that moves along, and the film over the plate count too",
             key,
         )

@@ -44,10 +44,10 @@ IMPACT_COLUMNS: dict[str, Column] = {
     "max_force_N": Column("N", "largest contact force", "Largest force", "force"),
     "max_acceleration_m_s2": Column("m/s2", "largest magnitude of the sphere's acceleration", "Largest acceleration", "acceleration"),
     "rebound_height_m": Column("m", "height of the sphere's centre above the plate at the top of the rebound", "Rebound height", "rebound"),
-    "energy_lost_J": Column("J", "energy dissipated in the contact, without what goes into vibration", "Energy lost", "lost"),
-    "plastic_work_J": Column("J", "the part of the energy lost that went into plastic deformation"),
+    "energy_lost_J": Column("J", "energy dissipated in the contact, without the energy of vibration", "Energy lost", "lost"),
+    "plastic_work_J": Column("J", "part of the energy lost that was dissipated by plastic deformation"),
     "restitution_asked": Column(
-        "1", "restitution asked of the contact law, where it has one", "Restitution asked", "e\u00a0asked", "ratio"
+        "1", "restitution parameter of the contact law, if it has one", "Restitution asked", "e\u00a0asked", "ratio"
     ),
     "time_of_max_indentation_s": Column("s", "time of the largest indentation"),
     "time_of_max_force_s": Column("s", "time of the largest contact force"),
@@ -58,9 +58,11 @@ FIRST_IMPACT_COLUMNS = tuple(IMPACT_COLUMNS)[:11]
 """Those that every version has written: the fixed header of `impacts.csv`, from `impact` to `energy_lost_J`."""
 
 VIBRATION_IMPACT_COLUMNS: dict[str, Column] = {
-    "closing_speed_m_s": Column("m/s", "speed at which the surfaces meet at first touch"),
-    "contacts": Column("1", "number of contacts between first touch and last release", "Contacts in the visit", "contacts", "count"),
-    "energy_to_vibration_J": Column("J", "energy that went into vibration, what its damping took by the last release included"),
+    "closing_speed_m_s": Column("m/s", "relative normal velocity of the surfaces at first touch"),
+    "contacts": Column("1", "number of contacts between first touch and last release", "Contacts in the impact", "contacts", "count"),
+    "energy_to_vibration_J": Column(
+        "J", "energy transferred to vibration, including its dissipation by modal damping up to the last release"
+    ),
     "sensitivity": Column(
         "1",
         "relative change of the motion at first touch, for a small relative change of the drop's height or speed",
@@ -77,7 +79,7 @@ HISTORY_COLUMNS: dict[str, Column] = {
     "velocity_m_s": Column("m/s", "velocity of the sphere, upwards"),
     "acceleration_m_s2": Column("m/s2", "acceleration of the sphere, upwards"),
     "force_N": Column("N", "contact force on the sphere, upwards"),
-    "indentation_m": Column("m", "indentation, zero without contact; negative where a sticking contact is drawn out"),
+    "indentation_m": Column("m", "indentation, zero without contact; negative where an adhesive contact is stretched"),
     "kinetic_J": _held("kinetic energy of the sphere", "Kinetic energy of the sphere", "kinetic"),
     "potential_J": _held(
         "potential energy of the sphere, zero at first touch of the undeformed plate",
@@ -86,8 +88,8 @@ HISTORY_COLUMNS: dict[str, Column] = {
     ),
     "contact_elastic_J": _held("energy stored in the contact", "Stored in the contact", "stored in the contact"),
     "contact_dissipated_J": _lost(
-        "energy lost so far in the damping of the contact, and when a sticking contact breaks",
-        "Lost in the damping of the contact, or where a sticking contact broke",
+        "energy lost so far in the damping of the contact, and when an adhesive contact breaks",
+        "Lost in the damping of the contact, or when an adhesive contact broke",
         "damping and adhesion",
     ),
     "plastic_work_J": _lost("energy lost so far in plastic deformation", "Lost in plastic deformation", "plastic work"),
@@ -101,8 +103,8 @@ HISTORY_COLUMNS: dict[str, Column] = {
 
 VIBRATION_HISTORY_COLUMNS: dict[str, Column] = {
     "sphere_vibration_J": _held(
-        "kinetic energy of the sphere's vibration, beside that of its centre",
-        "Kinetic energy of the sphere's vibration, beside that of its centre",
+        "kinetic energy of the sphere's vibration, in addition to that of its centre",
+        "Kinetic energy of the sphere's vibration, in addition to that of its centre",
     ),
     "sphere_strain_J": _held("strain energy of the sphere's modes", "Strain energy of the sphere's modes"),
     "sphere_damping_J": _lost(
@@ -111,14 +113,14 @@ VIBRATION_HISTORY_COLUMNS: dict[str, Column] = {
     "sphere_rotational_J": Column("J", "kinetic energy of the sphere's rotation"),
     "plate_kinetic_J": _held("kinetic energy of the plate", "Kinetic energy of the plate"),
     "plate_strain_J": _held(
-        "strain energy of the plate's modes, from where it rests under its own weight",
-        "Strain energy of the plate's modes, from where it rests",
+        "strain energy of the plate's modes, from its rest position under its own weight",
+        "Strain energy of the plate's modes, from its rest position",
     ),
     "plate_damping_J": _lost(
         "energy lost so far in the damping of the plate's modes", "Lost in the damping of the plate's modes", "damping of the plate"
     ),
-    "plate_rotational_J": Column("J", "the part of the plate's kinetic energy in its turning as a whole"),
-    "plate_potential_J": Column("J", "change of the plate's potential energy, which the strain of its weight makes up for"),
+    "plate_rotational_J": Column("J", "part of the plate's kinetic energy in its rigid-body rotation"),
+    "plate_potential_J": Column("J", "change of the plate's potential energy, balanced by the strain energy of its own weight"),
     "plate_displacement_m": Column("m", "displacement of the plate's centre of mass, upwards"),
     "plate_velocity_m_s": Column("m/s", "velocity of the plate's centre of mass, upwards"),
     "plate_acceleration_m_s2": Column("m/s2", "acceleration of the plate's centre of mass, upwards"),
@@ -128,24 +130,24 @@ VIBRATION_HISTORY_COLUMNS: dict[str, Column] = {
 
 SHAKEN_IMPACT_COLUMNS: dict[str, Column] = {
     "plate_velocity_m_s": Column("m/s", "velocity of the plate's surface at first touch, upwards, of its own motion"),
-    "plate_work_J": Column("J", "work of the moving plate on the sphere, from first touch until it leaves"),
+    "plate_work_J": Column("J", "work of the moving plate on the sphere, from first touch to release"),
 }
 """Further columns of the impact table, where the plate is shaken."""
 
 SHAKEN_HISTORY_COLUMNS: dict[str, Column] = {
-    "surface_m": Column("m", "place of the plate's surface at the contact point by its own motion, upwards from its mean"),
+    "surface_m": Column("m", "position of the plate's surface at the contact point by its own motion, upwards from its mean"),
     "surface_velocity_m_s": Column("m/s", "velocity of the plate's surface at the contact point by its own motion, upwards"),
     "drive_J": _held(
-        "minus the work that the moving plate has done so far: energy that came from its drive is negative",
-        "Taken by the drive of the plate, negative where it gave",
+        "minus the work that the moving plate has done so far: energy from its drive is negative",
+        "Energy to the drive of the plate, negative from it",
         "drive of the plate",
     ),
 }
 """Further columns of a history, where the plate is shaken."""
 
 OBLIQUE_IMPACT_COLUMNS: dict[str, Column] = {
-    "position_x_m": Column("m", "place of the sphere's centre at first touch, along x"),
-    "position_y_m": Column("m", "place of the sphere's centre at first touch, along y"),
+    "position_x_m": Column("m", "position of the sphere's centre at first touch, along x"),
+    "position_y_m": Column("m", "position of the sphere's centre at first touch, along y"),
     "approach_velocity_x_m_s": Column("m/s", "velocity of the centre at first touch, along x"),
     "approach_velocity_y_m_s": Column("m/s", "velocity of the centre at first touch, along y"),
     "separation_velocity_x_m_s": Column("m/s", "velocity of the centre at release, along x"),
@@ -158,28 +160,32 @@ OBLIQUE_IMPACT_COLUMNS: dict[str, Column] = {
     "spin_z_after_rad_s": Column("rad/s", "angular velocity at release, about the normal"),
     "tangential_restitution": Column(
         "1",
-        "velocity of the centre along the plate after over before, in the direction of before",
+        "velocity of the centre along the plate after over before impact, in the direction of that before",
         "Tangential restitution",
         "e\u00a0tangential",
         "ratio",
     ),
-    "rebound_angle_deg": Column("deg", "angle of the rebound from the normal, positive onwards", "Rebound angle", "rebound angle"),
-    "friction_lost_J": Column("J", "energy that friction took", "Lost by friction", "friction"),
+    "rebound_angle_deg": Column(
+        "deg", "angle of the rebound from the normal, positive in the direction of motion", "Rebound angle", "rebound angle"
+    ),
+    "friction_lost_J": Column("J", "energy dissipated by friction", "Lost by friction", "friction"),
     "microslip_lost_J": Column(
-        "J", "the part of it that was lost while a part of the contact stuck", "of that in microslip", "in\u00a0microslip"
+        "J", "the part of it that was lost during partial slip of the contact", "of that in microslip", "in\u00a0microslip"
     ),
     "gross_slip_lost_J": Column("J", "the other part: in slip of the whole contact, and in twisting and rolling"),
 }
 """Further columns of the impact table, where motion is not along the normal alone."""
 
-AIR_IMPACT_COLUMNS: dict[str, Column] = {"air_lost_J": Column("J", "energy that air took in the flight before", "Lost to the air", "air")}
+AIR_IMPACT_COLUMNS: dict[str, Column] = {
+    "air_lost_J": Column("J", "energy lost to air drag in the flight before the impact", "Lost to the air", "air")
+}
 """A further column of the impact table, where the sphere flies through air."""
 
 VIBRATING_IMPACT_COLUMNS = {**IMPACT_COLUMNS, **VIBRATION_IMPACT_COLUMNS}
 ALL_IMPACT_COLUMNS = {**VIBRATING_IMPACT_COLUMNS, **SHAKEN_IMPACT_COLUMNS, **OBLIQUE_IMPACT_COLUMNS, **AIR_IMPACT_COLUMNS}
 OBLIQUE_HISTORY_COLUMNS: dict[str, Column] = {
-    "position_x_m": Column("m", "place of the sphere's centre along x, from the centre of the plate"),
-    "position_y_m": Column("m", "place of the sphere's centre along y, from the centre of the plate"),
+    "position_x_m": Column("m", "position of the sphere's centre along x, from the centre of the plate"),
+    "position_y_m": Column("m", "position of the sphere's centre along y, from the centre of the plate"),
     "velocity_x_m_s": Column("m/s", "velocity of the centre along x"),
     "velocity_y_m_s": Column("m/s", "velocity of the centre along y"),
     "spin_x_rad_s": Column("rad/s", "angular velocity about x"),
@@ -189,7 +195,7 @@ OBLIQUE_HISTORY_COLUMNS: dict[str, Column] = {
     "friction_y_N": Column("N", "friction force on the sphere along y"),
     "rotation_J": _held("kinetic energy of the sphere's rotation", "Kinetic energy of the sphere's rotation", "rotation"),
     "friction_J": _lost(
-        "energy that friction took so far; within a contact also what is stored in its tangential deformation",
+        "energy dissipated by friction so far; within a contact also the energy of its tangential deformation",
         "Lost by friction",
         "friction",
     ),
@@ -197,7 +203,7 @@ OBLIQUE_HISTORY_COLUMNS: dict[str, Column] = {
 """Further columns of a history, where motion is not along the normal alone."""
 
 FRICTION_PARTS: dict[str, Column] = {
-    "microslip_J": _lost("the part of friction_J that was lost while a part of a contact stuck", "Lost in microslip", "microslip"),
+    "microslip_J": _lost("the part of friction_J that was lost during partial slip of a contact", "Lost in microslip", "microslip"),
     "gross_slip_J": _lost("the other part: in slip of whole contacts, and in twisting and rolling", "Lost in gross slip", "gross slip"),
 }
 """Two parts of `friction_J`, which are known at the end of a run."""

@@ -49,7 +49,7 @@ def why_failed(energy: Mapping[str, Any]) -> str:
     """
     closure_relative, written_off = float(energy["closure_relative"]), float(energy["written_off_at_rest_J"])
     if written_off < -WRITE_OFF_LIMIT * float(energy["input_J"]):
-        return f"the sphere was laid to rest with {-written_off:.3g} J more than it and what it lies on had left."
+        return f"the sphere was set to rest with {-written_off:.3g} J more than it and the bodies below it had left."
     if closure_relative > CLOSURE_LIMIT:
         return f"the energy ledger does not close: {closure_relative:.2g} of the energy put in is missing (limit {CLOSURE_LIMIT:g})."
     return "the contact could not be integrated to the tolerance."

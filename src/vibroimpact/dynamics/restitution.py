@@ -169,7 +169,7 @@ def law_achieving(law: Law, restitution: Array, mass: Array, speed: Array) -> La
         now = np.asarray(achieved_restitution(law, mass, speed))
         if np.all(np.abs(now - wanted) <= 1e-12):
             return law
-        raise InputError(f"{law.name} has no parameter that sets its loss; it achieves {_between(now)}, not {_between(wanted)}")
+        raise InputError(f"{law.name} has no loss parameter; it achieves {_between(now)}, not {_between(wanted)}")
     shape = np.broadcast_shapes(_shape(law, mass, speed), wanted.shape)
     allowed: Range = next(item for item in fields(law) if item.name == name).metadata["range"]
 

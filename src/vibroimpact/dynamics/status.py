@@ -38,7 +38,7 @@ def status_of(run: Ended) -> str:
     if outcome is Outcome.IMPACTS:
         return f"Stopped {after}, at the top of the last rebound, at {_time(run, end, 6)} s."
     if outcome is Outcome.RIDING and isinstance(run.problem.laws[0], InstantaneousLaw):
-        words = "a law without a force does not tell how it moves along it then"
+        words = "a law without a force does not determine its motion along the plate then"
         return f"Stopped {after}, at {_time(run, end, 6)} s: {_riding(run)}, and {words}."
     if outcome is Outcome.RIDING:
         from vibroimpact.dynamics.vibrating.visit import MOST_STEPS, MOST_STEPS_TO_A_TIME  # where bodies vibrate

@@ -204,7 +204,7 @@ class System:
                     raise InputError(f'there is no body "{body}"{did_you_mean(body, self.bodies)}', key)
                 modes = self.bodies[body].modes
                 if modes is not None and name not in modes.points:
-                    raise InputError(f'the modes of "{body}" do not tell how it moves there: add "{name}" to their points', key)
+                    raise InputError(f'the modes of "{body}" have no shapes at its contact: add "{name}" to their points', key)
             if contact.above == contact.below:
                 raise InputError(f'a body can not touch itself, as "{contact.above}" does here', key)
             if all(self.bodies[body].held for body in (contact.above, contact.below)):

@@ -217,7 +217,7 @@ def _by_steps(dampings: Sequence[float], speeds: Sequence[float]) -> tuple[str, 
     for impact, (fast, slow) in enumerate(pairwise(speeds[: len(dampings)]), 1):
         if not slow < fast:
             raise InputError(
-                f"impact {impact + 1} is not slower than impact {impact}, so that Adams can't tell their dampings apart by the "
+                f"impact {impact + 1} is not slower than impact {impact}, so that Adams can't select their dampings by the "
                 "approach speed; give one damping for all, or a function of the speed",
                 "laws",
             )
@@ -225,4 +225,4 @@ def _by_steps(dampings: Sequence[float], speeds: Sequence[float]) -> tuple[str, 
     for damping, (fast, slow) in reversed(list(zip(dampings[:-1], pairwise(speeds), strict=False))):
         edge = adams_number(1000.0 * 0.5 * (fast + slow))
         steps = f"IF(speed - {edge}: {steps}, {adams_number(damping)}, {adams_number(damping)})"
-    return steps, "one value an impact, told apart by the approach speed; the edges lie midway between the speeds of neighbouring impacts"
+    return steps, "one value an impact, selected by the approach speed; the edges lie midway between the speeds of neighbouring impacts"

@@ -41,7 +41,7 @@ def approach_speeds(drop: Drop) -> list[float]:
         raise InputError("there is no gravity in this run; a drop that is written for another program needs it, to come back")
     speeds = [float(speed) for speed in drop.impacts["approach_speed_m_s"]]
     if not speeds:
-        raise InputError("the sphere does not reach the plate in this run; another program needs at least one impact to be told of")
+        raise InputError("the sphere does not reach the plate in this run; an export needs at least one impact")
     return speeds
 
 
@@ -133,7 +133,7 @@ def _rigid_notes(drop: Drop) -> list[str]:
     lost, remedy = [], []
     if drop.elastic:
         verb = "is" if len(drop.elastic) == 1 else "are"
-        lost.append(f"The {' and '.join(drop.elastic)} {verb} written as rigid, and the contact law alone, without what vibrates.")
+        lost.append(f"The {' and '.join(drop.elastic)} {verb} written as rigid, with the contact law alone, without vibration.")
         remedy.append('model = "rigid"')
     if drop.local_element:
         lost.append("The local element in series with the contact law, which stands for the sphere's deformation, is left out.")
@@ -146,7 +146,7 @@ def _rigid_notes(drop: Drop) -> list[str]:
     written, here = (_restitutions(impacts) for impacts in (drop.impacts, drop.original_impacts))
     return [
         *lost,
-        "So what is written is another drop than the one that was run: the same case between rigid bodies, with the first "
+        "The exported drop therefore differs from the one that was run: it is the same case between rigid bodies, with the first "
         "value of the contact law at its first impact, and so on.",
         f"Restitution from impact to impact: {written} as written, {here} in the run.",
         f"For rigid bodies that rebound as in the run, calibrate the case with {' and '.join(remedy)} to the run's impacts.csv as "

@@ -98,7 +98,7 @@ def friction_notes(drop: Drop, program: str, written: FrictionLaw | None) -> lis
         )
     if law.rolling_coefficient:
         given = f"contact.friction.rolling_coefficient, {law.rolling_coefficient:g},"
-        notes.append(f"Nothing resists rolling in what {program} gets: {given} is left out.")
+        notes.append(f"The input of {program} has no rolling resistance: {given} is left out.")
     if isinstance(law, CompliantFriction) and drop.oblique.spin[2]:
         notes.append(f"{program} leaves the spin about the normal as it is.")
     return notes

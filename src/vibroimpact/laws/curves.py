@@ -72,7 +72,7 @@ def law_chart(law: type[ContactLaw]) -> Chart:
     panels = (*([_force_panel(example, speeds)] if compliant else []), _restitution_panel(example, restitution, speeds))
     caption = "Right: the restitution achieved at any approach speed."
     if compliant:
-        caption = f"Left: one impact at each of three approach speeds; the area that a loop encloses is the energy lost. {caption}"
+        caption = f"Left: one impact at each of three approach speeds; the area enclosed by a loop is the energy lost. {caption}"
     return Chart(law.name, law.name, (panels,), caption, _HEIGHT, _subtitle(example))
 
 
@@ -89,10 +89,10 @@ def check_picture(target: Path, *, force: bool) -> None:
     >>> check_picture(Path("hertz.svg"), force=False)
     Traceback (most recent call last):
         ...
-    vibroimpact.errors.InputError: hertz.svg: the picture is a PNG file; give a name that ends in .png
+    vibroimpact.errors.InputError: hertz.svg: the image is a PNG file; give a name that ends in .png
     """
     if target.suffix.lower() != ".png":
-        raise InputError(f"{target}: the picture is a PNG file; give a name that ends in .png")
+        raise InputError(f"{target}: the image is a PNG file; give a name that ends in .png")
     if target.is_dir():
         raise InputError(f"{target}: this is a folder; name a file in it")
     if not target.parent.is_dir():
@@ -117,7 +117,7 @@ def save_law_picture(name: str, target: Path) -> Path:
         recover(target)
         write_file(target, picture)
     except OSError as error:
-        raise InputError(f"{target}: the picture can't be written: {error.strerror}") from None
+        raise InputError(f"{target}: the image can't be written: {error.strerror}") from None
     return target
 
 

@@ -17,8 +17,8 @@ from vibroimpact.report.markdown_table import markdown_table
 BEGIN, END = "<!-- laws: begin (written by make docs) -->", "<!-- laws: end -->"
 """The marker lines before and after the table in laws.md."""
 
-_ENDS = {"zero-indentation": "at zero indentation", "zero-force": "at zero force", "pull-off": "when torn apart"}
-_TENSION = {"none": "never", "cut": "would, and is cut", "kept": "does, before the end"}
+_ENDS = {"zero-indentation": "at zero indentation", "zero-force": "at zero force", "pull-off": "at pull-off"}
+_TENSION = {"none": "never", "cut": "cut at zero", "kept": "before the end"}
 
 
 def law_pages(laws_page: str) -> dict[str, str]:
@@ -63,7 +63,7 @@ def law_page(law: type[ContactLaw]) -> str:
     ]
     if text.state:
         rows = ((f"`{item.name}`", _cell(item.meaning), item.unit or "-") for item in text.state)
-        parts += ["## State", "Zero of a fresh contact.", _table(("state", "meaning", "unit"), rows), text.persistence]
+        parts += ["## State", "Zero at first contact.", _table(("state", "meaning", "unit"), rows), text.persistence]
     parts += ["## End of the contact", f"{text.end} {text.tension}".strip()]
     parts += ["## Notes", *map(_marked, text.notes)] if text.notes else []
     pairs = asked_and_achieved(law)
@@ -74,7 +74,7 @@ def law_page(law: type[ContactLaw]) -> str:
             _table(("asked", *(f"{asked:g}" for asked, _ in pairs)), [("achieved", *(f"{achieved:.3f}" for _, achieved in pairs))]),
         ]
     parts += ["## Curves", f"```console\n$ vibroimpact laws {law.name}\n```"]
-    parts += [f"writes `{law.name}.png`: what is typical of the law, with typical parameters."]
+    parts += [f"writes `{law.name}.png`: curves of the law with typical parameters."]
     parts += ["## References", "\n".join(f"- {_marked(reference)}" for reference in text.references or (text.source,))]
     parts += ["[All contact laws](../laws.md)"]
     return "\n\n".join(parts) + "\n"
@@ -104,10 +104,10 @@ def write_law_pages(docs_dir: str | PathLike[str]) -> list[Path]:
 def _table_of(laws: Iterable[type[ContactLaw]]) -> str:
     rows = []
     for law in laws:
-        end, tension = (_ENDS[law.contact_end], _TENSION[law.tension]) if issubclass(law, CompliantLaw) else ("at once", "")
+        end, tension = (_ENDS[law.contact_end], _TENSION[law.tension]) if issubclass(law, CompliantLaw) else ("instantaneous", "")
         equation = law.equation.replace("|", r"\|")
         rows.append((f"[`{law.name}`](laws/{law.name}.md)", f"`{equation}`", end, tension, law.source))
-    return _table(("law", "force, or restitution", "contact ends", "pulls?", "source"), rows)
+    return _table(("law", "force, or restitution", "contact ends", "tensile force", "source"), rows)
 
 
 def _row(item: ParameterText) -> tuple[str, ...]:

@@ -14,7 +14,7 @@ from vibroimpact.contact.registry import contact_laws, find_contact_law, frictio
 from vibroimpact.laws.text import SPEED, LawText, ParameterText, asked_and_achieved, law_text, plain_paragraph, short_source
 from vibroimpact.report.terminal_table import TerminalColumn, TerminalTable
 
-_ENDS = {"zero-indentation": "no overlap", "zero-force": "no force", "pull-off": "torn apart"}
+_ENDS = {"zero-indentation": "zero indentation", "zero-force": "zero force", "pull-off": "pull-off"}
 _TENSION = {"none": "never", "cut": "cut", "kept": "yes"}
 _WIDE = 130  # terminal width in columns from which sources are printed in full
 
@@ -23,14 +23,14 @@ def law_table(width: int) -> RenderableType:
     """Return the tables of contact and friction laws for a terminal width in columns."""
     rows = []
     for name, law in contact_laws().items():
-        end, tension = ("at once", "-") if not issubclass(law, CompliantLaw) else (_ENDS[law.contact_end], _TENSION[law.tension])
+        end, tension = ("instantaneous", "-") if not issubclass(law, CompliantLaw) else (_ENDS[law.contact_end], _TENSION[law.tension])
         source = law.source if width >= _WIDE else short_source(law)
         rows.append((name, law_text(law).loss_parameters.replace("nothing is lost", "-"), end, tension, source))
-    headings = ("law", "loses by", "ends at", "pulls", "source")
+    headings = ("law", "loss parameter", "end of contact", "tension", "source")
     table = TerminalTable(
         [TerminalColumn(words, cells, text=True) for words, cells in zip(headings, zip(*rows, strict=True), strict=True)], indent=0
     )
-    hint = '"vibroimpact laws NAME" prints one with its equation, parameters and sources; with -o PNG it draws the curves of a contact law.'
+    hint = '"vibroimpact laws NAME" prints a law with equation, parameters and sources; with -o PNG it draws the curves of a contact law.'
     return Group(table, Text(), _friction_table(width), Text(), Text(hint))
 
 
@@ -103,7 +103,7 @@ def _left_out(default: str) -> str:
 def _state(text: LawText) -> list[RenderableType]:
     if not text.state:
         return []
-    return [*_heading("State, zero of a fresh contact"), _parameters(text.state, given=False), _indented(text.persistence)]
+    return [*_heading("State, zero at first contact"), _parameters(text.state, given=False), _indented(text.persistence)]
 
 
 def _achieved(law: type[ContactLaw]) -> list[RenderableType]:

@@ -22,14 +22,14 @@ SPEED = 8.8
 """The approach speed at which the achieved restitution is shown [m/s], that of the paper."""
 
 _ENDS = {
-    "zero-indentation": "The contact is over when the bodies no longer overlap.",
-    "zero-force": "The contact is over when the bodies no longer push each other apart.",
-    "pull-off": "The contact is over when the bodies have been torn apart.",
+    "zero-indentation": "The contact ends at zero indentation.",
+    "zero-force": "The contact ends at zero force.",
+    "pull-off": "The contact ends at pull-off.",
 }
 _TENSION = {
-    "none": "It never pulls.",
-    "cut": "The formula would pull near the end; the force is cut at zero there.",
-    "kept": "It may pull before the end.",
+    "none": "The force is never tensile.",
+    "cut": "The formula would give a tensile force near the end; it is cut at zero.",
+    "kept": "The force may be tensile before the end.",
 }
 
 
@@ -101,14 +101,14 @@ def law_text(law: type[ContactLaw | FrictionLaw]) -> LawText:
     title, *body = _paragraphs(sections[""])
     end, tension, persistence = "", "", ""
     if issubclass(law, InstantaneousLaw):
-        end = "It is over at once: it has no duration and no force."
+        end = "The contact is instantaneous: it has no duration and no force."
     if issubclass(law, CompliantLaw):
         end, tension = _ENDS[law.contact_end], _TENSION[law.tension]
         if any(item.metadata["memory"] for item in fields(law)):
             persistence = (
-                "The state lasts: the next impact on the same spot goes on with it."
+                "The state is kept: the next impact on the same spot starts from it."
                 if law.lasting
-                else "The state does not outlast the contact: the next impact begins anew."
+                else "The state is reset after each contact."
             )
     return LawText(
         name=law.name,

@@ -71,7 +71,7 @@ def read_universal_record(path: str | Path, which: str | None, by_rebound: bool)
         own = [one for one in group if one.identification in _OWN]
         group = own if len(own) == 1 else group
         if len(group) > 1:
-            raise InputError(f"{path}: say which function is meant: {_there(group)}", "target.function")
+            raise InputError(f"{path}: name the function to use: {_there(group)}", "target.function")
         one = group[0]
     quantity, unit = _KINDS[one.kind]
     steps = np.diff(one.time)
@@ -102,7 +102,7 @@ def _in_si(path: str | Path, one: Function, unit: str, file: UniversalFile) -> f
     by_label, by_file = _by_label(one.unit, unit), None if file.factors is None else 1.0 / file.factors[_DIMENSIONS[unit]]
     if by_label is None and by_file is None:
         label = f'the label "{one.unit}" of its unit is not known' if one.unit else "it has no unit"
-        raise InputError(f'{path}: "{one.identification}": {label}, and there is no dataset 164 that says the units of the file', "target")
+        raise InputError(f'{path}: "{one.identification}": {label}, and there is no dataset 164 with the units of the file', "target")
     if by_label is not None and by_file is not None and abs(by_label / by_file - 1.0) > _SAME:
         words = f'its unit is "{one.unit}", and by dataset 164 the values are in units of {by_file:g} {unit}'
         raise InputError(f'{path}: "{one.identification}": {words}; correct one of them', "target")

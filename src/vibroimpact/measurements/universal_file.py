@@ -113,8 +113,8 @@ def read_universal_file(path: str | Path) -> UniversalFile:
                 if found is not None:
                     functions.append(found)
         except (ValueError, IndexError, KeyError, OverflowError):
-            what = f"function {number}" if kind != b"164" else "dataset 164, which says the units,"
-            raise InputError(f"{file}: {what} can't be read; the file is damaged, or not of the format that its first lines say") from None
+            what = f"function {number}" if kind != b"164" else "dataset 164, with the units,"
+            raise InputError(f"{file}: {what} can't be read; the file is damaged, or not of the format stated in its first lines") from None
     return UniversalFile(functions, factors)
 
 

@@ -50,7 +50,7 @@ class GmshSection:
         left = len(self.body) - self._at
         if count > left:
             raise self.line.wrong(
-                f"{self.line.text.strip()} says {count} lines where {left} are left; the file is cut short or its counts are wrong"
+                f"{self.line.text.strip()} states {count} lines where {left} are left; the file is truncated or its counts are wrong"
             )
         for _ in range(count):
             yield self.words(least)
@@ -64,7 +64,7 @@ class GmshSection:
             If lines remain.
         """
         if self.has_more:
-            raise self.body[self._at].wrong(f"{self.line.text.strip()} has more lines than it says; the two must agree")
+            raise self.body[self._at].wrong(f"{self.line.text.strip()} has more lines than it states; the two must agree")
 
 
 def sections(lines: Iterable[TextLine], known: Collection[str], skipped: Counter[str]) -> dict[str, GmshSection]:

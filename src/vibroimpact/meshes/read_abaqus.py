@@ -70,7 +70,7 @@ class _Reader:
         keyword = block.keyword
         # an included file that is not recognized must not be ignored silently
         if (keyword == "INCLUDE" or "INPUT" in block.parameters) and abaqus_include(block.line.text) is None and keyword in _INPUTS:
-            raise block.line.wrong(f"the file to include can't be told; *{keyword} must have INPUT=file on its first line")
+            raise block.line.wrong(f"the file to include is not given; *{keyword} must have INPUT=file on its first line")
         if keyword in _MAKES_MESH:
             raise block.line.wrong(f"*{keyword} makes nodes or elements by a rule, which is not read; write each one out")
         if keyword == "SYSTEM" and block.data:
@@ -138,7 +138,7 @@ class _Reader:
                     f"{shown(given)}{where} is a solid element that is not read; the part must be of C3D4, C3D8, C3D10, C3D20 or C3D27"
                 )
             if not given:
-                raise block.line.wrong("*ELEMENT has no TYPE; it must say one, such as TYPE=C3D10")
+                raise block.line.wrong("*ELEMENT has no TYPE; it must have one, such as TYPE=C3D10")
             # an element continues on the next line after a trailing comma, so that the other lines count the elements
             ends = sum(not line.text.rstrip().endswith(",") for line in block.data)
             self.parts.skipped[given] += max(ends, 1)
@@ -168,7 +168,7 @@ class _Reader:
         kind = block.keyword
         name = block.parameters.get(kind)
         if not name:
-            raise block.line.wrong(f"*{kind} has no name; it must say {kind}=name")
+            raise block.line.wrong(f"*{kind} has no name; it must have {kind}=name")
         if kind == "NSET" and "ELSET" in block.parameters:
             self.parts.skipped["*NSET, ELSET="] += 1
             return

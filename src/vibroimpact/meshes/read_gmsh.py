@@ -146,7 +146,7 @@ class _Reader:
                 for (_, tag), (line, words) in zip(tags, section.take(count, 3), strict=True):
                     self._node(line, tag[0], words)
         if left:
-            raise section.line.wrong("$Nodes holds another number of nodes than it says; the two must agree")
+            raise section.line.wrong("$Nodes holds another number of nodes than it states; the two must agree")
 
     def _node(self, line: TextLine, number: str, point: list[str]) -> None:
         x, y, z = point[:3]
@@ -174,7 +174,7 @@ class _Reader:
             for line, words in section.take(count, 2):
                 self._element(line, kind, words[0], words[1:], tags)
         if left:
-            raise section.line.wrong("$Elements holds another number of elements than it says; the two must agree")
+            raise section.line.wrong("$Elements holds another number of elements than it states; the two must agree")
 
     def _element(self, line: TextLine, gmsh_type: int, number: str, words: list[str], tags: list[int]) -> None:
         if gmsh_type not in _SOLIDS and gmsh_type not in _SKINS:

@@ -89,7 +89,7 @@ def _read_card(card: Card, parts: Parts) -> None:
     elif name.startswith(_OTHER_SOLIDS):
         raise line.wrong(f"{shown(name)} is a solid element that is not read; the elements must be CTETRA or CHEXA")
     elif name.startswith("INCLUDE"):
-        raise line.wrong("the file to include can't be told; its name must stand in quotes on the line of INCLUDE")
+        raise line.wrong("the file to include is not given; its name must stand in quotes on the line of INCLUDE")
     elif name == "SPC1":
         chosen = _selection([field for field in fields[2:] if field])
         if chosen is None:

@@ -45,14 +45,14 @@ def section_5_1(runs: Runs) -> ReportSection:
     return ReportSection(
         "Section 5.1: force, acceleration and rebound in Types 1, 2 and 3",
         (
-            "Types 2 and 3 are computed in three ways. Consistent: the contact law carries what is quasi-static and the modes what is "
-            "dynamic, so that nothing is counted twice; this is how elastic bodies would move under this contact law. The sphere's "
-            f"modes are damped by {ratio:g} of critical there, a guess, and the plate's as Adams does it by default. Superposed: law "
+            "Types 2 and 3 are computed in three ways. Consistent: the contact law contains the quasi-static and the modes the dynamic "
+            "deformation, so that no compliance is counted twice; this is the motion of elastic bodies with this contact law. The sphere's "
+            f"modes have a damping ratio of {ratio:g} there, which is assumed, and the plate's the default of Adams. Superposed: law "
             "and modes in series, as in a multibody program with flexible bodies. Identified: a spring and a dashpot in series with "
-            "the law stand for the sphere, fitted to the force and the rebound that are printed for Type 2, and tested on Type 3.",
-            "No setting that was tried gives the printed Types 2 and 3: none of the three treatments, with the damping that Adams has by "
-            "default in the superposed one. Where a row calls on an unresolved run, that is a reading, not a proof: the forensic section "
-            "says what speaks for it and what against.",
+            "the law represent the sphere, fitted to the force and the rebound that are printed for Type 2, and tested on Type 3.",
+            "No setting that was tried reproduces the printed Types 2 and 3: none of the three treatments, with the default damping of "
+            "Adams in the superposed one. Where a row refers to an unresolved run, that is a hypothesis, not a proof: the section on "
+            "inferences gives the evidence for and against it.",
         ),
         tuple(rows),
         (_statements(runs),),
@@ -88,7 +88,7 @@ def _accelerations(runs: Runs) -> list[ComparedValue]:
         if kind > 1:
             other = 5 - kind  # the mass implied by the same type would always fit
             least, most = mesh_mass(other, gravity)
-            reason = f"the mesh has lost a little mass: it weighs what Type {other} tells of it, {least:.7f} to {most:.7f} kg"
+            reason = f"the mesh has lost a little mass: it has the mass implied by Type {other}, {least:.7f} to {most:.7f} kg"
             explanations = (Explanation(reason, force.value / most - gravity, force.value / least - gravity),)
         value = printed(f"type{kind}.max_acceleration")
         rows.append(
@@ -108,7 +108,7 @@ def _statements(runs: Runs) -> TextTable:
         "From the second impact on the force is larger in Type 2 than in Type 3",
     )
     found = [_statements_under(runs, treatment) for treatment in TREATMENTS]
-    return TextTable(("What is said", *TREATMENTS), tuple(zip(said, *found, strict=True)), "What the paper says in words")
+    return TextTable(("Statement", *TREATMENTS), tuple(zip(said, *found, strict=True)), "Qualitative statements of the paper")
 
 
 def _statements_under(runs: Runs, treatment: str) -> list[str]:
@@ -140,10 +140,11 @@ def section_5_2(runs: Runs) -> ReportSection:
     return ReportSection(
         "Section 5.2: the energy of the sphere",
         (
-            "What is printed is checked twice: against the other printed numbers, which tells how it was obtained, and against the three "
-            "treatments. The strain energy is that of the modes, as a multibody program tells it; in the consistent treatment the contact "
-            "law carries most of the sphere's strain beside them, and in the identified one it is the spring that stands for the sphere. "
-            "A sphere that falls upright on a plate's middle does not turn: what is printed of rotation is rounding, there as here.",
+            "The printed values are compared with the other printed numbers, which indicates how they were obtained, and with the three "
+            "treatments. The strain energy is that of the modes, as a multibody program reports it; in the consistent treatment the "
+            "contact law contains most of the sphere's strain energy, and in the identified one the spring that represents the sphere. "
+            "A sphere that strikes the centre of a plate along the normal does not rotate: the printed rotation is rounding error, as is "
+            "the computed one.",
         ),
         tuple(rows),
         conclusion=(_force_and_fall(runs),),
@@ -159,8 +160,8 @@ def _force_and_fall(runs: Runs) -> str:
     least = 1e3 * ((force - float(law.damping_max) * speed) / float(law.stiffness)) ** (1.0 / float(law.exponent))
     deep = 1e3 * fall_beyond_touch(2, float(problem.gravity))
     return (
-        f"The energies printed of Type 2 tell a fall of {deep:.2f} mm beyond first touch. IMPACT gives the printed {force:g} N at no "
-        f"indentation of less than {least:.2f} mm, even at the full approach speed and the full damping: the two can't both be."
+        f"The energies printed for Type 2 imply a fall of {deep:.2f} mm beyond first touch. IMPACT gives the printed {force:g} N at no "
+        f"indentation of less than {least:.2f} mm, even at the full approach speed and the full damping: the two are contradictory."
     )
 
 
@@ -177,7 +178,7 @@ def _at_touch(runs: Runs, kind: int) -> ComparedValue:
     sag = _sag(runs.problem(f"type{kind}-superposed"))
     least, most = (weight * gravity * fall for weight in mesh_mass(kind, gravity))
     most *= 1.0 + sag / fall
-    lower = f", and a plate that its weight lets sag by {1e6 * sag:.1f} µm," if sag else ""
+    lower = f", and a static deflection of the plate by {1e6 * sag:.1f} µm," if sag else ""
     explanation = Explanation(f"with the mass of the mesh, as above{lower} {least:.6f} to {most:.6f} J", least, most)
     by = f"m g times the fall of {fall:g} m"
     return ComparedValue(printed(f"type{kind}.energy_at_touch"), mass * gravity * fall, by=by, explanations=(explanation,))
@@ -199,7 +200,7 @@ def _released(runs: Runs, kind: int) -> list[ComparedValue]:
     for treatment in TREATMENTS:
         released = energy_released(runs.treated(kind, treatment))
         beyond = 1e3 * (released / (mass * gravity) - fall)
-        why = f"printed is a fall of {deep:.2f} mm beyond first touch, and it is {beyond:.2f} mm here"
+        why = f"the printed fall beyond first touch is {deep:.2f} mm, the computed one {beyond:.2f} mm"
         rows.append(ComparedValue(value, released, by=treatment, otherwise=why))
     return rows
 
@@ -211,7 +212,7 @@ def _from_height(runs: Runs, kind: int) -> ComparedValue:
     response = runs.treated(kind, "identified")
     climbed = energy_at_separation(response) - mass * gravity * float(response.impacts["rebound_height_m"][0] - radius)
     low, high = mesh_mass(kind, gravity)[0] * gravity * (height - radius), mass * gravity * (height - radius) + climbed
-    reason = f"the sphere leaves while it is still pressed in, and lighter by the mesh: {low:.5f} to {high:.5f} J"
+    reason = f"the sphere separates while it is still indented, with the mass of the mesh: {low:.5f} to {high:.5f} J"
     value = printed(f"type{kind}.energy_at_separation")
     return ComparedValue(
         value, mass * gravity * (height - radius), by="m g times the printed rebound", explanations=(Explanation(reason, low, high),)
@@ -301,7 +302,7 @@ def _peak_decay(runs: Runs) -> tuple[TextTable, str]:
     headers = ("Treatment", "Peak of the plate's centre of mass", *(f"Impact {number} [%]" for number in IMPACTS))
     where = f"this holds in these treatments: {', '.join(slowest)}" if slowest else "this holds in none of the three treatments"
     words = (
-        "The paper says that from impact to impact the acceleration of the plate's centre of mass decreases more slowly than its "
+        "The paper states that from impact to impact the acceleration of the plate's centre of mass decreases more slowly than its "
         f"displacement and velocity: {where}."
     )
     return TextTable(headers, tuple(cells), "Peaks after each impact, of those after the first"), words

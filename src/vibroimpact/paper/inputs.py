@@ -26,7 +26,7 @@ def table1(runs: Runs) -> ReportSection:
     values |= {"gravity": drop["gravity"], "drop.height": drop["height"]}
     return ReportSection(
         "Table 1: the inputs",
-        ("What the shipped cases have, beside what is printed.",),
+        ("The values of the shipped cases, compared with the printed ones.",),
         tuple(ComparedValue(printed(name), value, by="the shipped case") for name, value in values.items()),
     )
 
@@ -43,8 +43,8 @@ def section_3_1(runs: Runs) -> ReportSection:
     return ReportSection(
         "Section 3.1: the contact",
         (
-            "IMPACT, the contact of Adams, is Hertz's spring and a dashpot that fades in with the indentation and is full from the "
-            "full-damping penetration on. The stiffness follows from the corrected equations (3) and (4); the full-damping penetration is "
+            "IMPACT, the contact of Adams, is Hertz's spring and a dashpot whose damping increases with the indentation up to the "
+            "full-damping penetration. The stiffness follows from the corrected equations (3) and (4); the full-damping penetration is "
             "not the one printed.",
         ),
         (
@@ -71,9 +71,9 @@ def section_4(runs: Runs) -> ReportSection:
     return ReportSection(
         "Section 4: the meshes",
         (
-            "The meshes of the paper are not to be had. Here the plate has plate elements of order four, and the sphere curved bricks of "
-            "second order, fine enough for the modes that are kept. The superposed treatment depends on the mesh whatever is done, as "
-            "the forensic section shows.",
+            "The meshes of the paper are not available. Here the plate has plate elements of order four, and the sphere curved bricks of "
+            "second order, fine enough for the modes that are kept. The superposed treatment depends on the mesh in any case, as "
+            "the section on inferences shows.",
         ),
         tuple(
             ComparedValue(printed(name), float(count), by="the shipped case", otherwise="a mesh of our own")
@@ -86,7 +86,7 @@ def corrections_section(runs: Runs) -> ReportSection:
     """Return the section that lists the corrections on which all other sections build."""
     cells = tuple((item.place, item.printed, item.right, item.why) for item in corrections())
     return ReportSection(
-        "What the paper prints wrongly, or leaves out",
+        "Misprints and omissions of the paper",
         ("Everything above was computed with these corrections.",),
-        tables=(TextTable(("Place", "Printed", "Right", "How that is known"), cells),),
+        tables=(TextTable(("Place", "Printed", "Correct", "Evidence"), cells),),
     )

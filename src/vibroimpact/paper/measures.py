@@ -133,19 +133,19 @@ def values_by_treatment(
         Range of the value in unresolved runs of the superposed model.
     """
     words = {
-        "consistent": "elastic bodies under this contact law do otherwise, and no setting that was tried gives it",
-        "superposed": "the superposed model, resolved, does otherwise, and no setting that was tried gives it",
+        "consistent": "elastic bodies with this contact law give another value, and no setting that was tried gives the printed one",
+        "superposed": "the resolved superposed model gives another value, and no setting that was tried gives the printed one",
         "identified": "a prediction from Type 2" if kind == 3 else "fitted to force and rebound alone",
     }
     if unresolved is not None:
         low, high = unresolved
         explanation = Explanation("", low, high)
-        few = "touches these with its few digits" if explanation.holds(value) else "is not among these"
+        few = "agrees with these within its few digits" if explanation.holds(value) else "is not among these"
         inside = "is among these" if explanation.contains(value) else few
         steps = "in steps fitted to Type 2" if kind == 2 else "in steps found from Type 2"
         words["superposed"] += (
-            f". A reading: unresolved, on a coarse mesh and {steps}, it gives {low:.4g} to {high:.4g} {value.unit}, and the printed value "
-            f"{inside}"
+            f". A hypothesis: unresolved, on a coarse mesh and {steps}, it gives {low:.4g} to {high:.4g} {value.unit}, and the printed "
+            f"value {inside}"
         )
     return [
         ComparedValue(

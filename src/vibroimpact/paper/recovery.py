@@ -218,14 +218,14 @@ def recovery_section(runs: Runs) -> ReportSection:
     return ReportSection(
         title="The restitution and the full-damping penetration, from the paper's own numbers",
         paragraphs=(
-            "The restitution e_h that the theory needs is nowhere printed, and the full-damping penetration d_max is printed as "
+            "The restitution e_h of the theory is not printed, and the full-damping penetration d_max is printed as "
             f"{printed('full_damping_penetration').text} m. Both follow from the other printed numbers. The table gives what each piece of "
             "evidence implies with the other value held at the joint estimate: as far as rounding allows, or with the standard deviation "
             "that its own residuals show.",
             "The damping function is the least-squares parabola through the printed dampings at the approach speeds of the simulation "
-            "with variable damping, as section 3.2 says, and not at those of the theory: the second table shows it. So it fixes d_max by "
-            "itself; at the speeds of the theory it only tells once more that the rebounds match, and does not count. Nor do the errors of "
-            "Table 2: they look as if they were read off samples, and then missed peaks pull them to one side.",
+            "with variable damping, as stated in section 3.2, and not at those of the theory, as the second table shows. It determines "
+            "d_max by itself; at the speeds of the theory it only confirms that the rebounds match, and is not used. The errors of "
+            "Table 2 are not used either: they are consistent with peaks read from samples, and missed peaks bias them.",
         ),
         tables=(_implied_table(found), _coefficients_table(found)),
         conclusion=(
@@ -233,7 +233,7 @@ def recovery_section(runs: Runs) -> ReportSection:
             _printed_words(found),
             _round_value_words(found, runs),
             "Established: with Lankarani and Nikravesh's law as the theory, and with the printed dampings in IMPACT clipped at zero, the "
-            "printed numbers are those of these two values. A reading: that the authors typed in the round ones.",
+            "printed numbers are those of these two values. A hypothesis: that the authors used the round ones.",
         ),
     )
 
@@ -254,9 +254,9 @@ def _implied_table(found: RecoveredParameters) -> TextTable:
             )
         )
     cells.append(
-        ("all that counts, jointly", _estimate_text(found.restitution), _estimate_text(found.penetration, 1e3), "standard deviations", "")
+        ("all used evidence, jointly", _estimate_text(found.restitution), _estimate_text(found.penetration, 1e3), "standard deviations", "")
     )
-    return TextTable(("evidence", "e_h [-]", "d_max [mm]", "known to within", "counts"), tuple(cells), "What each number implies")
+    return TextTable(("evidence", "e_h [-]", "d_max [mm]", "uncertainty from", "used"), tuple(cells), "What each number implies")
 
 
 def _coefficients_table(found: RecoveredParameters) -> TextTable:

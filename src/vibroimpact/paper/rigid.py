@@ -31,8 +31,8 @@ def section_3_2(runs: Runs) -> ReportSection:
         (
             "The theory is the law of Lankarani and Nikravesh with e_h = 0.65, the simulation IMPACT of Adams with a full-damping "
             "penetration of 0.1 mm; both are integrated here to a relative error of 1e-9, and peaks are located, not picked from samples. "
-            "These two values are nowhere printed so: they were recovered from numbers that are printed, these among them (see the "
-            "forensic section), so that it is the agreement of all of them with two values that counts.",
+            "These two values are not printed: they were recovered from printed numbers, including these (see the section on "
+            "inferences), so that the evidence is the agreement of all of them with two values.",
         ),
         (
             ComparedValue(printed("type1.rebound_height"), float(rebound), by="IMPACT"),
@@ -94,7 +94,7 @@ def damping_section(runs: Runs) -> ReportSection:
     fit, reach = _fit_of_printed(runs)
     by = "least squares through the printed dampings, over the simulation's approach speeds"
     for power, (value, low, high) in enumerate(zip(fit, fit - reach, fit + reach, strict=True), start=1):
-        told = f"a reading: least squares with approach speeds of five decimals give {fixed(low, 5)} to {fixed(high, 5)}"
+        told = f"a hypothesis: least squares with approach speeds of five decimals give {fixed(low, 5)} to {fixed(high, 5)}"
         explanation = Explanation(told, float(low), float(high))
         rows.append(ComparedValue(printed(f"damping_function.{power}"), float(value), by=by, explanations=(explanation,)))
     exact = found.fit.function
@@ -171,9 +171,9 @@ def table2(runs: Runs) -> ReportSection:
     return ReportSection(
         "Table 2: errors of the simulations",
         (
-            "Computed are the differences of the exact peaks. The printed ones scatter about them as if they were read off samples. "
-            "That is a weak test, as the ranges show: sampling can be the cause (a compression is held against the spacing that the "
-            "other contacts tell). The forensic section says what speaks for it and what remains open.",
+            "The computed values are the differences of the exact peaks. The printed ones scatter about them as if read from samples. "
+            "This is a weak test, as the ranges show: sampling can be the cause (a compression is compared with the spacing implied by "
+            "the other contacts). The section on inferences gives the evidence for it, and what remains open.",
         ),
         tuple(rows),
     )

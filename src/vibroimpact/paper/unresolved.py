@@ -1,4 +1,4 @@
-"""The forensic section on Types 2 and 3: whether the printed values are those of an unresolved run."""
+"""The section on inferences about Types 2 and 3: whether the printed values are those of an unresolved run."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def unresolved_section(runs: Runs) -> ReportSection:
 
 def _compared_values(runs: Runs) -> tuple[ComparedValue, ...]:
     """Return the values of Type 2, to which the step was fitted, and of Type 3, predicted with the same step."""
-    reason = "a reading: where in a step of an unresolved run the surfaces meet"
+    reason = "a hypothesis: where in a step of an unresolved run the surfaces meet"
     rows = []
     for kind in (2, 3):
         step, found = _fitted_step(runs, kind)
@@ -108,14 +108,14 @@ def _resolved_words(runs: Runs) -> str:
         nodes.append(len(problem.models["sphere"].mesh.nodes))
         compliance.append(1e9 * float(problem.facts["sphere_modal_compliance_m_N"]))
     return (
-        "Established: what the model gives when it is resolved. A multibody program with flexible bodies puts law and modes in series, "
+        "Established: the result of the resolved model. A multibody program with flexible bodies has law and modes in series, "
         f"the superposed treatment. The first impact of Type 2 then comes to {told[0]} with {modes[0]} modes of a fine mesh of "
         f"{nodes[0]} nodes, and to {told[1]} with {modes[1]} of the {3 * nodes[1] - 6} modes of a coarse mesh of {nodes[1]} nodes, as "
         f"many as the program computes of it (the paper has {printed('mesh.sphere.nodes').text} nodes). It depends on the modes and the "
-        f"mesh, since at a node these modes give way by {compliance[0]:.3g} and {compliance[1]:.3g} nm/N, and a solid under a load at a "
-        f"point without limit. The paper prints {_compared_text(paper_impact(runs, 2))}, the speed from the height of the rebound. By the "
-        f"program's own check the coarse mesh is too coarse: {superposed(runs, 2, 'coarse').facts['doubts']}. The paper's own mesh has "
-        f"lost {_lost_mass(runs)} of its mass, so that it is another one."
+        f"mesh, since at a node the compliance of these modes is {compliance[0]:.3g} and {compliance[1]:.3g} nm/N, and that of a solid "
+        f"under a point load is infinite. The paper prints {_compared_text(paper_impact(runs, 2))}, the speed from the height of the "
+        f"rebound. According to the program's own check the coarse mesh is too coarse: {superposed(runs, 2, 'coarse').facts['doubts']}. "
+        f"The paper's own mesh has lost {_lost_mass(runs)} of its mass, so that it is another one."
     )
 
 
@@ -130,19 +130,20 @@ def _method_words(runs: Runs) -> str:
     duration = resolved_impact(superposed(runs, 2, "coarse"))["duration_s"]
     lost = {name: f"{shares[name]:.3f} J ({100.0 * shares[name] / whole:.1f} %)" for name in ENERGY_SHARES}
     return (
-        "Established: an implicit method of first order, in fixed steps that are comparable with the contact, loses energy by itself. "
-        f"In steps of {_microseconds(step)} µs, {duration / step:.1f} to the resolved contact, the method takes {lost['integrator_J']} "
-        f"of the {whole:.3f} J of Type 2, the damping of the contact {lost['contact_dissipated_J']} and that of the modes "
-        f"{lost['modal_damping_J']}; the sphere keeps {lost['kinetic_J']}. These are means over {len(PHASES)} places of the touch in a "
-        "step, on the coarse mesh. As the step goes to zero so does what the method takes, in proportion, and the resolved run comes out."
+        "Established: an implicit method of first order, in fixed steps that are comparable with the contact, dissipates energy "
+        f"numerically. In steps of {_microseconds(step)} µs, {duration / step:.1f} to the resolved contact, the method dissipates "
+        f"{lost['integrator_J']} of the {whole:.3f} J of Type 2, the damping of the contact {lost['contact_dissipated_J']} and that of "
+        f"the modes {lost['modal_damping_J']}; the sphere keeps {lost['kinetic_J']}. These are means over {len(PHASES)} places of the "
+        "touch in a step, on the coarse mesh. The numerical dissipation decreases in proportion to the step, and the run converges to "
+        "the resolved one."
     )
 
 
 def _reading_words(runs: Runs) -> str:
     return (
-        f"A reading: that the paper's Types 2 and 3 are such runs. The paper tells its output steps, {1e3 * output_step():g} ms, but "
-        "neither the steps of its solver nor how their error was controlled. The step is therefore fitted to what is printed of Type "
-        "2, and what it then gives for Type 3 is the test. Below, unresolved is the median, of each number by itself, over the places "
+        f"A hypothesis: that the paper's Types 2 and 3 are such runs. The paper states its output steps, {1e3 * output_step():g} ms, but "
+        "neither the steps of its solver nor their error control. The step is therefore fitted to the printed numbers of Type "
+        "2, and its results for Type 3 are the test. Below, unresolved is the median, of each number by itself, over the places "
         "of the touch."
     )
 
@@ -153,7 +154,7 @@ def _fit_words(runs: Runs) -> str:
     return (
         f"On the coarse mesh a step of {step} µs comes closest to the three numbers of Type 2: they are off by {off} % (root mean square). "
         f"On the fine mesh the best step, {own_step} µs, leaves them off by {own_off} %. With fewer modes of the coarse mesh they are off "
-        "by more, as the table shows; with more it was not tried. So three things were chosen for three numbers: the step, the mesh and "
+        "by more, as the table shows; with more it was not tried. So three settings were chosen for three numbers: the step, the mesh and "
         "the number of modes."
     )
 
@@ -179,16 +180,16 @@ def _prediction_words(runs: Runs, rows: tuple[ComparedValue, ...]) -> str:
     vague = [row for row in met if abs(whole[_COLUMNS[row.printed.name]] - row.printed.value) <= row.printed.half]
     loose = [row for row in met if not row.explanations[0].contains(row.printed)]
     return (
-        f"The same step gives Type 3, where nothing is fitted. Of the {len(predicted)} numbers compared here, {len(met)} are met, as far "
-        f"as their digits tell, by the median or in the range over the places of the touch: {_differences_text(met)}. Not met: "
+        f"The same step gives Type 3, where nothing is fitted. Of the {len(predicted)} numbers compared here, {len(met)} agree, within "
+        f"their digits, with the median or the range over the places of the touch: {_differences_text(met)}. Not in agreement: "
         f"{_differences_text(missed)}."
-        + (f" The resolved run meets some as well, so that they tell little: {_names_text(vague)}." if vague else "")
-        + (f" Some lie outside their range, and are met only as far as their few digits tell: {_names_text(loose)}." if loose else "")
+        + (f" Some agree with the resolved run as well, so that they are weak evidence: {_names_text(vague)}." if vague else "")
+        + (f" Some lie outside their range, and agree only within their few digits: {_names_text(loose)}." if loose else "")
     )
 
 
 def _counter_evidence(runs: Runs) -> str:
-    """Return the evidence against the reading."""
+    """Return the evidence against the hypothesis."""
     two, three = (_fitted_step(runs, kind)[1] for kind in (2, 3))
     ratio = three["max_force_N"] / two["max_force_N"] - 1.0
     as_printed = printed("type3.max_force").value / printed("type2.max_force").value - 1.0
@@ -197,12 +198,12 @@ def _counter_evidence(runs: Runs) -> str:
     at_end = unresolved_impact(superposed(runs, 3, "coarse"), _fitted_step(runs, 3)[0], np.ones(1))
     off = [_more_text(float(at_end[column][0]) / printed(f"type3.{name}").value - 1.0) for name, column in SPHERE_COLUMNS.items()]
     return (
-        "What speaks against the reading: with the touch at the same place in a step, the largest force of Type 3 is between "
+        "Evidence against the hypothesis: with the touch at the same place in a step, the largest force of Type 3 is between "
         f"{_more_text(float(ratio.min()))} and {_more_text(float(ratio.max()))} than that of Type 2; as printed, it is "
         f"{_more_text(as_printed)}. The energies printed at first touch are those of the fall to touch, to some 1e-5 J, in both types: of "
-        f"a touch at the end of a step, unless they were worked out. With the touch there, Type 3 has {off[0]} force, {off[1]} rebound "
-        f"height and {off[2]} strain energy "
-        f"than printed. And the printed energies tell a fall of {deep[0]:.2f} and {deep[1]:.2f} mm beyond touch in Types 2 and 3, where "
+        f"a touch at the end of a step, unless they were calculated by hand. With the touch there, Type 3 has {off[0]} force, {off[1]} "
+        f"rebound height and {off[2]} strain energy "
+        f"than printed. And the printed energies imply a fall of {deep[0]:.2f} and {deep[1]:.2f} mm beyond touch in Types 2 and 3, where "
         f"unresolved runs give {ranges[0]} and {ranges[1]}, and every resolved run more."
     )
 
@@ -221,11 +222,11 @@ def _outcome(runs: Runs, rows: tuple[ComparedValue, ...]) -> str:
         for name in ("max_force", "rebound_height")
     ]
     return (
-        f"So the reading accounts for {' and '.join(parts)} in Type 3, each by itself; at the best place of the touch the three of the "
-        f"sphere are together off by {_percent_text(float(together.min()))} (root mean square). The test is not sharp: the identified "
+        f"So the hypothesis explains {' and '.join(parts)} in Type 3, each by itself; at the best place of the touch the three of the "
+        f"sphere are jointly off by {_percent_text(float(together.min()))} (root mean square). The test is not sharp: the identified "
         f"treatment, fitted to force and rebound of Type 2, comes near those of Type 3 as well (force {beside[0]}, rebound height "
-        f"{beside[1]}). What is shown is that an unresolved run can bring a model whose resolved rebound is {faster:.1f} times as fast "
-        "near the printed numbers. It is not a proof that it did: other settings may do it as well."
+        f"{beside[1]}). This shows that an unresolved run of a model whose resolved rebound is {faster:.1f} times as fast can agree "
+        "approximately with the printed numbers. It is not a proof: other settings may agree as well."
     )
 
 

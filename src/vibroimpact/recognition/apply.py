@@ -23,7 +23,7 @@ from vibroimpact.results.folder import new_folder, write_summary
 
 @dataclass(frozen=True, eq=False)
 class Recognised:
-    """Signals with the classes that a model gives them.
+    """Signals with the classes predicted by a model.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ class Recognised:
     probabilities : array, shape (signals, classes)
         Probability of each class.
     counted : tuple of float
-        Part of the signals taken for each class.
+        Fraction of the signals classified as each class.
     fractions : mapping of str to Estimate
         The fraction of each class, corrected by what the model confuses.
     accuracy : float, optional
@@ -63,7 +63,7 @@ class Recognised:
 
 
 def apply_recogniser(model: Recogniser | str | PathLike[str], dataset: str | PathLike[str] | LabelledSignals) -> Recognised:
-    """Return the classes that a saved classifier gives to signals, and the fraction of each class among them.
+    """Return the classes of signals predicted by a saved classifier, and the fraction of each class.
 
     Parameters
     ----------

@@ -55,15 +55,15 @@ def bound_doubts(scores: Mapping[str, Scores], bayes_error: float | None, groups
     found = []
     if bayes_error is not None:
         found = [
-            f"leak: {name} errs in {one.error.value:.2%}, below the Bayes error of {bayes_error:.2%} of this population; it has seen what "
-            "a plate can't tell"
+            f"leak: {name} errs in {one.error.value:.2%}, below the Bayes error of {bayes_error:.2%} of this population; it has used "
+            "information that does not come from the impact"
             for name, one in scores.items()
             if below_bound(one.error, bayes_error, groups)
         ]
     apart = scores[probe].balanced_accuracy.draws - scores[best].balanced_accuracy.draws
     if np.nanpercentile(apart, 100.0 - _SURE) > 0.0:
         found.append(
-            f"leak: {probe} alone tell the classes (balanced accuracy {scores[probe].balanced_accuracy.value:.3f}), better than all "
-            f"features ({scores[best].balanced_accuracy.value:.3f}); look how the signals were cut"
+            f"leak: {probe} alone classify better (balanced accuracy {scores[probe].balanced_accuracy.value:.3f}) than all "
+            f"features ({scores[best].balanced_accuracy.value:.3f}); check how the signals were cut"
         )
     return found

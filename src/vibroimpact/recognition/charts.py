@@ -55,22 +55,22 @@ def _scores_chart(found: Recognition) -> Chart:
     marks: list[Mark] = [
         _lying(places + side, [scores[name].error for name in names], words, role, names)
         for side, scores, words, role in (
-            (0.18, found.scores, f"{found.group}s kept apart", "detail"),
+            (0.18, found.scores, f"grouped by {found.group}", "detail"),
             (-0.18, found.random, "split at random", "pale"),
         )
     ]
     if found.bayes_error is not None:
         marks.append(Level(found.bayes_error, "Bayes error", "mark line", upright=True))
-    panel = Panel(Axis("Part taken for another class", range=(0.0, np.nan)), Axis(names=_short(names)), tuple(marks))
-    bound = " No classifier can be left of the line, the Bayes error of the population: one that is has seen what a plate can't tell." * (
+    panel = Panel(Axis("Classification error", range=(0.0, np.nan)), Axis(names=_short(names)), tuple(marks))
+    bound = " Line: Bayes error of the population, the lowest possible error; a lower one indicates leakage." * (
         found.bayes_error is not None
     )
     caption = (
-        f"Error on signals that were not trained on: with all signals of a {found.group} either trained on or tested on, and with signals "
-        "split at random, as is often done. The difference is optimism. Thin lines: 95 % intervals, by bootstrap over "
-        f"{found.group}s.{bound}"
+        f"Error on test signals: with all signals of a {found.group} in either the training or the test data, and with signals split at "
+        f"random. The difference is the optimistic bias of the random split. Thin lines: 95 % intervals, by bootstrap over {found.group}s."
+        f"{bound}"
     )
-    return Chart("scores", "Errors, and optimism", ((panel,),), caption, 0.9 + 0.36 * len(names))
+    return Chart("scores", "Classification errors and optimism", ((panel,),), caption, 0.9 + 0.36 * len(names))
 
 
 def _lying(places: np.ndarray, scores: list[Score], words: str, role: str, names: list[str]) -> Bars:
@@ -84,12 +84,12 @@ def _confusion_chart(found: Recognition) -> Chart:
     names = tuple(shortened(visible(name), _LETTERS) for name in found.class_names)
     places = np.arange(float(len(names)))
     texts = tuple(
-        f"{truth} taken for {guess}: {parts[row, column]:.1%}" for row, truth in enumerate(names) for column, guess in enumerate(names)
+        f"{truth} classified as {guess}: {parts[row, column]:.1%}" for row, truth in enumerate(names) for column, guess in enumerate(names)
     )
-    cells = Map(places, places, parts, Axis("Part of the class", range=(0.0, 1.0)), texts=texts)
-    panel = Panel(Axis("Taken for", names=names), Axis("Is", names=names), (cells,))
-    caption = f"What the best classifier ({found.best}) takes signals for, of {found.group}s that it did not see; mean over the seeds."
-    return Chart("confusion", "Confusion", ((panel,),), caption, _HEIGHT)
+    cells = Map(places, places, parts, Axis("Fraction of the class", range=(0.0, 1.0)), texts=texts)
+    panel = Panel(Axis("Predicted class", names=names), Axis("True class", names=names), (cells,))
+    caption = f"Predicted classes of the best classifier ({found.best}) for {found.group}s not used in training; mean over the seeds."
+    return Chart("confusion", "Confusion matrix", ((panel,),), caption, _HEIGHT)
 
 
 def _unseen_chart(found: Recognition) -> Chart:
@@ -97,17 +97,16 @@ def _unseen_chart(found: Recognition) -> Chart:
     names = [f"{one.key}: {one.words}" for one in rows]
     places = np.arange(float(len(rows)))
     marks = (
-        _lying(places + 0.18, [one.seen for one in rows], "trained on too", "detail", names),
-        _lying(places - 0.18, [one.unseen for one in rows], "left out in training", "lower", names),
+        _lying(places + 0.18, [one.seen for one in rows], "in the training data", "detail", names),
+        _lying(places - 0.18, [one.unseen for one in rows], "left out of training", "lower", names),
         Level(1.0 / len(found.class_names), "chance", "dotted", upright=True),
     )
     panel = Panel(Axis("Balanced accuracy", range=(0.0, 1.0)), Axis(names=_short(names)), marks)
     caption = (
-        "Signals in each range of a drawn key, recognised by classifiers that were trained on all ranges, and by ones that were trained on "
-        f"the others alone; {found.group}s are kept apart in both. Keys by which classes are made are not left out. Best classifier: "
-        f"{found.best}."
+        "Signals in each range of a sampled key, classified after training on all ranges, and after training on the other ranges alone; "
+        f"both are grouped by {found.group}. Keys that define the classes are not left out. Best classifier: {found.best}."
     )
-    return Chart("unseen", "Trained on, and tested on", ((panel,),), caption, 0.9 + 0.36 * len(names))
+    return Chart("unseen", "Accuracy on ranges left out of training", ((panel,),), caption, 0.9 + 0.36 * len(names))
 
 
 def _robustness_chart(found: Recognition) -> Chart:
@@ -115,32 +114,32 @@ def _robustness_chart(found: Recognition) -> Chart:
     marks: list[Mark] = []
     for number, (words, scores) in enumerate(
         (
-            ("trained with the noise", [one.trained_with for one in found.noise]),
-            ("trained without", [one.trained_without for one in found.noise]),
+            ("trained with noise", [one.trained_with for one in found.noise]),
+            ("trained without noise", [one.trained_without for one in found.noise]),
         )
     ):
         values, low, high = (np.array(one)[::-1] for one in zip(*((one.value, one.low, one.high) for one in scores), strict=True))
         marks += [Line(levels, values, words, series(number), marked=True), Points(levels, values, role=series(number), low=low, high=high)]
-    marks.append(Level(found.scores[found.best].balanced_accuracy.value, "without noise", "reference"))
+    marks.append(Level(found.scores[found.best].balanced_accuracy.value, "signals without noise", "reference"))
     marks.append(Level(1.0 / len(found.class_names), "chance", "dotted"))
-    panel = Panel(Axis("Signal to noise", "dB"), Axis("Balanced accuracy", range=(0.0, 1.0)), tuple(marks))
+    panel = Panel(Axis("Signal-to-noise ratio", "dB"), Axis("Balanced accuracy", range=(0.0, 1.0)), tuple(marks))
     caption = (
-        "White noise of one strength is added to all signals before their features are taken; its level counts from the mean square of the "
-        f"median signal. Best classifier: {found.best}."
+        "White noise of the same power is added to all signals before their features are computed; the ratio refers to the mean square of "
+        f"the median signal. Best classifier: {found.best}."
     )
     return Chart("robustness", "Recognition in noise", ((panel,),), caption, _HEIGHT)
 
 
 def _reliability_chart(found: Recognition) -> Chart:
-    marks: list[Mark] = [Line(np.array([0.0, 1.0]), np.array([0.0, 1.0]), "as told", "reference")]
+    marks: list[Mark] = [Line(np.array([0.0, 1.0]), np.array([0.0, 1.0]), "calibrated", "reference")]
     for number, name in enumerate(dict.fromkeys(one.class_name for one in found.reliability)):
         rows = [one for one in found.reliability if one.class_name == name]
         part, told, low, high = (np.array([getattr(one, key) for one in rows]) for key in ("part", "probability", "low", "high"))
         texts = tuple(f"{one.signals} signals" for one in rows)
         marks += [Line(told, part, name, series(number)), Points(told, part, role=series(number), low=low, high=high, texts=texts)]
-    panel = Panel(Axis("Probability told", range=(0.0, 1.0)), Axis("Part that is of the class", range=(0.0, 1.0)), tuple(marks))
+    panel = Panel(Axis("Predicted probability", range=(0.0, 1.0)), Axis("Observed frequency", range=(0.0, 1.0)), tuple(marks))
     caption = (
-        "Of signals that are told to be of a class with a probability, the part that is; mean difference "
+        "Observed frequency of a class over its predicted probability (reliability diagram); mean absolute difference "
         f"{found.calibration_error:.3f}. Best classifier: {found.best}."
     )
     return Chart("reliability", "Calibration of the probabilities", ((panel,),), caption, _HEIGHT)
@@ -154,8 +153,8 @@ def _importance_chart(found: Recognition) -> Chart:
     bars = Bars(places, loss, lying=True, low=loss - spread, high=loss + spread, texts=tuple(names))
     panel = Panel(Axis("Loss of balanced accuracy"), Axis(names=_short(names)), (bars, Level(0.0, role="main", upright=True)))
     caption = (
-        f"How much worse {found.group}s that were not trained on are recognised once a feature is exchanged between their signals; thin "
-        "lines: spread over the parts of the cross-validation. Features that say the same share their importance. Best classifier: "
+        f"Permutation importance: loss of balanced accuracy on {found.group}s not used in training when a feature is exchanged between "
+        "their signals; thin lines: spread over the folds. Correlated features share their importance. Best classifier: "
         f"{found.best}."
     )
     return Chart("importance", "Importance of features", ((panel,),), caption, 0.9 + 0.26 * len(names))
@@ -163,7 +162,7 @@ def _importance_chart(found: Recognition) -> Chart:
 
 def _fraction_chart(found: Recognition) -> Chart:
     panels = []
-    across, up = Axis("True fraction", range=(-0.02, 1.02)), Axis("Fraction found", range=(0.0, 1.0))
+    across, up = Axis("True fraction", range=(-0.02, 1.02)), Axis("Estimated fraction", range=(0.0, 1.0))
     for impacts in dict.fromkeys(one.impacts for one in found.streams):
         marks: list[Mark] = [Line(np.array([0.0, 1.0]), np.array([0.0, 1.0]), "true", "reference")]
         for number, name in enumerate(dict.fromkeys(one.class_name for one in found.streams)):
@@ -175,8 +174,8 @@ def _fraction_chart(found: Recognition) -> Chart:
             marks += [Line(true, value, f"{name}, corrected", series(number)), Points(true, value, role=series(number), low=low, high=high)]
         panels.append(Panel(across, up, tuple(marks), f"{impacts} impacts"))
     caption = (
-        f"The fraction of a class in streams of {found.group}s that the confusion was not learned from: as counted, and corrected by the "
-        "confusion, with mean 95 % intervals."
+        f"The fraction of a class in streams of {found.group}s that were not used to estimate the confusion matrix: as counted, and "
+        "corrected by it, with mean 95 % intervals."
     )
     return Chart("fraction", "Fraction in a stream of impacts", (tuple(panels),), caption, _HEIGHT)
 

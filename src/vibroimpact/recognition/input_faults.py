@@ -32,7 +32,7 @@ def check_signals(signals: LabelledSignals, group: str, folds: int) -> list[str]
         or the signals are sampled too slowly to tell the classes.
     """
     if signals.classes is None:
-        raise InputError(f"{signals.name}: the signals have no classes to learn from; the variable class is missing")
+        raise InputError(f"{signals.name}: the signals have no classes; the variable class is missing")
     present = np.unique(signals.classes)
     if len(present) < 2:
         raise InputError(f"there is one class only: all {len(signals)} signals are {signals.class_names[present[0]]}")
@@ -58,15 +58,15 @@ def check_groups(signals: LabelledSignals, classes: Indices, group: str, folds: 
     groups = signals.groups[group]
     names = {int(one): np.unique(groups[classes == one]) for one in np.unique(classes)}
     if len(np.unique(groups)) == 1:
-        raise InputError(f"all {len(groups)} signals are of one {group}, so that nothing can be tested on another {group}")
+        raise InputError(f"all {len(groups)} signals are of one {group}, so that no classifier can be tested on another {group}")
     if all(len(one) == 1 for one in names.values()):
         raise InputError(
-            f"each class is in one {group} only: what tells the {group}s apart would pass for what tells the classes apart; "
+            f"each class is in one {group} only: differences between {group}s would be confounded with differences between classes; "
             f"give several {group}s of each class"
         )
     fewest = min(names, key=lambda one: len(names[one]))
     if (count := len(names[fewest])) < folds:
-        remedy = f"or ask for {count} folds" if count > 1 else "since what is trained on one can't be tested on another"
+        remedy = f"or ask for {count} folds" if count > 1 else "since training on one can't be tested on another"
         raise InputError(
             f"{signals.class_names[fewest]} is in {count} {group}{'s' if count > 1 else ''}, too few for {folds} folds; "
             f"give signals of {folds} {group}s or more, {remedy}"
@@ -84,7 +84,7 @@ def check_lengths(signals: LabelledSignals, classes: Indices) -> None:
             if not ((others >= low) & (others <= high)).any():
                 words = f"{low}" if low == high else f"{low} to {high}"
                 raise InputError(
-                    f"the length of a signal tells its class: those of {signals.class_names[name]} have {words} samples at {sensor}, and "
+                    f"the length of a signal reveals its class: those of {signals.class_names[name]} have {words} samples at {sensor}, and "
                     "no signal of another class has; cut or record all to one length"
                 )
 
@@ -122,12 +122,12 @@ def check_rates(signals: LabelledSignals, classes: Indices) -> list[str]:
     if not rate < needed:  # or no impact has a duration
         return []
     words = (
-        f"{fastest} samples at {rate:.4g} Hz and shows up to {0.5 * rate:.4g} Hz; contacts of {median * 1e6:.3g} us, the longest median of "
-        f"a class, show from {_CORNER / median:.4g} Hz on, so contact times need {needed:.4g} Hz or more"
+        f"{fastest} samples at {rate:.4g} Hz and resolves up to {0.5 * rate:.4g} Hz; contacts of {median * 1e6:.3g} us, the longest median "
+        f"of a class, affect the spectrum from {_CORNER / median:.4g} Hz on, so contact times need {needed:.4g} Hz or more"
     )
     if FORCE in signals.truth and separation(signals.truth[FORCE], classes) < 0.5 * separation(duration, classes):
-        raise InputError(f"sampling is too slow for the question: the classes differ in contact time and hardly in force; {words}")
-    return [f"contact times can't be seen: {words}"]
+        raise InputError(f"the sampling rate is too low: the classes differ in contact time and hardly in force; {words}")
+    return [f"contact times can't be resolved: {words}"]
 
 
 def separation(values: Floats, classes: Indices) -> float:

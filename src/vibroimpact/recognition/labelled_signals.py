@@ -16,7 +16,7 @@ GROUPS = ("rock", "plate", "fall")
 
 @dataclass(frozen=True, eq=False)
 class SensorSignals:
-    """The signals that one sensor gave, of one length and rate.
+    """The signals of one sensor, of one length and rate.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ class SensorSignals:
 
 @dataclass(frozen=True, eq=False)
 class LabelledSignals:
-    """Signals of one data set, with what is known of each.
+    """Signals of one data set with their classes, groups and further labels.
 
     Parameters
     ----------

@@ -36,7 +36,7 @@ MOST_SIGNALS, FOLDS, SEEDS = 4000, 5, 5
 
 @dataclass(frozen=True, eq=False)
 class Recognition:
-    """What classifiers recognise of a data set, and how far that can be trusted.
+    """Scores of classifiers of a data set, estimated by cross-validation.
 
     Parameters
     ----------
@@ -118,7 +118,7 @@ def recognise(
     workers: int = 2,
     progress: Progress = silent,
 ) -> Recognition:
-    """Return how well classifiers recognise a data set, each trained and tested on separate groups of signals.
+    """Return scores of classifiers of a data set, each trained and tested on separate groups of signals.
 
     Baselines (majority, peak alone, contact time alone), logistic regression, random forest, gradient boosting and a support vector
     machine are compared by nested cross-validation in which no group is both trained on and tested on; beside it stands the score of a

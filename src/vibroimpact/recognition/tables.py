@@ -194,7 +194,7 @@ def confusion_cells(found: Recognition) -> tuple[list[str | tuple[str, str]], li
     counts = found.confusion[found.best]
     parts = counts / counts.sum(axis=1, keepdims=True)
     rows = [[name, *map(_percent, row)] for name, row in zip(found.class_names, parts, strict=True)]
-    return ["Is", *((f"Taken for {name}", "%") for name in found.class_names)], rows
+    return ["True class", *((f"Classified as {name}", "%") for name in found.class_names)], rows
 
 
 def sentences(found: Recognition) -> Iterator[str]:
@@ -202,23 +202,22 @@ def sentences(found: Recognition) -> Iterator[str]:
     best = found.scores[found.best]
     low, high = _percents(best.balanced_accuracy).split(" to ")
     yield (
-        f"The best classifier, {found.best}, recognises {_percent(best.balanced_accuracy.value)} % ({low} to {high} %) of each class, of "
-        f"{found.group}s that it never saw; split at random it would seem to be "
-        f"{_percent(found.random[found.best].balanced_accuracy.value)} %."
+        f"The best classifier, {found.best}, has a balanced accuracy of {_percent(best.balanced_accuracy.value)} % ({low} to {high} %) on "
+        f"{found.group}s not used in training; a random split gives {_percent(found.random[found.best].balanced_accuracy.value)} %."
     )
     if found.bayes_error is not None:
-        least = f"{_percent(found.bayes_error)} %" if found.bayes_error >= _LEAST_SHOWN else "some hundredths of a per cent"
+        least = f"{_percent(found.bayes_error)} %" if found.bayes_error >= _LEAST_SHOWN else "less than 0.05 %"
         yield (
-            f"Whatever the sensor, no classifier can err less than {least} on this population (the lower bound of its Bayes error; "
-            "vibroimpact bound tells that of a band and a noise); the best errs in "
+            f"The lower bound on the error of any classifier of this population, for any sensor, is {least} (Bayes error; vibroimpact "
+            "bound computes it for a band and a noise); the error of the best one is "
             f"{_percent(best.error.value)} % ({_percents(best.error)} %)."
         )
     hardest = [one for one in found.streams if one.impacts == max(row.impacts for row in found.streams)]
     if hardest:
         worst = max(hardest, key=lambda row: row.error)
         yield (
-            f"The fraction of {worst.class_name} in a stream of {worst.impacts} impacts is found within {_percent(worst.error)} % "
-            f"(root mean square, at the worst fraction tried, {worst.fraction:g})."
+            f"The fraction of {worst.class_name} in a stream of {worst.impacts} impacts has an error of {_percent(worst.error)} % "
+            f"(root mean square, at the fraction with the largest error, {worst.fraction:g})."
         )
 
 

@@ -31,7 +31,7 @@ def recognised_summary(found: Recognised) -> RenderableType:
         numbers("Fraction", "%", [f"{100.0 * one.value:.1f}" for one in found.fractions.values()]),
         numbers("95 % interval", "%", [f"{100.0 * one.low:.1f} to {100.0 * one.high:.1f}" for one in found.fractions.values()]),
     ]
-    title = Text(f"{found.name}: {len(found.probabilities)} signals, recognised by {found.classifier}", style="bold")
+    title = Text(f"{found.name}: {len(found.probabilities)} signals, classified by {found.classifier}", style="bold")
     words = [] if found.accuracy is None else [Text(f" Balanced accuracy {found.accuracy:.1%}, by the classes in the data set.")]
     return Group(title, TerminalTable(columns), *words, *_doubts(found.doubts))
 

@@ -75,7 +75,7 @@ def signal_columns(signal: Signal) -> dict[str, TableColumn]:
     """Return the columns of a signal's table: sample times and values."""
     sensor = signal.sensor
     name = f"{sensor.quantity}_{sensor.unit.replace('/', '_')}"
-    meaning = f"{sensor.quantity} that the sensor {one_line(sensor.name)} reads"
+    meaning = f"{sensor.quantity} measured by the sensor {one_line(sensor.name)}"
     return {"time_s": TableColumn(signal.time, "s", "time since the start"), name: TableColumn(signal.value, sensor.unit, meaning)}
 
 

@@ -94,7 +94,7 @@ def write_signals(file: h5py.File, signals: Mapping[str, Signal]) -> None:
         _describe(time, "s", "time since the start")
         value = new_array(group, "value", signal.value)
         value.dims[0].attach_scale(time)
-        _describe(value, sensor.unit, f"{sensor.quantity} that the sensor {name} reads")
+        _describe(value, sensor.unit, f"{sensor.quantity} measured by the sensor {name}")
 
 
 def read_signals(file: h5py.File) -> dict[str, Signal]:

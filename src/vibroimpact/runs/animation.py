@@ -97,7 +97,7 @@ class _AnimationScene:
         self.ball = Circle((0.0, 0.0), self.radius, facecolor="#8d8d8d", edgecolor=INK.light, linewidth=1.0)
         self.shine = Ellipse((0.0, 0.0), 0.5 * self.radius, 0.35 * self.radius, angle=35.0, facecolor="white", alpha=0.7)
         self.clock = figure.text(0.03, 0.93, "", fontsize=12, color=INK.light)
-        words = f"plate's deflection drawn {self.factor:g} times too large; ball and gap to scale"
+        words = f"plate's deflection magnified {self.factor:g} times; ball and gap to scale"
         figure.text(0.03, 0.045, words, fontsize=8, color=INK.light)
         figure.text(0.97, 0.045, "red up, blue down", fontsize=8, color=INK.light, ha="right")
         for artist in (self.plate, self.shadow, self.ball, self.shine):

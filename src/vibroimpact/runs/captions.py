@@ -28,10 +28,12 @@ def left_out(result: Result) -> str:
     if len(contacts_with_duration(result)):
         return ""
     if not len(result.impacts["time_s"]):
-        return "The sphere does not reach the plate in this run, so there are no figures of contact force, acceleration and indentation."
+        return (
+            "The sphere does not reach the plate in this run, so that there are no charts of contact force, acceleration and indentation."
+        )
     return (
-        "The contact law is instantaneous: contact has no duration, and force, acceleration and indentation in it "
-        "do not exist, so there are no figures of them."
+        "The contact law is instantaneous: the contact has no duration, and no force, acceleration and indentation, "
+        "so that there are no charts of them."
     )
 
 
@@ -55,7 +57,7 @@ def _force(result: Result) -> str:
     lead = float(impacts["time_of_max_indentation_s"][most] - impacts["time_of_max_force_s"][most])
     words = f"The largest force, {impact_text(result, most, 'max_force_N', 'N')}, acts in impact {most + 1}"
     if lead > 0.001 * impacts["duration_s"][most]:
-        words += f", {text(lead, 's', 3)} before the largest indentation: damping adds to the force on the way in"
+        words += f", {text(lead, 's', 3)} before the largest indentation: damping adds to the force during loading"
     return f"{words}. {_in_whole_run(result)}".strip()
 
 
@@ -67,7 +69,7 @@ def _velocity(result: Result) -> str:
     return (
         f"In impact 1 the sphere arrives at {text(approach, 'm/s')} and leaves at {text(separation, 'm/s')}"
         f"{', relative to the plate' if 'plate_velocity_m_s' in impacts else ''}: "
-        f"a restitution of {fixed(separation / approach, 4)}. Between impacts the line's slope is gravity alone."
+        f"a restitution of {fixed(separation / approach, 4)}. Between impacts the slope is the acceleration of gravity."
     )
 
 
@@ -84,15 +86,13 @@ def _acceleration(result: Result) -> str:
 def _loops(result: Result) -> str:
     found, lost = contacts_with_duration(result), result.impacts["energy_lost_J"]
     if result.impacts["separation_speed_m_s"][found[-1]] == 0.0:
-        return (
-            f"In impact {found[-1] + 1} the sphere stays; what energy it still has is written off in the ledger, and its curve ends there."
-        )
+        return f"In impact {found[-1] + 1} the sphere comes to rest; its remaining energy is written off, and its curve ends there."
     if np.max(lost) < 1e-9 * result.energy["input_J"]:
-        return "The way in and the way out coincide: no energy is lost in contact."
+        return "Loading and unloading coincide: no energy is lost in contact."
     first, last = (impact_text(result, impact, "energy_lost_J", "J") for impact in (found[0], found[-1]))
-    also = " and what goes into the sphere's own vibration. Lost" if "sphere" in result.peaks else ""
+    also = " and the energy of the sphere's vibration. Lost" if "sphere" in result.peaks else ""
     if result.deformation.get("treatment") == "identified":
-        also = " and what the local element still holds at release. Lost"
+        also = " and the energy stored in the local element at release. Lost"
     words = f"The area that a loop encloses is the energy lost in that contact{also}: {first} in impact {found[0] + 1}"
     return f"{words}, {last} in impact {found[-1] + 1}." if len(found) > 1 else f"{words}."
 
@@ -102,10 +102,12 @@ def _energy(result: Result) -> str:
     words = f"Of {text(put_in, 'J')} put in, {energy_text(result, 'contact_dissipated_J', 'plastic_work_J')} is lost in contact by the end."
     words += _vibration(result) if result.vibrates else ""
     if result.energy.get("drive_J"):
-        words += f" The moving plate {'brought' if result.energy['drive_J'] < 0.0 else 'took'} {text(abs(result.energy['drive_J']), 'J')}."
+        words += f" The moving plate {'added' if result.energy['drive_J'] < 0.0 else 'removed'} {text(abs(result.energy['drive_J']), 'J')}."
     if np.min(result.history["potential_J"]) < -0.01 * put_in:
-        words += " Below the height of first touch the potential energy is negative; there the other bands begin below zero."
-    return words + f" The bands add up to the energy put in{' and brought so far' if 'drive_J' in result.energy else ''} at all times."
+        words += " Below the height of first touch the potential energy is negative; the other bands then begin below zero."
+    return (
+        words + f" The bands add up to the energy put in{' and the work of the plate' if 'drive_J' in result.energy else ''} at all times."
+    )
 
 
 def _vibration(result: Result) -> str:
@@ -115,7 +117,7 @@ def _vibration(result: Result) -> str:
     least = _NOTHING_LEFT * result.energy["input_J"]
     still = sum(abs(result.energy[name]) for name in names)
     left = energy_text(result, *names) if still > least else f"less than {text(least, 'J', 1)}"
-    return f" The damping of the bodies took {damped}, and {left} is still in their motion."
+    return f" The damping of the bodies dissipated {damped}, and {left} remains in their motion."
 
 
 def _in_whole_run(result: Result) -> str:
@@ -124,18 +126,19 @@ def _in_whole_run(result: Result) -> str:
     part = float(np.sum(result.impacts["duration_s"][found])) / span
     if part > 0.02:
         return ""
-    return f"Contact takes {digits(100.0 * part, 2)} % of the run, so in the whole run it shows as thin lines."
+    return f"Contacts take {digits(100.0 * part, 2)} % of the run, and appear as thin lines in the whole run."
 
 
 def sphere_energy_caption(result: Result) -> str:
     """Return the caption of the figure of the sphere's energies."""
     history, put_in = result.history, result.energy["input_J"]
-    words = f"The fall gives the centre {text(float(history['kinetic_J'].max()), 'J')} of kinetic energy."
+    words = f"The largest kinetic energy of the centre is {text(float(history['kinetic_J'].max()), 'J')}."
     if "sphere" not in result.peaks:
         return f"{words} The sphere has no modes in this run."
     strain, left = float(history["sphere_strain_J"].max()), _after_first(result, "sphere_strain_J", "sphere_vibration_J")
     words += (
-        f" Its modes hold up to {_part(strain, put_in)} as strain; {_part(left, put_in)} are left in its vibration at the first release."
+        f" The strain energy of its modes is at most {_part(strain, put_in)}; its energy of vibration at the first release is "
+        f"{_part(left, put_in)}."
     )
     turning = float(history["sphere_rotational_J"].max())
     return f"{words} The energy of its rotation stays below {digits(max(turning, 1e-15 * put_in), 1)}\u00a0J."
@@ -151,7 +154,7 @@ def plate_motion_caption(result: Result) -> str:
     lowest = result.frequencies("plate")[0]
     if lowest * float(result.impacts["duration_s"][0]) > 0.25:
         return words
-    return f"{words} The lowest mode, of {digits(lowest)}\u00a0Hz, is slow: the sphere has left before the plate turns back."
+    return f"{words} The lowest mode, of {digits(lowest)}\u00a0Hz, is slow: the sphere separates before the plate moves back."
 
 
 def plate_energy_caption(result: Result) -> str:
@@ -159,15 +162,15 @@ def plate_energy_caption(result: Result) -> str:
     peaks, put_in = result.peaks["plate"], result.energy["input_J"]
     kinetic, strain = (_part(float(np.max(peaks[name])), put_in) for name in ("max_kinetic_energy_J", "max_strain_energy_J"))
     change = text(float(np.abs(result.history["plate_potential_J"]).max()), "J")
-    words = f"At most {kinetic} of what was put in is kinetic energy of the plate, and {strain} strain energy."
-    return f"{words} Its potential energy changes by up to {change}, which the strain of its own weight makes up for."
+    words = f"At most {kinetic} of the energy put in is kinetic energy of the plate, and {strain} strain energy."
+    return f"{words} Its potential energy changes by up to {change}, which the strain energy of its own weight balances."
 
 
 def deflection_caption(result: Result) -> str:
     """Return the caption of the maps of the plate's deflection."""
     assert result.deflection is not None  # as the figure exists
     largest = float(np.nanmax(np.abs(result.deflection.height)))
-    return f"Displacement of the upper side, up to {text(largest, 'm')}, all in one scale; full lines up, dashed down, thick zero."
+    return f"Displacement of the upper side, up to {text(largest, 'm')}, on a common scale; solid contours up, dashed down, thick zero."
 
 
 def scene_caption(result: Result) -> str:
@@ -175,15 +178,15 @@ def scene_caption(result: Result) -> str:
     assert result.deflection is not None  # as the scene exists
     factor = exaggeration(result.deflection)
     return (
-        f"The first visit in slow motion. The plate's deflection is drawn {factor:g} times too large; the ball and its gap to the plate "
-        "are to scale. The clock runs the faster the less happens."
+        f"The first impact in slow motion. The plate's deflection is magnified {factor:g} times; the ball and its gap to the plate "
+        "are to scale. Time is slowed down most around the contact."
     )
 
 
 _FILTERS = {
-    "sigma-delta": "behind the filter of a sigma-delta converter, whose delay is taken out",
-    "butterworth": "behind a Butterworth filter of order eight, with its delay",
-    "none": "without an anti-alias filter: what is faster than half of that is folded back",
+    "sigma-delta": "after the filter of a sigma-delta converter, whose delay is removed",
+    "butterworth": "after a Butterworth filter of order eight, with its delay",
+    "none": "without an anti-alias filter: frequencies above half the rate are aliased",
 }
 
 
@@ -196,15 +199,15 @@ def sensor_caption(result: Result, name: str) -> str:
         f"\u00a0Hz, {_FILTERS[sensor.filter]}."
     )
     if signal.overload_time > 0.0:
-        words += " Its accelerometer is overdriven: what is beyond its range is cut off before the filter, which may overshoot the cut."
+        words += " Its accelerometer is overloaded: values beyond its range are clipped before the filter, which may overshoot the range."
     values = signal.value[part]
     if len(values) < 4 or not np.any(values):
         return words
     found = amplitude_spectrum(values, sensor.rate)
     top, ticks = 1 + int(found.amplitude[1:].argmax()), "; ticks mark the plate's modes" if result.frequencies("plate") else ""
     return (
-        f"{words} The spectrum is one-sided, of {text(found.span, 's', 3)} from the first touch on, faded out by the falling half of "
-        f"Hann's window; a steady tone would read its amplitude. Its highest point lies at "
+        f"{words} The spectrum is one-sided, of {text(found.span, 's', 3)} from the first touch on, with the falling half of a Hann "
+        f"window, scaled to the amplitude of a steady sinusoid. Its maximum lies at "
         f"{digits(float(found.frequency[top]), 3)}\u00a0Hz{ticks}."
     )
 
@@ -228,19 +231,19 @@ def _part(value: float, whole: float) -> str:
 
 def _along_plate(result: Result) -> str:
     friction = result.case.get("contact", {}).get("friction")
-    words = "Along the plate the sphere flies freely between impacts"
+    words = "Along the plate the sphere moves freely between impacts"
     if friction is None:
         return f"{words}; there is no friction."
     words += f"; in contact, friction ({friction['law']}, coefficient {float(friction['coefficient']):g}) acts on it."
     ratio = result.impacts["tangential_restitution"]
     if len(ratio) and np.isfinite(ratio[0]):
-        words += f" Impact 1 leaves {fixed(float(ratio[0]), 4)} of the velocity along the plate."
+        words += f" The tangential restitution of impact 1 is {fixed(float(ratio[0]), 4)}."
     return words
 
 
 def _path(result: Result) -> str:
     impacts, history = result.impacts, result.history
-    words = "Seen from above, to scale; the sphere where it is at the end"
+    words = "Seen from above, to scale, with the sphere at its final position"
     if result.case.get("plate", {}).get("inclination"):
         words += ", and +x downhill"
     number = len(impacts["time_s"])
@@ -250,7 +253,7 @@ def _path(result: Result) -> str:
     elif not number:
         words += ". It has not touched the plate"
     length = float(np.hypot(np.diff(history["position_x_m"]), np.diff(history["position_y_m"])).sum())
-    return f"{words}; its way over the plate is {text(length, 'm')} long."
+    return f"{words}; the length of its path over the plate is {text(length, 'm')}."
 
 
 _WRITERS = {

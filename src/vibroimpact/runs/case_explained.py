@@ -74,7 +74,7 @@ def case_explained(case: Case, aside: Container[str] = ()) -> RenderableType:
         rows.append((f"  {item.name}", f"{shown} {unit_of(item, getattr(laws[0], 'exponent', 1))}"))
     if (table := case.contact.local.liquid) is not None:
         stokes = table.liquid().stokes_number(speed, case.sphere.radius, case.sphere.material.density)
-        left = f"at the first touch the Stokes number is {stokes:.4g}, and {restitution_kept(stokes):.5g} of the restitution is left"
+        left = f"at the first touch the Stokes number is {stokes:.4g}, and {restitution_kept(stokes):.5g} of the restitution remains"
         rows.append(("liquid", f"{fluid_words(table.model_dump())}: {left}; flights are without it"))
     if (friction := friction_law_of(case)) is not None:
         rows.append(("friction law", f"{friction.name}: {friction.equation}"))
@@ -85,8 +85,8 @@ def case_explained(case: Case, aside: Container[str] = ()) -> RenderableType:
     rows += [("stops", " or ".join(stop)), ("tolerance", f"{case.run.tolerance:g}")]
     if case.calibrate is not None:
         named = case.calibrate.parameter
-        tuned = ", ".join(named) if isinstance(named, tuple) else named or "what sets the loss of the law"
-        rows.append(("to calibrate", f"{tuned}; a run takes no notice of [calibrate]"))
+        tuned = ", ".join(named) if isinstance(named, tuple) else named or "loss parameter of the law"
+        rows.append(("to calibrate", f"{tuned}; a run ignores [calibrate]"))
     if isinstance(laws[0], CompliantLaw) and laws[0].lasting:
         where = "on the same spot: the dent of the last one lasts" if case.drop.same_spot else "on fresh surfaces"
         rows.append(("each impact", f"{where} (drop.same_spot = {str(case.drop.same_spot).lower()})"))
@@ -97,7 +97,7 @@ def case_explained(case: Case, aside: Container[str] = ()) -> RenderableType:
     expected = expected_of(case)
     if not math.isnan(expected.force):
         numbers = f"indentation {expected.depth:.4g} m, force {expected.force:.4g} N"
-        rows.append(("if nothing were lost" + ("" if rigid else ", rigid"), numbers))
+        rows.append(("without losses" + ("" if rigid else ", rigid"), numbers))
     rows += [("" if number else "cost", line) for number, line in enumerate(describe_costs(case))]
     found = doubts(resolved_case(case), expected, aside)
     return Group(Text(case.name or "a drop", style="bold"), facts(rows), *doubt_lines(found))

@@ -10,16 +10,16 @@ from vibroimpact.units.display import digits, fixed, text
 
 _SENTENCES = {
     "consistent": (
-        "Consistent: the contact law carries the local and the quasi-static indentation, and the modes add only what is dynamic; "
-        "nothing is counted twice."
+        "Consistent: the contact law includes the local and the quasi-static indentation, and the modes add only the dynamic part; "
+        "no compliance is counted twice."
     ),
     "superposed": (
-        "Superposed: the contact law and the modes of the bodies are in series, as in a multibody program with flexible bodies. What the "
-        "modes yield quasi-statically comes on top of what the law yields already, so the local indentation is counted twice."
+        "Superposed: the contact law and the modes of the bodies are in series, as in a multibody program with flexible bodies. The "
+        "quasi-static compliance of the modes is added to that of the law, so that the local indentation is counted twice."
     ),
     "identified": (
-        "Identified: a spring and a dashpot side by side, in series with the contact law, stand for all that the sphere adds; they were "
-        "fitted to a measured impact or given, and are no property of a material."
+        "Identified: a spring and a dashpot in parallel, in series with the contact law, represent the deformation of the sphere; they "
+        "were fitted to a measured impact or given, and are not material properties."
     ),
 }
 
@@ -47,7 +47,7 @@ def deformation_rows(result: Result) -> list[tuple[str, str]]:
         ("plate_static_compliance_m_N", "Static compliance of the plate at the contact point"),
         (
             "plate_modal_compliance_m_N",
-            "Of it in the modes kept" if "plate_static_compliance_m_N" in facts else "Compliance of the plate's modes",
+            "Part of it in the modes kept" if "plate_static_compliance_m_N" in facts else "Compliance of the plate's modes",
         ),
         ("sphere_modal_compliance_m_N", "Quasi-static compliance of the sphere's modes"),
         ("series_compliance_m_N", "Compliance put in series with the law, so that it is counted once"),
@@ -55,19 +55,21 @@ def deformation_rows(result: Result) -> list[tuple[str, str]]:
         if name in facts:
             rows.append((words, f"{digits(float(facts[name]) / 1e-9)}\u00a0nm/N"))
     if not math.isnan(twice := counted_twice(result)):
-        rows.append(("Counted twice: of the law's own indentation over force in impact 1", f"{fixed(100.0 * twice, 1)}\u00a0%"))
+        rows.append(("Counted twice, relative to the law's own indentation over force in impact 1", f"{fixed(100.0 * twice, 1)}\u00a0%"))
     if "finite_sphere_factor" in facts:
         factor = digits(float(facts["finite_sphere_factor"]))
-        rows.append(("The sphere is not a half-space: its approach differs from the law's by c F/(E R)", f"c\u00a0=\u00a0{factor}"))
+        rows.append(("Correction of the approach for a sphere instead of a half-space, c F/(E R)", f"c\u00a0=\u00a0{factor}"))
     if "contact_patch_m" in facts:
         rows.append(("Radius of the contact patch over which the sphere's modes are averaged", text(float(facts["contact_patch_m"]), "m")))
     rows += _local_element(result)
     for body, part in result.truncation.items():
         if math.isfinite(part):
-            rows.append((f"Largest force off for the modes of the {body} left out, estimated", f"{digits(100.0 * part, 2)}\u00a0%"))
+            rows.append(
+                (f"Estimated error of the largest force due to the modes of the {body} left out", f"{digits(100.0 * part, 2)}\u00a0%")
+            )
     lacking = plate_theory_error(facts, result.impacts)
     if math.isfinite(lacking):
-        rows.append(("Largest force off for what plate elements lack, estimated", f"{digits(100.0 * lacking, 2)}\u00a0%"))
+        rows.append(("Estimated error of the largest force due to the limits of plate elements", f"{digits(100.0 * lacking, 2)}\u00a0%"))
     return rows
 
 

@@ -62,7 +62,7 @@ def ledger_chart(result: Result, history: Mapping[str, Floats], caption: str) ->
                 label = "damping of the contact"  # as opposed to that of the bodies
             layers.append(Layer(label, bands[name], role))
     sinks = np.min(bands["potential_J"]) < -0.01 * put_in
-    title = "Energy" + (" (bands stand on the potential energy where it is negative)" if sinks else "")
+    title = "Energy" + (" (bands are stacked on the potential energy where it is negative)" if sinks else "")
     # contacts are shaded where they are enlarged alone, since the bands cover the ground
     stack = Stack(history["time_s"], tuple(layers), _drawn_points(result, history))
     brought = -history["drive_J"] if "drive_J" in history else np.zeros(1)  # by a plate that is shaken

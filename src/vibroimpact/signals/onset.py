@@ -59,7 +59,7 @@ def from_onset(record: Record, duration: float, before: float = 0.0, threshold: 
 
 
 def onset_time(record: Record, threshold: float | None = None) -> float:
-    """Return when the magnitude of a record first reaches a threshold [s].
+    """Return the time at which the magnitude of a record first reaches a threshold [s].
 
     That is within the first of its `Packets`: the envelope tells that there is one, the signal when it begins.
 

@@ -85,6 +85,6 @@ def record_files(path: str | PathLike[str]) -> list[Path]:
             raise with_path(place, InputError(f"there is no file of records in this folder; known are {', '.join(_READERS)}"))
         return found
     if place.suffix.lower() not in _READERS and not is_universal(place):
-        what = "its name does not say its format" if place.exists() else "there is no such file"
+        what = "its format does not follow from its name" if place.exists() else "there is no such file"
         raise with_path(place, InputError(f"{what}; records are read from files ending in {', '.join(_READERS)}"))
     return [place]

@@ -95,7 +95,7 @@ def check_mesh(mesh: Mesh) -> None:
             shown = ", ".join(str(first + index + 1) for index in bad[:5]) + (", ..." if len(bad) > 5 else "")
             raise InputError(
                 f"{len(bad)} of {mesh.number_of_elements} elements are inverted or folded (their volume is not positive everywhere): "
-                f"number {shown}; use smaller elements, or mesh the part anew if it was brought"
+                f"number {shown}; use smaller elements, or mesh the part again if the mesh was imported"
             )
         first += len(block.connectivity)
     parts = _count_parts(mesh)

@@ -209,7 +209,7 @@ def modal_model(
 
 @dataclass(frozen=True)
 class ModalBasis:
-    """Modes of an elastic body at its contact point and at its sensors, as the dynamics use them.
+    """Modes of an elastic body, with their shapes at its contact point and at its sensors.
 
     Parameters
     ----------

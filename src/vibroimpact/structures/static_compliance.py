@@ -111,7 +111,7 @@ def computed_compliance(recipe: Recipe, place: tuple[float, float], side: Side =
 def computed_compliances(recipe: Recipe, places: Sequence[tuple[float, float]], side: Side = "upper") -> Floats:
     """Return the structural compliances of a held plate at several places, solved together, (places,)."""
     if isinstance(recipe.shape, SphereOfSolids):
-        raise InputError("a structural compliance is that of a plate, whose two faces are told apart; a sphere has none")
+        raise InputError("a structural compliance is that of a plate, which has two faces; a sphere has none")
     held, elastic = _factorised(recipe)
     structure, material = held.structure, _material(recipe)
     averages, terms = [], []

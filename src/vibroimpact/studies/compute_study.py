@@ -105,7 +105,7 @@ def compute_study(
             number = min(workers, len(ledger.chunks("waiting")))
             _run(ledger, folder, sweep, _workers(folder, sweep, number, scheduler, modes_progress, tell), progress)
             if tell is not None and sweep.size >= _MANY:
-                tell("all drops are done; putting the results together")
+                tell("all drops are done; assembling the results")
             _assemble(folder, ledger, sweep)
         shutil.rmtree(folder / FOLDER, ignore_errors=True)
     return folder
@@ -116,7 +116,7 @@ def _create(folder: Path, sweep: Sweep, memory: float, *, force: bool) -> None:
     if is_held(folder):
         raise InputError(busy(folder))
     if is_study(folder) and not force:
-        raise InputError(f"{folder}: a study is there already; go on with it by --resume, replace it by --force, or name another folder")
+        raise InputError(f"{folder}: a study is there already; continue it with --resume, replace it with --force, or name another folder")
     with new_folder(folder, force=force) as working:
         (working / STUDY).write_text(study_toml(sweep.whole_table), encoding="utf-8")
         (working / FOLDER).mkdir()
@@ -157,7 +157,7 @@ def _invalidate_damaged(ledger: Ledger, folder: Path, tell: Tell | None) -> None
         if checksum(folder, number) != expected:
             ledger.undone(number)
             if tell is not None:
-                tell(f"chunk {number} is not on disk as it was written; it is computed again")
+                tell(f"chunk {number} on disk is damaged; it is computed again")
 
 
 def _run(ledger: Ledger, folder: Path, sweep: Sweep, workers: Workers, progress: Progress | None) -> None:

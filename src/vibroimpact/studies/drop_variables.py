@@ -58,12 +58,14 @@ PEAK_TABLE: dict[str, PeakVariable] = {
     "largest_indentation_m": _largest("max_indentation_m", "of all impacts"),
     "first_restitution_achieved": _first("restitution_achieved", "restitution achieved at the first impact"),
     "first_tangential_restitution": _first(
-        "tangential_restitution", "velocity of the centre along the plate after over before, at the first impact"
+        "tangential_restitution", "velocity of the centre along the plate after over before impact, at the first impact"
     ),
-    "first_rebound_angle_deg": _first("rebound_angle_deg", "angle of the first rebound from the normal, positive onwards"),
+    "first_rebound_angle_deg": _first(
+        "rebound_angle_deg", "angle of the first rebound from the normal, positive in the direction of motion"
+    ),
     "first_duration_s": _first("duration_s", "duration of the first contact", "Duration of the first contact", "Duration of contact"),
     "total_energy_lost_J": _total(
-        "energy_lost_J", "energy dissipated in all contacts, without what goes into vibration", "Energy lost in all contacts"
+        "energy_lost_J", "energy dissipated in all contacts, without the energy of vibration", "Energy lost in all contacts"
     ),
     "first_rebound_height_m": _first(
         "rebound_height_m", "height of the sphere's centre at the top of the first rebound", "Height of the first rebound"
@@ -73,19 +75,19 @@ PEAK_TABLE: dict[str, PeakVariable] = {
     "first_approach_speed_m_s": _first(
         "approach_speed_m_s", "speed at first touch of the first impact", "Speed at first touch", is_drawn=False
     ),
-    "first_restitution_asked": _first("restitution_asked", "restitution asked of the contact law at the first impact", is_drawn=False),
+    "first_restitution_asked": _first("restitution_asked", "restitution parameter of the contact law at the first impact", is_drawn=False),
     "number_of_impacts": PeakVariable("1", "number of impacts", "Number of impacts", "Impacts", is_drawn=False),
     "end_time_s": PeakVariable("s", "time at which the run ended", "Time at the end of the run", "Time at the end", is_drawn=False),
     "left_in_vibration_J": PeakVariable(
         "J",
-        "energy left in vibration where the sphere came to rest, or rides, on what vibrates",
+        "energy left in vibration where the sphere came to rest, or rides, on a vibrating body",
         "Energy left in vibration",
         "Left in vibration",
         is_drawn=False,
     ),
     "closure_relative": PeakVariable(
         "1",
-        "what is missing in the energy ledger, as a part of the energy put in",
+        "closure error of the energy ledger, relative to the energy put in",
         "Closure of the energy, relative",
         "Closure of the energy",
         is_drawn=False,

@@ -47,29 +47,29 @@ class ClassTable(Section):
 
 
 class SweepSection(Section):
-    """What `vibroimpact sweep` does with the case; a run takes no notice of it."""
+    """Settings of `vibroimpact sweep`; a run ignores them."""
 
     design: Annotated[str, BeforeValidator(_read_design), WithJsonSchema({"enum": list(designs())})] = Field(
-        "grid", description="how the points are chosen: " + "; ".join(f"{one.name}: {one.meaning}" for one in designs().values())
+        "grid", description="design, the choice of the points: " + "; ".join(f"{one.name}: {one.meaning}" for one in designs().values())
     )
     over: dict[str, Any] = Field(
         description='by dotted keys of the case, such as "sphere.radius": a list, a range { from, to, number, scale }, a distribution '
         '{ distribution = "normal", "lognormal" or "uniform", ... }, a column of a file { file, column, weights }, '
-        "or what follows another key { value, of, at, exponent, factor }"
+        "or a dependence on another key { value, of, at, exponent, factor }"
     )
-    samples: Annotated[int, Field(ge=1, le=MOST_DROPS, strict=True)] | None = Field(None, description="how many points are drawn")
-    seed: Annotated[int, Field(ge=0, strict=True)] = Field(0, description="of the drawing")
+    samples: Annotated[int, Field(ge=1, le=MOST_DROPS, strict=True)] | None = Field(None, description="number of sampled points")
+    seed: Annotated[int, Field(ge=0, strict=True)] = Field(0, description="seed of the sampling")
     keep: tuple[Literal["peaks", "impacts", "signals"], ...] = Field(
         ("impacts",),
-        description="what is kept of each drop: its peaks, which are kept always, the impact table, the signals of the sensors",
+        description="stored results of each drop: peaks (always stored), the impact table, the signals of the sensors",
     )
     window: WindowTable | None = Field(None, description="the part of the signals that is kept; by default all, from the start")
-    classes: dict[Name, ClassTable] | None = Field(None, description="of a population, by their names: the distributions of each class")
+    classes: dict[Name, ClassTable] | None = Field(None, description="classes of a population, by name, with the distributions of each")
     falls_per_rock: Annotated[int, Field(ge=1, le=MOST_DROPS, strict=True)] = Field(
-        1, description="how many falls of a population share a rock: all keys but those of [plate] and [drop]"
+        1, description="number of falls of each rock of a population, with all keys in common but those of [plate] and [drop]"
     )
     rocks_per_plate: Annotated[int, Field(ge=1, le=MOST_DROPS, strict=True)] | None = Field(
-        None, description="how many rocks of a population share a plate: the keys of [plate]; by default all"
+        None, description="number of rocks of a population on each plate, with the keys of [plate] in common; by default all"
     )
 
 
@@ -160,7 +160,7 @@ def read_axis(value: Any, quantity: Quantity | None) -> Axis:
         table = read_table(_DISTRIBUTIONS[kind], value)
         return _normal(table, quantity) if isinstance(table, NormalTable) else _spaced(table, quantity, is_random=True)
     if "from" not in value and "to" not in value:
-        raise InputError(f"{', '.join(value) or 'an empty table'} says nothing; it must be {_ASKED}")
+        raise InputError(f"{', '.join(value) or 'an empty table'} has no values; it must be {_ASKED}")
     return _spaced(read_table(RangeTable, value), quantity, is_random=False)
 
 

@@ -173,12 +173,12 @@ class Sweep:
         """Unit and meaning of every swept key and of all variables that may be kept, in the order of the files."""
         sensors = {sensor.name: sensor.sensor() for sensor in self.case.sensors} if "signals" in self.section.keep else {}
         keys = {key: (quantity.unit or "1", quantity.meaning) if quantity else ("1", key) for key, quantity in self.quantities.items()}
-        largest = {f"{name}{SENSOR_PEAK}": (one.unit, f"largest magnitude that {name} reads") for name, one in sensors.items()}
-        signals = {f"{SIGNAL}{name}": (one.unit, f"{one.quantity} that {name} reads") for name, one in sensors.items()}
+        largest = {f"{name}{SENSOR_PEAK}": (one.unit, f"largest magnitude of the signal of {name}") for name, one in sensors.items()}
+        signals = {f"{SIGNAL}{name}": (one.unit, f"{one.quantity} measured by {name}") for name, one in sensors.items()}
         starts = {f"{name}{SIGNAL_START}": ("s", f"time of the first sample of {name}") for name in sensors} if self.window else {}
         impacts = meanings(ALL_IMPACT_COLUMNS)
         del impacts["impact"]  # a dimension, not a variable
-        ended = {OUTCOME: ("1", "why the run of the drop ended")}
+        ended = {OUTCOME: ("1", "reason for the end of the run of the drop")}
         return {**keys, **ended, **PEAKS, **largest, **limit_meanings(), **impacts, **starts, **signals}
 
     @cached_property
@@ -237,16 +237,19 @@ def read_sweep(table: Mapping[str, Any]) -> Sweep:
     check_bounds(table)
     base = {key: value for key, value in table.items() if key != "sweep"}
     if "sweep" not in table:
-        raise InputError('it is missing; it says what runs over what, such as [sweep.over] "sphere.radius" = ["10 mm", "25 mm"]', "sweep")
+        raise InputError(
+            'it is missing; it specifies the swept keys and their values, such as [sweep.over] "sphere.radius" = ["10 mm", "25 mm"]',
+            "sweep",
+        )
     if not isinstance(table["sweep"], dict):
         raise InputError(f"{shown(table['sweep'])} is not a table", "sweep")
     try:
         section = read_table(SweepSection, table["sweep"])
         design = find_design(section.design)
         if design.is_drawn and section.samples is None:
-            raise InputError(f"it is missing; {design.name} needs to know how many points it draws", "samples")
+            raise InputError(f"it is missing; {design.name} needs the number of points to draw", "samples")
         if not design.is_drawn and section.samples is not None:
-            raise InputError(f"{design.name} has the points that its values give; leave this out", "samples")
+            raise InputError(f"{design.name} has as many points as its values give; leave this out", "samples")
         over, quantities, axes = _read_over(base, section.over)
         section = section.model_copy(update={"over": over})
         population = None
@@ -306,7 +309,7 @@ def _read_population(base: Mapping[str, Any], section: SweepSection) -> tuple[Sw
     if section.design != "population":
         raise InputError(f'{section.design} has no classes; give design = "population"', "design")
     if len(section.classes) < 2:
-        raise InputError("there is one class alone, from which nothing can be told apart; give two or more", "classes")
+        raise InputError("there is only one class, so that there is nothing to classify; give two or more", "classes")
     quantities: dict[str, Quantity | None] = {}
     tables, own = {}, {}
     for name, table in section.classes.items():

@@ -213,4 +213,4 @@ def _write_rows(data: h5py.Dataset, above: tuple[int, ...], shape: tuple[int, ..
 def _write_failures(file: h5py.File, failures: Mapping[int, str]) -> None:
     points = _scale(file, FAILED_POINT, np.array(list(failures), dtype=np.int64), ("1", "number of a drop that failed, from 0"))
     reasons = _values(file, FAILED_REASON, np.array(list(failures.values()), dtype=object))
-    _described(reasons, ("1", "why it failed"), [points])
+    _described(reasons, ("1", "reason for the failure"), [points])

@@ -112,7 +112,7 @@ def to_si(value: float | str, unit: str = "") -> float:
     >>> to_si("25 kg", "m")
     Traceback (most recent call last):
         ...
-    vibroimpact.errors.InputError: "25 kg" is a mass; what is wanted is a length (a number in m, or a string such as "25 mm")
+    vibroimpact.errors.InputError: "25 kg" is a mass; expected a length (a number in m, or a string such as "25 mm")
     """
     if isinstance(value, bool) or not isinstance(value, (int, float, str)):
         raise InputError(f"{shown(value)} is not {_wanted(unit)}")
@@ -311,11 +311,9 @@ def _converted(given: str, unit: str, text: str) -> float:
     except pint.DimensionalityError:
         kind = next((k for u, k in _KIND.items() if u and have.check(registry.parse_units(u).dimensionality)), None)
         is_a = f"is {_article(kind)} {kind}" if kind else "is another kind of quantity"
-        raise InputError(f"{shown(text, 80)} {is_a}; what is wanted is {_wanted(unit)}") from None
+        raise InputError(f"{shown(text, 80)} {is_a}; expected {_wanted(unit)}") from None
     except Exception as error:  # pint raises many kinds for a unit that it can't read
-        raise InputError(
-            f"{shown(given, 80)} in {shown(text, 80)} is not a unit that is known; what is wanted is {_wanted(unit)}"
-        ) from error
+        raise InputError(f"{shown(given, 80)} in {shown(text, 80)} is not a unit that is known; expected {_wanted(unit)}") from error
 
 
 def _long(number: float) -> str:

@@ -49,7 +49,7 @@ def _record_chart(found: Rebounds) -> Chart:
         marks.append(Points(bounces.others, level, "other sounds", "muted", bounces.reasons))
     label = f"{record.name[:1].upper()}{record.name[1:]}"
     panel = Panel(Axis("Time", "s"), Axis(label, "" if record.unit == "1" else record.unit), tuple(marks))
-    caption = "The record, the bounces of the ball at the value of largest magnitude, and crosses at what else was heard."
+    caption = "The record, with the bounces of the ball marked at their largest magnitude, and other sounds marked by crosses."
     return Chart("record", "Bounces in the record", ((panel,),), caption, height=2.6)
 
 
@@ -65,5 +65,5 @@ def _restitution_chart(found: Rebounds) -> Chart:
     marks += [Line(smooth, law(smooth), law.name, series(number)) for number, law in enumerate(found.laws)]
     marks.append(Points(speed, found.restitution[known], "impacts", "matched", names, low=low, high=high))
     panel = Panel(Axis("Approach speed", "m/s"), Axis("Restitution"), tuple(marks))
-    caption = f"Each impact between two flights that are heard, with its interval at {100.0 * found.confidence:g} %, and the fits."
+    caption = f"Each impact between two flights of the record, with its {100.0 * found.confidence:g} % interval, and the fits."
     return Chart("restitution", "Restitution over the approach speed", ((panel,),), caption, height=3.2)

@@ -18,7 +18,7 @@ _UNLIKE = 1.25  # ratio of the first restitution to the second one above which a
 
 @dataclass(frozen=True)
 class Rebounds:
-    """The impacts of a ball that are heard in a record, n touches, in vacuum.
+    """The impacts of a bouncing ball in a record, n touches, in vacuum.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ class Rebounds:
 
 
 def rebounds_of(bounces: Bounces, *, gravity: float = STANDARD_GRAVITY, height: float | None = None, confidence: float = 0.95) -> Rebounds:
-    r"""Return speeds and restitutions of the impacts that are heard.
+    r"""Return speeds and restitutions of the impacts of a bouncing ball.
 
     A ball that flies for a time T in vacuum leaves and comes back at :math:`g T / 2`; restitutions do not depend on g.
 

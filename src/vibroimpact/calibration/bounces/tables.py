@@ -63,14 +63,14 @@ def contact_sentence(found: Rebounds) -> str:
     if contact:
         return f"Flights are the times between touches less {text(contact, 's')} of contact."
     shift = 1e-4 * float(np.max((1.0 - found.bounces.restitution) / flight[:-1]))
-    return f"Contacts count as instants: each 0.1 ms that they last makes a restitution too large, by {digits(shift, 2)} at most."
+    return f"Contacts are taken as instantaneous: each 0.1 ms of contact time makes a restitution too large, by {digits(shift, 2)} at most."
 
 
 def other_sentences(found: Rebounds) -> list[str]:
     """Return what else is heard."""
     pairs = list(zip(found.bounces.others, found.bounces.reasons, strict=True))
     told = [f"Not a bounce, at {text(float(time), 's')}: {reason}." for time, reason in pairs[:_MOST]]
-    return told if len(pairs) <= _MOST else [*told, f"{len(pairs) - _MOST} others are no bounces either; summary.json has them."]
+    return told if len(pairs) <= _MOST else [*told, f"{len(pairs) - _MOST} others are not bounces either; summary.json lists them."]
 
 
 def decimals_of(deviation: Floats) -> int:

@@ -173,7 +173,7 @@ def calibrate_friction(
         words = "friction is fitted to single impacts of rigid bodies on a plate that lies still"
         raise InputError(f'{words}; leave out what deforms or moves, such as model = "elastic"', "parameter")
     if bootstrap != 0 and not bootstrap >= 20:
-        raise InputError(f"{bootstrap} draws tell no interval; it must be 0, or at least 20", "bootstrap")
+        raise InputError(f"{bootstrap} draws give no interval; it must be 0, or at least 20", "bootstrap")
     parameters = friction_parameters(stated, names)
     seen, bounds = impacts.seen, parameters.bounds
     model, counted = impact_model(stated, parameters, impacts), dict.fromkeys(seen.wanted, 1.0) if weights is None else dict(weights)

@@ -69,7 +69,7 @@ def _angle_chart(found: FrictionCalibration, curves: list[Curve]) -> Chart:
             marks.append(Points(impacts.angle, values, "measured", "matched", impacts.seen.labels, low=low, high=high))
         panels.append(Panel(axis, Axis(f"{phrase[:1].upper()}{phrase[1:]}", unit), tuple(marks)))
     rows = tuple(tuple(panels[start : start + 2]) for start in range(0, len(panels), 2))
-    caption = f"Single impacts under friction by {found.parameters.law.name}, measured and computed with what was found."
+    caption = f"Single impacts under friction by {found.parameters.law.name}, measured, and computed with the fitted parameters."
     if any(mark.low is not None for panel in panels for mark in panel.marks if isinstance(mark, Points)):
         caption += " Bars: one standard deviation to either side."
     return Chart("angle", "Measured and computed over the angle of incidence", rows, caption, height=3.0)
@@ -97,7 +97,11 @@ def _slip_charts(found: FrictionCalibration, curves: list[Curve]) -> list[Chart]
     more = _measured_velocity(found, radius) - found.outcomes["separation_velocity_x"]
     marks.append(Points(*psi(model, found.outcomes, more), "measured", "matched", impacts.seen.labels))
     restitution = found.outcomes["separation_speed"] / impacts.seen.speeds
-    return [slip_map(marks, before, restitution, np.full(len(before), ratio), "Single impacts, measured and computed with what was found.")]
+    return [
+        slip_map(
+            marks, before, restitution, np.full(len(before), ratio), "Single impacts, measured, and computed with the fitted parameters."
+        )
+    ]
 
 
 def _measured_velocity(found: FrictionCalibration, radius: float) -> Floats:

@@ -136,7 +136,9 @@ def _approach(table: TableFile) -> tuple[Floats, Floats]:
     if {"approach_speed", "approach_velocity_x"} <= set(columns):
         check_positive(table, "approach_speed")
         return columns["approach_speed"], columns["approach_velocity_x"]
-    raise InputError(f"{table.path}: the columns {', '.join(columns)} do not tell how the sphere came; it takes {_APPROACH}", "target")
+    raise InputError(
+        f"{table.path}: the columns {', '.join(columns)} do not give the approach of the sphere; it needs {_APPROACH}", "target"
+    )
 
 
 def _separation_speed(case: Case, table: TableFile, speeds: Floats, labels: tuple[str, ...]) -> Floats | None:

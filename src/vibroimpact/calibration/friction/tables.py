@@ -27,7 +27,7 @@ def friction_words(found: FrictionCalibration) -> str:
 def together_words(found: FrictionCalibration) -> str:
     """Return in words what was matched."""
     every = " and the ".join(ALONG_PLATE[name].phrase for name in found.weights)
-    return f"the {every} of all impacts together is as near to what was measured as can be"
+    return f"the {every} of all impacts are fitted jointly to the measurement"
 
 
 def friction_sentences(found: FrictionCalibration) -> list[str]:
@@ -40,8 +40,8 @@ def friction_sentences(found: FrictionCalibration) -> list[str]:
                 found.names, found.intervals, found.parameters.allowed, found.parameters.units, strict=True
             )
         ]
-        way = f"by drawing the measurement {found.bootstrap} times again" if found.bootstrap else "by the profile of the sum of squares"
-        source = "the given standard deviations" if found.impacts.seen.deviations_known else "the scatter of what was measured"
+        way = f"by bootstrap with {found.bootstrap} draws" if found.bootstrap else "by the profile of the sum of squares"
+        source = "the given standard deviations" if found.impacts.seen.deviations_known else "the scatter of the measurement"
         told.append(f"At {percent}: {', '.join(each)}. Intervals are {way}, from {source}.")
     for name, (_, unit, phrase) in ALONG_PLATE.items():
         if name in found.weights:
@@ -51,9 +51,9 @@ def friction_sentences(found: FrictionCalibration) -> list[str]:
     if found.impacts.seen.deviations_known and math.isfinite(found.scatter):
         told.append(f"Residuals are {digits(found.scatter, 3)} times as large as their standard deviations.")
     slip, number = int(found.slips.sum()), len(found.slips)
-    told.append(f"Of {number} impacts {slip} slip throughout; where an impact slips throughout, the coefficient alone counts.")
+    told.append(f"Of {number} impacts {slip} slip throughout; these depend on the coefficient alone.")
     if found.impacts.separation_speed is not None:
-        told.append("The normal rebound was measured too: the contact law meets that of each impact.")
+        told.append("The normal rebound was measured too: the contact law is matched to it at each impact.")
     return told
 
 

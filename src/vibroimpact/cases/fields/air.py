@@ -40,7 +40,7 @@ AirField = Annotated[
     AirTable | None,
     BeforeValidator(lambda value: read_fluid(AirTable, value)),
     JsonSchema(
-        "air, whose drag slows the sphere down in flight: true for air at 20 C and sea level, or its numbers; none by default",
+        "drag of the air in flight: true for air at 20 C and sea level, or its numbers; none by default",
         lambda: {"anyOf": [{"type": "boolean"}, AirTable.model_json_schema()]},
     ),
 ]

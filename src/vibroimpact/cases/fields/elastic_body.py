@@ -40,7 +40,7 @@ class BroughtMeshTable(Section):
     file: str = Field(description="Nastran (.bdf, .dat), Abaqus (.inp), Gmsh (.msh), or with the extra mesh STEP (.step) and BREP (.brep)")
     unit: Annotated[float, Quantity("m", "unit of its coordinates", Range(above=0)), BeforeValidator(_one_unit)] = 1.0
     element_size: _Size | None = None
-    contact: str | None = Field(None, description="a named set: the contact point is its middle")
+    contact: str | None = Field(None, description="a named set, whose centre is the contact point")
 
     def brought(self) -> ImportedMesh:
         """Return the mesh, which is identified by the checksum of its file and read when it is first used.
@@ -76,21 +76,22 @@ class SphereMeshTable(Section):
         None, description="elements from pole to pole, even and at least 4"
     )
     kind: ElementKind = Field("hex27", description="kind of element")
-    grading: Annotated[float, Quantity("", "how many times smaller elements are at the contact point", Range(at_least=1))] = 1.0
+    grading: Annotated[float, Quantity("", "refinement factor of the elements at the contact point", Range(at_least=1))] = 1.0
 
 
 class PlateMeshTable(Section):
     """The mesh of a plate made here."""
 
     element_size: _Size | None = None
-    elements: _Count | None = Field(None, description='about how many elements in all, instead of element_size; only of element = "solid"')
+    elements: _Count | None = Field(None, description='approximate number of elements, instead of element_size; only of element = "solid"')
     layers: _Count | None = Field(None, description='elements through the thickness; only of element = "solid"')
     kind: ElementKind | None = Field(None, description='kind of element; only of element = "solid"')
     splits: Annotated[int, Field(ge=0, le=6, strict=True)] | None = Field(
-        None, description='how often elements along edges and at the rims of patches are split in four; only of element = "solid"'
+        None,
+        description='number of times that elements along edges and at the rims of patches are split in four; only of element = "solid"',
     )
     lower_splits: Annotated[int, Field(ge=0, le=6, strict=True)] | None = Field(
-        None, description='how often the lowest layer is split in four; only of element = "solid"'
+        None, description='number of times that the lowest layer is split in four; only of element = "solid"'
     )
     margin: Annotated[float, Quantity("m", "width of elements along edges and straight rims", Range(at_least=0))] | None = Field(
         None, description='only of element = "plate"; 0 for none'
@@ -120,7 +121,7 @@ def _mesh_field(kind: type[Section]) -> Any:
     def json_schema() -> dict[str, Any]:
         return {"anyOf": [{"type": "string"}, BroughtMeshTable.model_json_schema(), kind.model_json_schema()]}
 
-    return Annotated[Any, BeforeValidator(read), JsonSchema("a file, or how the mesh is made here", json_schema)]
+    return Annotated[Any, BeforeValidator(read), JsonSchema("a mesh file, or settings of the mesh generator", json_schema)]
 
 
 SphereMeshField = _mesh_field(SphereMeshTable)
@@ -149,7 +150,7 @@ def check_elastic(section: Any) -> None:
             if key == "supports" and section.radius is not None:
                 if value == "free":
                     continue  # a sphere below that moves freely
-                raise InputError('a sphere in the place of the plate is held fixed, or "free"', key)
+                raise InputError('a sphere in place of the plate is held fixed, or "free"', key)
             raise InputError(f'a rigid body does not take it; add model = "elastic", or leave out {key}', key)
         return
     check_alternatives(section, "modes", "max_frequency", needed=False, key="modes")

@@ -42,15 +42,15 @@ Seed = Annotated[int, Field(ge=0, strict=True)]
 class AccelerometerTable(Section):
     """What an accelerometer adds to the acceleration of its base: its resonance, then its range; its noise and its steps."""
 
-    resonance: Annotated[float, Quantity("Hz", "its mounted resonance", Range(above=0))] | None = None
-    damping_ratio: Annotated[float, Quantity("", "damping ratio of its resonance", Range(above=0))] = 0.02
-    range: Annotated[float, Quantity("m/s^2", "largest magnitude that it puts out", Range(above=0))] | None = None
+    resonance: Annotated[float, Quantity("Hz", "mounted resonance frequency", Range(above=0))] | None = None
+    damping_ratio: Annotated[float, Quantity("", "damping ratio of the resonance", Range(above=0))] = 0.02
+    range: Annotated[float, Quantity("m/s^2", "measuring range: largest magnitude of its output", Range(above=0))] | None = None
     noise: Annotated[float, Quantity("m/s^2", "standard deviation of the noise in its samples", Range(at_least=0))] = 0.0
-    resolution: Annotated[float, Quantity("m/s^2", "step of its readings", Range(above=0))] | None = None
+    resolution: Annotated[float, Quantity("m/s^2", "resolution: step of its output", Range(above=0))] | None = None
     seed: Seed = Field(0, description="of the noise")
-    sensitivity: (
-        Annotated[float, Quantity("V s^2/m", "its voltage over the acceleration, which it then puts out", Range(above=0))] | None
-    ) = None
+    sensitivity: Annotated[float, Quantity("V s^2/m", "voltage over acceleration; its output is then a voltage", Range(above=0))] | None = (
+        None
+    )
 
     def instrument(self) -> Instrument:
         """Return the accelerometer."""
@@ -61,9 +61,9 @@ class GeophoneTable(Section):
     """A geophone: the voltage of a coil on a spring."""
 
     natural_frequency: Annotated[float, Quantity("Hz", "natural frequency of the coil on its spring", Range(above=0))]
-    sensitivity: Annotated[float, Quantity("V s/m", "its voltage over the velocity, far above the natural frequency", Range(above=0))]
+    sensitivity: Annotated[float, Quantity("V s/m", "voltage over velocity, far above the natural frequency", Range(above=0))]
     damping_ratio: Annotated[float, Quantity("", "damping ratio of the coil, with its shunt", Range(above=0))] = 0.6
-    low_pass: Annotated[float, Quantity("Hz", "corner of a low-pass of order two behind it", Range(above=0))] | None = None
+    low_pass: Annotated[float, Quantity("Hz", "corner frequency of a second-order low-pass after it", Range(above=0))] | None = None
 
     def instrument(self) -> Instrument:
         """Return the geophone."""
@@ -73,7 +73,7 @@ class GeophoneTable(Section):
 class StrainGaugeTable(Section):
     """A strain gauge on a face of the plate, along a direction in it."""
 
-    sensitivity: Annotated[float, Quantity("V", "voltage over strain, which it then puts out", Range(above=0))] | None = None
+    sensitivity: Annotated[float, Quantity("V", "voltage over strain; its output is then a voltage", Range(above=0))] | None = None
 
     def instrument(self) -> Instrument:
         """Return the strain gauge."""
@@ -83,8 +83,10 @@ class StrainGaugeTable(Section):
 class MicrophoneTable(Section):
     """A microphone in the air beyond a face of the plate."""
 
-    distance: Annotated[float, Quantity("m", "its distance from the plane of the face", Range(at_least=_NEAREST))]
-    sensitivity: Annotated[float, Quantity("V/Pa", "voltage over the sound pressure, which it then puts out", Range(above=0))] | None = None
+    distance: Annotated[float, Quantity("m", "distance from the plane of the face", Range(at_least=_NEAREST))]
+    sensitivity: Annotated[float, Quantity("V/Pa", "voltage over sound pressure; its output is then a voltage", Range(above=0))] | None = (
+        None
+    )
     air_density: (
         Annotated[float, Quantity("kg/m^3", "density of the air; by default that of `drop.air`, or that at 20 C", Range(above=0))] | None
     ) = None
@@ -98,7 +100,7 @@ class MicrophoneTable(Section):
 class ForceTable(Section):
     """A force sensor between the plate and the support at its position."""
 
-    sensitivity: Annotated[float, Quantity("V/N", "voltage over force, which it then puts out", Range(above=0))] | None = None
+    sensitivity: Annotated[float, Quantity("V/N", "voltage over force; its output is then a voltage", Range(above=0))] | None = None
 
     def instrument(self) -> Instrument:
         """Return the force sensor."""
@@ -123,10 +125,10 @@ class _OfSignal:
 class AmplifierTable(Section):
     """An amplifier behind the instrument: gain, and noise and hum at its input."""
 
-    gain: Annotated[float, Quantity("", "output over input", Range(above=0))] = 1.0
+    gain: Annotated[float, Quantity("", "gain: output over input", Range(above=0))] = 1.0
     noise: Annotated[float, _OfSignal("standard deviation of white noise at its input", Range(at_least=0))] = 0.0
-    hum: Annotated[float, _OfSignal("amplitude of the hum of the mains at its input; its phase is drawn", Range(at_least=0))] = 0.0
-    mains: Annotated[float, Quantity("Hz", "frequency of the mains", Range(above=0))] = 50.0
+    hum: Annotated[float, _OfSignal("amplitude of the mains hum at its input, with a random phase", Range(at_least=0))] = 0.0
+    mains: Annotated[float, Quantity("Hz", "mains frequency", Range(above=0))] = 50.0
     seed: Seed = Field(0, description="of the noise and of the hum's phase")
 
     def amplifier(self) -> Amplifier:
@@ -137,7 +139,7 @@ class AmplifierTable(Section):
 class ConverterTable(Section):
     """An analogue-to-digital converter, which clips and rounds."""
 
-    range: Annotated[float, _OfSignal("largest magnitude that it reads", Range(above=0))]
+    range: Annotated[float, _OfSignal("range: largest magnitude of its input", Range(above=0))]
     bits: Annotated[int, Field(ge=1, le=32, strict=True)] | None = Field(None, description="its width; unrounded by default")
 
     def converter(self) -> Converter:

@@ -29,7 +29,7 @@ LiquidField = Annotated[
     LiquidTable | None,
     BeforeValidator(lambda value: read_fluid(LiquidTable, value)),
     JsonSchema(
-        "liquid around the impact, which takes from the rebound: true for water at 20 C, or its numbers; none by default",
+        "liquid around the impact, which reduces the rebound: true for water at 20 C, or its numbers; none by default",
         lambda: {"anyOf": [{"type": "boolean"}, LiquidTable.model_json_schema()]},
     ),
 ]

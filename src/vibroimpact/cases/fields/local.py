@@ -21,7 +21,7 @@ class MeasuredImpact(Section):
     separation_speed: Annotated[float, Quantity("m/s", "speed after the impact", Range(above=0))] | None = None
     restitution: Annotated[float, Quantity("", "speed after over speed before", Range(above=0, below=1))] | None = None
     relative_deviation: Annotated[float, Quantity("", "standard deviation of each, as a part of it", Range(above=0, below=1))] | None = None
-    plate: Literal["as here", "rigid"] = Field("as here", description="what it fell on: the plate of the case, or a rigid one")
+    plate: Literal["as here", "rigid"] = Field("as here", description="plate of the measurement: the plate of the case, or a rigid one")
 
     @model_validator(mode="after")
     def _check_rebound(self) -> MeasuredImpact:
@@ -35,13 +35,15 @@ class LocalSection(Section):
     """What of the [contact] section is not of the law itself."""
 
     local_compliance: Literal["consistent", "superposed", "identified"] | None = Field(
-        None, description="how local indentation and the deformation of elastic bodies go together; consistent by default"
+        None, description="treatment of local indentation with elastic bodies; consistent by default"
     )
     local_stiffness: Annotated[float, Quantity("N/m", "spring of the local element of identified", Range(above=0))] | None = None
     local_damping: Annotated[float, Quantity("N s/m", "dashpot of the local element of identified", Range(above=0))] | None = None
     liquid: LiquidField = None
-    finite_sphere: StrictBool = Field(False, description="correct Hertz's half space to the finite size of a rigid sphere")
-    measured: MeasuredImpact | None = Field(None, description="what stiffness and damping of the local element are identified from")
+    finite_sphere: StrictBool = Field(False, description="correct Hertz's half space for the finite size of a rigid sphere")
+    measured: MeasuredImpact | None = Field(
+        None, description="measurement from which stiffness and damping of the local element are identified"
+    )
 
     @model_validator(mode="after")
     def _check_keys(self) -> LocalSection:
@@ -56,6 +58,7 @@ class LocalSection(Section):
             )
         if self.local_compliance == "identified" and self.finite_sphere:
             raise InputError(
-                'the local element of "identified" stands for all that the sphere does beyond the law; leave this out', "finite_sphere"
+                'the local element of "identified" represents the whole deformation of the sphere beyond the law; leave this out',
+                "finite_sphere",
             )
         return self

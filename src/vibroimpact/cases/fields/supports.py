@@ -50,7 +50,7 @@ class SupportTable(Section):
 class PatchTable(SupportTable):
     """A rigid patch of the lower side."""
 
-    what = "a rigid patch of the lower side, held still: a disc of a radius, or a rectangle of a size"
+    what = "a rigid patch of the lower side, held fixed: a disc of a radius, or a rectangle of a size"
     type: Literal["patch"]
     position: _Position
     radius: _Radius | None = None
@@ -183,7 +183,7 @@ class SpringTable(SupportTable):
 class SetTable(SupportTable):
     """A named set of a mesh that was brought."""
 
-    what = "a named set of nodes or elements of a mesh that was brought, held still along some axes"
+    what = "a named set of nodes or elements of an imported mesh, held fixed along some axes"
     type: Literal["set"]
     name: Name = Field(description="of the set")
     directions: _Directions = Field("xyz", description="the axes along which it is held")
@@ -241,7 +241,7 @@ def _json_schema() -> dict[str, Any]:
     return {"anyOf": [{"enum": list(WORDS)}, *tables, {"type": "array", "items": {"anyOf": tables}}]}
 
 
-SupportsField = Annotated[Any, BeforeValidator(_read_supports), JsonSchema("how the plate is held", _json_schema)]
+SupportsField = Annotated[Any, BeforeValidator(_read_supports), JsonSchema("supports of the plate", _json_schema)]
 
 
 def supports_of(value: str | tuple[SupportTable, ...]) -> tuple[Support, ...]:

@@ -17,7 +17,7 @@ def _sentence(drop: Conditions, ratio: float) -> str:
     fade = float(drop.law_parameter("full_damping_penetration"))
     return (
         f"the indentation, {drop.summary.depth:.2g} m, stays below the full-damping penetration, {fade:.2g} m: the damping never acts in "
-        f"full, and less is lost than damping_max would take; take a penetration of {0.1 * drop.summary.depth:.1g} m or so, or calibrate"
+        f"full, and less is lost than with damping_max; take a penetration of {0.1 * drop.summary.depth:.1g} m or so, or calibrate"
     )
 
 

@@ -36,7 +36,7 @@ LIMITS = tuple(
     Limit(
         name=f"{body}_modes",
         title=f"modes of the {body} left out",
-        meaning=f"what the modes of the {body} left out change of the largest force, over 5 %; or 1.5 over the periods of the highest in "
+        meaning=f"change of the largest force by the modes of the {body} left out, over 5 %; or 1.5 over the periods of the highest in "
         "the contact, if that is more",
         threshold=1.0,
         number=partial(_number, body),

@@ -29,7 +29,7 @@ def _sentence(drop: Conditions, _: float) -> str:
     remedy = f"give {undamped} damping, or judge" if undamped else "judge"
     return (
         f"the drop is sensitive from impact {first + 1} on: a relative change of {RELATIVE_CHANGE:g} in it grows {' and '.join(grown)}, "
-        f"so that these impacts are some of many that are possible; {remedy} them by their distribution in a study over drop.height"
+        f"so that these impacts are not predictable; {remedy} them by their distribution in a study over drop.height"
     )
 
 

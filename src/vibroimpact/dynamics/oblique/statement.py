@@ -23,7 +23,7 @@ def _are_numbers(value: Any) -> bool:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Oblique:
-    """Motion along the plate and spin at the start, and what changes them; each value is a number, or an array with one a drop.
+    """Initial motion along the plate and spin, and the friction law; each value is a number, or an array with one a drop.
 
     The axes x and y lie in the plate's upper surface, z is its normal, upwards.
 

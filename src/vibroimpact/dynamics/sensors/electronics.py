@@ -21,7 +21,7 @@ Seed = int | tuple[int, ...]
 
 @dataclass(frozen=True)
 class Amplifier:
-    """An amplifier; noise and hum are what they are at its input.
+    """An amplifier; noise and hum are referred to its input.
 
     Parameters
     ----------

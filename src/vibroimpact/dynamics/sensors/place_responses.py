@@ -130,9 +130,9 @@ def _check(sensors: Sequence[Sensor]) -> None:
         raise InputError("the sensors have different rates; take sensors of one rate", "sensors")
     for sensor in sensors:
         if isinstance(sensor.instrument, Microphone):
-            raise InputError(f'sensor "{sensor.name}": a microphone hears the whole plate; take sensors on it', "sensors")
+            raise InputError(f'sensor "{sensor.name}": a microphone measures the sound of the whole plate; use sensors on it', "sensors")
         if sensor.filter == "none":
-            words = "without an anti-alias filter frequencies above half the rate fold into the band, and can't be told from those in it"
+            words = "without an anti-alias filter frequencies above half the rate are aliased into the band"
             raise InputError(f'sensor "{sensor.name}": {words}; state its filter', "sensors")
 
 

@@ -110,13 +110,13 @@ def _check_place(modes: ModalBasis | None, sensor: Sensor) -> None:
         return
     if not isinstance(sensor.instrument, Microphone):
         if sensor.name not in modes.points:
-            raise InputError(f'the modes of the plate do not know a point "{sensor.name}"', "sensors")
+            raise InputError(f'the modes of the plate have no point "{sensor.name}"', "sensors")
         return
     if sensor.name not in modes.sounds:
-        raise InputError(f'the modes of the plate do not know the paths of sound to a microphone "{sensor.name}"', "sensors")
+        raise InputError(f'the modes of the plate have no paths of sound to a microphone "{sensor.name}"', "sensors")
     highest = 1.0 / (FINENESS * modes.sounds[sensor.name].step)
     if sensor.rate > 1.000001 * highest:
-        words = f'the paths of sound to the microphone "{sensor.name}" serve for {highest:g} samples per second at most'
+        words = f'the paths of sound to the microphone "{sensor.name}" are valid for {highest:g} samples per second at most'
         raise InputError(f"{words}; ask for a lower rate than {sensor.rate:g} Hz", "sensors")
 
 

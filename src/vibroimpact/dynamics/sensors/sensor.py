@@ -70,13 +70,13 @@ class Sensor:
 
     def __post_init__(self) -> None:
         if self.instrument is not None and self.quantity != self.instrument.quantity:
-            words = f"the instrument puts out {self.instrument.quantity}, and not {self.quantity}"
+            words = f"the output of the instrument is {self.instrument.quantity}, and not {self.quantity}"
             raise InputError(f'{words}; take quantity = "{self.instrument.quantity}"', "quantity")
         if self.filter not in FILTERS:
             known = ", ".join(f'"{name}"' for name in FILTERS)
             raise InputError(f'there is no filter "{self.filter}"; there are {known}.{did_you_mean(self.filter, FILTERS)}', "filter")
         if isinstance(self.instrument, Microphone) and self.filter != "sigma-delta":
-            raise InputError('the samples of a microphone are those behind "sigma-delta"; leave out the filter', "filter")
+            raise InputError('a microphone has the filter "sigma-delta"; leave out the filter', "filter")
         if self.corner is not None and self.filter != "butterworth":
             raise InputError(f'the filter "{self.filter}" takes no corner; leave it out, or take "butterworth"', "corner")
         if self.corner is not None and self.corner >= 0.5 * self.rate:

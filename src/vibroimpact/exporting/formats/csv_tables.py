@@ -38,5 +38,5 @@ FORMAT = ExportFormat(
     files="impacts.csv, history.csv, and sensors/NAME.csv of each sensor",
     tested="read back with pandas 3.1, every digit the same",
     write=write,
-    notes=lambda drop: ["The tables hold what came of the drop, not its bodies and its contact law."],
+    notes=lambda drop: ["The tables contain the results of the drop, not its bodies and its contact law."],
 )

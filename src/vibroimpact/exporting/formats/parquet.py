@@ -39,12 +39,12 @@ def _bytes(table: Table, title: str) -> bytes:
 
 FORMAT = ExportFormat(
     name="parquet",
-    program="pandas, Polars, DuckDB, Spark and what else reads Parquet",
+    program="pandas, Polars, DuckDB, Spark and other programs that read Parquet",
     files="impacts.parquet, history.parquet, and sensors/NAME.parquet of each sensor",
     tested="read back with pandas 3.1 and pyarrow 26, values and units the same",
     write=write,
     notes=lambda drop: [
         'Units are in the metadata of each column, "unit"; pyarrow shows them, pandas does not.',
-        "The tables hold what came of the drop, not its bodies and its contact law.",
+        "The tables contain the results of the drop, not its bodies and its contact law.",
     ],
 )

@@ -76,7 +76,7 @@ def comparison_sentence(shown: ComparedQuantity, kinds: tuple[int, ...], runs: R
     paper = f"{listed([one.value for one in printed_values])} {scale.unit}"
     if printed_values[-1].relation == "<":
         below = [name for name, values in computed.items() if np.all(np.array(values) < [one.value for one in printed_values])]
-        return f"{said}; the paper says below {paper}, and {_bound_clause(below)}."
+        return f"{said}; the paper states below {paper}, and {_bound_clause(below)}."
     off = {name: values[-1] / printed_values[-1].value - 1.0 for name, values in computed.items()}
     nearest = min(off, key=lambda name: abs(off[name]))
     side = "above" if off[nearest] > 0.0 else "below"

@@ -57,7 +57,7 @@ def _strain_energy_note(runs: Runs) -> str:
 
 
 def _rotation_note(runs: Runs) -> str:
-    return "Nothing turns a sphere that is hit straight below its centre."
+    return "A contact force through the centre of the sphere causes no rotation."
 
 
 SPHERE_MOTION = (

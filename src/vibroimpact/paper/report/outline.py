@@ -78,7 +78,7 @@ CHAPTERS: dict[str, tuple[ReportPart, ...]] = {
     "The energy of the sphere": (ReportPart("section5.2", section_5_2), *_figures(14, 17)),
     "The vibration of the plate": (ReportPart("section5.3", section_5_3), *_figures(18, 23)),
     "The conclusions": (ReportPart("conclusions", conclusions),),
-    "Forensics: what the numbers tell that the text does not": (
+    "Inferences from the printed numbers": (
         ReportPart("recovery", recovery_section, recovery_chart),
         ReportPart("sampling", sampling_section, sampling_chart),
         ReportPart("unresolved", unresolved_section, unresolved_chart),

@@ -47,23 +47,24 @@ def _anchor(heading: str) -> str:
 
 
 _OPENING = (
-    f"Each number of {PAPER}, beside the one computed now, and each of its figures that shows a result, drawn anew (figures 1 and 2 "
-    "are sketches of its notation). A rock sphere falls 4 m on a steel plate and bounces: both rigid (Type 1), the sphere elastic (Type "
-    "2), both elastic (Type 3).",
-    "A value counts as reproduced if it agrees within half a unit of the last digit printed. It counts as explained if a reason, put so "
-    "that it could fail, gives a range in which the printed value lies; as fitted if the model was fitted to it, so that it proves "
-    "nothing; everything else is not reproduced. The one digit of the drop and of the full-damping penetration is taken for exact. The "
-    "two values of Type 1 that are not printed, or wrongly, were recovered from several numbers at once and then rounded; what follows "
-    "from them still counts as reproduced. The verdicts are computed. Counted are rows: a value that is computed in three ways "
-    "has three.",
+    f"Each number of {PAPER}, compared with the computed one, and each of its figures that shows a result, drawn from the computation "
+    "(figures 1 and 2 are sketches of its notation). A rock sphere falls from 4 m onto a steel plate and bounces: both rigid (Type 1), "
+    "the sphere elastic (Type 2), both elastic (Type 3).",
+    "A value counts as reproduced if it agrees within half a unit of the last digit printed. It counts as explained if a falsifiable "
+    "hypothesis gives a range that contains the printed value; as fitted if the model was fitted to it, so that the agreement is no "
+    "evidence; otherwise as not reproduced. The drop height and the full-damping penetration, printed with one digit, are taken as "
+    "exact. The two values of Type 1 that are not printed, or misprinted, were estimated jointly from several numbers and then rounded; "
+    "values that follow from them still count as reproduced. The verdicts are computed. Rows are counted: a value that is computed in "
+    "three ways has three rows.",
 )
 
 _IN_SHORT = (
-    "In short, as the authors of this package read it: what the paper computes for rigid bodies (Type 1) is reproduced or explained "
-    "but for two misprints, once the restitution and the full-damping penetration are those that its own numbers imply; Table 2 looks "
-    "as if it were read off samples. What it prints for elastic bodies (Types 2 and 3) no setting that was tried gives, neither a "
-    "consistent model nor the superposed one of multibody programs. That it was an unresolved run is a reading: it comes near force, "
-    "rebound and strain energy of the sphere, but not its fall beyond touch, the order of the forces, or the energies of the plate.",
+    "Summary, in the interpretation of the authors of this package: the results of the paper for rigid bodies (Type 1) are reproduced or "
+    "explained except for two misprints, with the restitution and the full-damping penetration that its own numbers imply; Table 2 is "
+    "consistent with peaks read from samples. The results printed for elastic bodies (Types 2 and 3) are not reproduced by any setting "
+    "that was tried, neither with a consistent model nor with the superposed one of multibody programs. An unresolved run is a "
+    "hypothesis: it approximates force, rebound and strain energy of the sphere, but not its fall beyond touch, the order of the forces, "
+    "or the energies of the plate.",
 )
 
 

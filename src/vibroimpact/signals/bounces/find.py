@@ -125,7 +125,7 @@ def find_bounces(record: Record, contact: float = 0.0) -> Bounces:
     Raises
     ------
     InputError
-        If it holds no bounces, or can't tell: the message says why.
+        If it contains no bounces, or they can't be identified: the message gives the reason.
 
     References
     ----------
@@ -145,11 +145,11 @@ def find_bounces(record: Record, contact: float = 0.0) -> Bounces:
     heard = np.flatnonzero(~found.click)
     if len(heard) < 3:
         said = ("no touch is", "one touch is", "two touches are")[len(heard)]
-        raise InputError(f"{said} heard in it, and a restitution takes three: two times of flight")
+        raise InputError(f"{said} detected in it, and a restitution needs three: two times of flight")
     time = found.sample / record.rate
     chain = heard[longest_chain(time[heard], np.minimum(found.rise[heard] / found.threshold, _CLEAR), _JITTER)]
     if not len(chain):
-        words = f"the times between {len(heard)} touches do not shrink as those of bounces do, by {LOWEST:g} to {HIGHEST:g} each"
+        words = f"the times between {len(heard)} touches do not decrease as those of bounces do, by {LOWEST:g} to {HIGHEST:g} each"
         raise InputError(f"it holds no bounces: {words}")
     others = np.setdiff1d(np.arange(len(time)), chain)
     reasons = _reasons(found, time, chain, others)
@@ -201,7 +201,7 @@ def _chance_doubts(chain: Floats, strange: Floats, duration: float) -> tuple[str
     heard, why = len(chain) + len(strange), ""
     if len(chain) == 3:
         if not len(strange):
-            return ("there are three touches alone: nothing tells whether they are bounces of one ball",)
+            return ("there are only three touches: they need not be bounces of one ball",)
         why = "as any three might; among other touches it takes four"
     else:
         interval = np.diff(chain)
@@ -213,5 +213,5 @@ def _chance_doubts(chain: Floats, strange: Floats, duration: float) -> tuple[str
         elif _BETWEEN * np.count_nonzero((strange > chain[0]) & (strange < chain[-1])) > len(chain):
             why = "and too many lie between them"
     if why:
-        raise InputError(f"it holds no series of bounces: of its {heard} touches {len(chain)} at most come in intervals that shrink, {why}")
+        raise InputError(f"it holds no series of bounces: of its {heard} touches {len(chain)} at most have decreasing intervals, {why}")
     return ()

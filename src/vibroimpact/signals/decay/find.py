@@ -33,7 +33,7 @@ _APART = 3.0
 
 @dataclass(frozen=True)
 class DecayMode:
-    """A mode in the decay of records.
+    """A mode identified in the decay of records.
 
     Parameters
     ----------

@@ -25,7 +25,7 @@ def rate_of(time: Floats) -> float:
     1000.0
     """
     if len(time) < 2:
-        raise InputError("a record has two samples or more; their times say the rate")
+        raise InputError("a record has two samples or more; the rate follows from their times")
     step = (time[-1] - time[0]) / (len(time) - 1)
     if not (step > 0.0 and np.isfinite(step)):
         raise InputError("the times do not rise")

@@ -43,6 +43,6 @@ def _unit(one: Function, factors: dict[str, float] | None) -> tuple[float, str]:
     if one.kind not in _KINDS:
         return 1.0, "1"
     if factors is None:
-        raise InputError("it has no unit, and there is no dataset 164 that says the units of the file")
+        raise InputError("it has no unit, and there is no dataset 164 with the units of the file")
     unit, base = _KINDS[one.kind]
     return 1.0 / factors[base], unit

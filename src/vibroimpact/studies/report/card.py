@@ -19,12 +19,13 @@ from vibroimpact.units.display import digits
 CARD = "card.md"
 
 _SPLIT = (
-    "Falls of one rock are alike beyond what its class has in common, and so are all falls on one plate. Divide into training and test by "
-    "`rock`, or by `plate` where the plates to come are others than these; never by fall, and never by windows of one signal."
+    "Falls of one rock are more similar to each other than falls of its class, and so are falls on one plate. Split training and test data "
+    "by `rock`, or by `plate` for an application to other plates than these; never by fall, and never by windows of one signal."
 )
 _LIMITS = (
     "The signals are computed: spheres, each of one material, fall on a plate whose supports, damping and instruments are as the study "
-    "states. Shapes, cracks, layers of fines, and what else shakes the plate are not in it: expect less in the field than on these signals."
+    "states. Irregular shapes, cracks, layers of fines, and other vibration of the plate are not included: expect a lower accuracy in the "
+    "field than on these signals."
 )
 
 
@@ -42,10 +43,10 @@ def data_card(study: Study) -> str:
         f"{study.version}. Signals, values and labels are in `study.nc`; `study.toml` makes it again, bit for bit with the same versions.",
         "## Classes",
         _table(["class", "falls", "rocks", "share of the rocks"], _classes(study)),
-        "## What was drawn",
+        "## Sampled keys",
         "Keys of `plate` and `sensors` are drawn once a plate, those of `drop` once a fall, all others once a rock, each independently."
         + "".join(f" `{key}` follows `{other}`." for key, other in _following(study)),
-        _table(["key", "what it is", *_names(study)], _drawn(study)),
+        _table(["key", "meaning", *_names(study)], _drawn(study)),
         "## Signals",
         _table(["variable", "quantity", "unit", "samples", "rate [Hz]"], _signals(study)),
         "## Labels and groups",
@@ -105,7 +106,7 @@ def _doubts(study: Study) -> Iterator[str]:
     known: Mapping[str, Any] = limits()
     for limit, drops, *_ in study.doubts:
         title = known[limit].title if limit in known else limit
-        yield f"* {title}: beyond the limit in {drops:,} of {study.size:,} falls (`doubts` in `study.nc` tells which)."
+        yield f"* {title}: beyond the limit in {drops:,} of {study.size:,} falls (listed in `doubts` of `study.nc`)."
 
 
 def _table(heads: Sequence[str], rows: Iterator[Sequence[str]]) -> str:

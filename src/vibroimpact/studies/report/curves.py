@@ -80,7 +80,7 @@ def level_curves(study: Study, axes: list[StudyAxis], outputs: list[Output], ove
         found = zip(levels, names, texts, strict=True)
         marks = [_curve(over, order, values[order, level], line, name, words) for line, (level, name, words) in enumerate(found)]
         panels.append(Panel(across, result_axis(output, ""), tuple(marks), shortened(visible(output.title), 60)))
-    words = "" if len(axes) == 2 else " The two keys that matter most to the first result; drawn is the median over the others."
+    words = "" if len(axes) == 2 else " The two keys with the largest effect on the first result; lines are medians over the others."
     caption = f"A line for each {each.words}.{words} {keys_told([over, each])}"
     return Chart("curves", f"Over the {over.words}, for each {each.words}", in_rows(panels), caption, HEIGHT)
 
@@ -112,7 +112,7 @@ def _impact_words(study: Study, axis: StudyAxis) -> str:
     kept = _impacts_kept(study)
     words = f"Results over the {axis.words}"
     if not kept:
-        return f"{words}; impacts were not kept one by one, so that these are the peaks of each drop. {keys_told([axis])}"
+        return f"{words}; single impacts were not kept; these are the peaks of each drop. {keys_told([axis])}"
     of_many = f" (the first {_MOST_IMPACTS} of {kept})" if kept > _MOST_IMPACTS else ""
     return f"{words}, a line an impact{of_many}. {keys_told([axis])}" if kept > 1 else f"{words}. {keys_told([axis])}"
 

@@ -34,8 +34,8 @@ def inputs_chart(study: Study, axes: list[StudyAxis]) -> Chart:
             counts = np.bincount(drawn.astype(int), minlength=len(names)).astype(float)
             bars = Bars(np.arange(float(len(names))), counts, role="pale", texts=names)
         panels.append(Panel(key_axis(axis), Axis("Drops", integer=True), (bars,)))
-    caption = f"How often values were drawn{_of_what(study)}. {keys_told(axes)}"
-    return Chart("inputs", "What was drawn", in_rows(panels), caption, HEIGHT)
+    caption = f"Histograms of the sampled values{_of_what(study)}. {keys_told(axes)}"
+    return Chart("inputs", "Sampled keys", in_rows(panels), caption, HEIGHT)
 
 
 def outputs_chart(study: Study, outputs: list[Output]) -> Chart:
@@ -47,7 +47,7 @@ def outputs_chart(study: Study, outputs: list[Output]) -> Chart:
         edges: list[Mark] = [Level(edge, "5 and 95 %", "mark line", upright=True) for edge in (low, high)]
         marks = (_histogram(values[np.isfinite(values)], log=is_log(output)), *edges, Level(middle, "median", "main", upright=True))
         panels.append(Panel(result_axis(output, output.title), Axis("Drops", integer=True), marks))
-    return Chart("outputs", "What came of it", in_rows(panels), f"How the results spread{_of_what(study)}.", HEIGHT)
+    return Chart("outputs", "Distribution of the results", in_rows(panels), f"Histograms of the results{_of_what(study)}.", HEIGHT)
 
 
 def _of_what(study: Study) -> str:

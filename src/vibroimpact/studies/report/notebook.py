@@ -61,7 +61,7 @@ def plot_study(study: Study, name: str = "") -> go.Figure:
 
 
 def study_html(study: Study) -> str:
-    """Return a short summary of a study as a piece of HTML without scripts: name, drops, swept keys and how the results spread.
+    """Return a short summary of a study as a piece of HTML without scripts: name, drops, swept keys and the distribution of the results.
 
     Parameters
     ----------

@@ -69,7 +69,7 @@ def restitution_sentence(found: RestitutionSummary) -> str:
     if found.asked is None:
         return f"No restitution is asked of the law; {achieved}."
     median = fixed(found.difference, 4) if found.difference <= 0.0 else f"+{fixed(found.difference, 4)}"
-    return f"Restitution asked: {_ends(found.asked)}; {achieved}. The median of what was achieved less what was asked is {median}."
+    return f"Restitution asked: {_ends(found.asked)}; {achieved}. The median difference, achieved less asked, is {median}."
 
 
 class _Impacts(NamedTuple):
@@ -109,7 +109,7 @@ def restitution_chart(study: Study) -> Chart | None:
     else:
         panels = [Panel(fast, achieved, (Level(most, "as asked", "reference"), *_points(groups, found.speed, found.achieved)))]
     words = "Each impact a mark" if several else "The first impact of each drop a mark"
-    caption = f"{words}; dashed is what was asked of the law. What it achieves may depend on the speed of the impact."
+    caption = f"{words}; dashed: the restitution asked of the law. The restitution achieved may depend on the speed of the impact."
     return Chart("restitution", "Restitution asked and achieved", in_rows(panels), caption, 3.0)
 
 

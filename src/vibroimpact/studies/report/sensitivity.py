@@ -98,7 +98,7 @@ def _indices(study: Study, axes: list[StudyAxis], outputs: list[Output]) -> Sens
         notes.append(f"No indices of {', '.join(refused)}: more than {part} have a drop without a value, since it failed or has none.")
     if partly:
         told = ", ".join(f"{number} of {title}" for title, number in partly.items())
-        notes.append(f"Points left out, since a drop of theirs has no value: {told}. The indices are those of the others.")
+        notes.append(f"Points left out, since one of their drops has no value: {told}. The indices are computed from the others.")
     return Sensitivity(SOBOL, [axis.key for axis in axes], rows, strength, notes) if rows or notes else None
 
 

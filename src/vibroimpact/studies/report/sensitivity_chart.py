@@ -21,11 +21,11 @@ from vibroimpact.studies.study import Study
 
 _MOST_KEYS = 15
 _LETTERS = 34  # letters of a key beside the bars
-_LABELS = {SOBOL: ("Part of the variance", ""), RANKS: ("Rank correlation", ""), RANGES: ("From the middle", "%")}
+_LABELS = {SOBOL: ("Fraction of the variance", ""), RANKS: ("Rank correlation", ""), RANGES: ("From the middle", "%")}
 _WORDS = {
-    SOBOL: "Sobol's indices: the part of the variance that a key makes alone, and in all; the thin lines are intervals of 95 %.",
+    SOBOL: "Sobol's indices: fraction of the variance due to a key alone, and in total; the thin lines are 95 % intervals.",
     RANKS: "Spearman's rank correlation of each result with each key.",
-    RANGES: "How far each result moves along one key, the others at their middle level. Each panel has its own scale.",
+    RANGES: "Range of each result along one key, with the others at their middle level. Each panel has its own scale.",
 }
 
 
@@ -56,7 +56,7 @@ def sensitivity_chart(study: Study, found: Sensitivity, outputs: list[Output]) -
         marks = (*_bars(found, output, order, names), Level(0.0, role="main", upright=True))
         panels.append(Panel(across, up, marks, shortened(visible(output.short), 40)))
     caption = f"{_WORDS[found.way]} {keys_told(keys[::-1])}"
-    return Chart("sensitivity", "What matters", in_rows(panels), caption, 0.7 + 0.28 * len(order))
+    return Chart("sensitivity", "Sensitivity", in_rows(panels), caption, 0.7 + 0.28 * len(order))
 
 
 def _bars(found: Sensitivity, output: Output, order: Indices, names: tuple[str, ...]) -> tuple[Mark, ...]:

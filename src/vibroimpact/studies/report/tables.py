@@ -62,7 +62,7 @@ def failures_table(study: Study) -> tuple[list[str], list[list[str]]]:
         rows.append(
             [str(number), *(value_text(axis, value) for axis, value in zip(axes, point_of(study, axes, number), strict=True)), reason]
         )
-    return ["Drop (from 0)", *(axis.key for axis in axes), "Why it failed"], rows
+    return ["Drop (from 0)", *(axis.key for axis in axes), "Reason"], rows
 
 
 def point_of(study: Study, axes: list[StudyAxis], number: int) -> list[Any]:
@@ -168,16 +168,16 @@ def sensitivity_words(found: Sensitivity) -> str:
     """Return the explanation of the table of sensitivities."""
     if found.way == SOBOL:
         return (
-            "Sobol's indices, in percent of the variance: what a key does alone (first order), and in all, together with others "
-            "(total), with the half of its interval of 95 % found by drawing the points anew. An index that is smaller than its "
-            "interval can't be told from zero; an estimate may even be negative."
+            "Sobol's indices, in percent of the variance: of a key alone (first order), and with its interactions "
+            "(total), with half of their 95 % bootstrap intervals. An index that is smaller than its interval is not significantly "
+            "different from zero; an estimate may even be negative."
         )
     if found.way == RANKS:
         drops = max((int(row["drops"].max()) for row in found.rows.values()), default=0)
-        least = f" Of {drops} drops, magnitudes below {digits(2.0 / np.sqrt(drops), 1)} may be chance." if drops else ""
+        least = f" Of {drops} drops, magnitudes below {digits(2.0 / np.sqrt(drops), 1)} may be due to chance." if drops else ""
         return f"Spearman's rank correlation: 1 if the result always rises with the key, \u22121 if it always falls.{least}"
     return (
-        "How far a result moves along one key, from its lowest to its highest, with all other keys at their middle level; in percent of "
+        "Range of a result along one key, from the smallest to the largest, with all other keys at their middle level; in percent of "
         "the result in the middle of the grid."
     )
 
@@ -198,9 +198,8 @@ def spread_words(study: Study) -> str:
     """Return the explanation of the table of percentiles."""
     failed = " Drops that failed are left out." if study.failures else ""
     words = {
-        "grid": "These describe the grid: its levels were chosen, so that they say nothing of how likely a result is.",
-        "zip": "These describe the points that were chosen; they say nothing of how likely a result is.",
-        "saltelli": "How the results spread when the keys spread as they were drawn. Counted are the blocks A and B, whose drops are "
-        "independent.",
+        "grid": "These percentiles describe the grid; its levels were chosen, so that they are not probabilities.",
+        "zip": "These percentiles describe the chosen points; they are not probabilities.",
+        "saltelli": "Percentiles of the results for the sampled keys, from the blocks A and B, whose drops are independent.",
     }
-    return words.get(study.design, "How the results spread when the keys spread as they were drawn.") + failed
+    return words.get(study.design, "Percentiles of the results for the sampled keys.") + failed

@@ -34,7 +34,7 @@ def study_summary(study: Study, width: int) -> RenderableType:
         columns.append(TerminalColumn(f"{part}\u00a0%", cells))
     if told is not None:
         named = told.way == RANKS and any(not axis.numeric for axis in study_axes(study))
-        heading = "moved most, of keys that are numbers, by" if named else "moved most by"
+        heading = "most sensitive, of numeric keys, to" if named else "most sensitive to"
         columns.append(TerminalColumn(heading, [_strongest(told, one.name) for one in outputs], text=True))
     why = [Text(f" {number}: {words}", style="yellow") for number, words in reasons(study)[:_REASONS]]
     restitution, doubts = restitution_sentence(summarize_restitution(study)), doubt_sentences(study)

@@ -11,7 +11,7 @@ from vibroimpact.dynamics.sensors.pole_pairs import Section
 
 @dataclass(frozen=True)
 class Accelerometer:
-    """Properties of an accelerometer beyond the acceleration of its base.
+    """Properties of an accelerometer.
 
     Parameters
     ----------

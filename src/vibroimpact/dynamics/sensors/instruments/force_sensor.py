@@ -10,7 +10,7 @@ from vibroimpact.dynamics.sensors.instruments.proportional import Proportional
 
 @dataclass(frozen=True)
 class ForceSensor(Proportional):
-    """A force sensor between the plate and a support, without mass and as stiff as the support is taken to be.
+    """A force sensor between the plate and a support, with neither mass nor compliance of its own.
 
     Parameters
     ----------

@@ -11,7 +11,7 @@ from vibroimpact.dynamics.sensors.pole_pairs import Section
 
 @dataclass(frozen=True)
 class Microphone:
-    """A microphone beyond a face of the plate, small against the wavelengths that it hears.
+    """A microphone in front of a face of the plate, small compared with the wavelengths.
 
     Its place is part of the modes of the plate, as the paths of sound to it (`ModalBasis.sounds`).
 

@@ -10,7 +10,7 @@ from vibroimpact.dynamics.sensors.instruments.proportional import Proportional
 
 @dataclass(frozen=True)
 class StrainGauge(Proportional):
-    """A strain gauge, shorter than the waves that it reads and without mass and stiffness.
+    """A strain gauge, short compared with the bending waves, without mass and stiffness.
 
     Parameters
     ----------
