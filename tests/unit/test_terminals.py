@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 from rich.console import RenderableType
+from typer.testing import CliRunner
 
 import vibroimpact as vi
 from knocks import write_knocks
@@ -24,7 +25,7 @@ from vibroimpact.calibration.calibrate import calibrate
 from vibroimpact.calibration.reported import report_of
 from vibroimpact.calibration.text import calibration_summary
 from vibroimpact.cases.elastic.modes import compute_modes
-from vibroimpact.cli import main
+from vibroimpact.cli import app, main
 from vibroimpact.cli.case_text import shipped_cases_table
 from vibroimpact.cli.doctor import diagnose, diagnosis_rows
 from vibroimpact.cli.feature_text import feature_list, table_summary
@@ -256,3 +257,10 @@ def test_a_pipe_that_is_closed_early_ends_quietly(arguments: tuple[str, ...]) ->
         running.stdout.close()
         assert running.stderr.read() == b""
         assert running.wait(timeout=300) in (0, 1)
+
+
+def test_the_list_of_commands_has_whole_sentences() -> None:
+    _, commands = CliRunner().invoke(app, ["--help"], terminal_width=80).output.split("Commands:")
+    lines = [line for line in commands.splitlines() if line]
+    assert len(lines) > 20
+    assert [line for line in lines if line.endswith("...") or not line.endswith(".")] == []

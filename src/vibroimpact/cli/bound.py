@@ -29,7 +29,7 @@ def bound(
     force: Force = False,
     as_json: Json = False,
 ) -> None:
-    """Compute the lowest possible classification error (Bayes error) of a population, for sets of measured quantities.
+    """Compute the Bayes error of a population. It is the lowest possible classification error, for sets of measured quantities.
 
     The falls of a study are computed on its plate as a rigid body; those of a data set are read from it.
     """

@@ -45,7 +45,7 @@ def calibrate(
     force: Force = False,
     as_json: Json = False,
 ) -> None:
-    """Calibrate the damping of a contact law to a specified or measured rebound, or estimate restitutions from a record of bounces.
+    """Calibrate a contact law to a specified or measured rebound. From a record of bounces estimate their restitutions.
 
     The [calibrate] section of a case specifies the target: a contact law, a restitution, or measurements. Without it the
     damping of Adams' IMPACT is calibrated to the law of the case. From a record of sound or vibration, restitution and

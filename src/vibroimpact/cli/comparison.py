@@ -49,7 +49,7 @@ def compare(
     force: Force = False,
     as_json: Json = False,
 ) -> None:
-    """Run one case with several contact laws, and compare the results.
+    """Compare the results of several contact laws for one case.
 
     Parameters of the case's own law are also used for the other laws that have them.
     """

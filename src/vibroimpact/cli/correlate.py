@@ -53,7 +53,7 @@ def correlate(
     force: Force = False,
     as_json: Json = False,
 ) -> None:
-    """Compare records of a test with the simulation: residual, frequency responses, FRAC, and modal damping from the decay.
+    """Compare records of a test with the simulation. Results are residuals, frequency responses, FRAC, and modal damping from the decay.
 
     The case specifies the plate, the sensors, named as the records, and the impact; for a hammer with a measured force only its position.
     """

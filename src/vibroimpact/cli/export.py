@@ -32,7 +32,7 @@ def export(
     formats: Annotated[bool, typer.Option("--formats", help="List the formats.")] = False,
     as_json: Json = False,
 ) -> None:
-    """Export a result in a format of another program, or list the formats.
+    """Export a result to another program, or list the formats.
 
     The output states what the format can't represent, and what the writer was tested against.
     """

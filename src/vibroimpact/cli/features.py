@@ -46,7 +46,7 @@ def features(
     force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
     as_json: Json = False,
 ) -> None:
-    """Compute features of signals: amplitudes, times, spectrum, packets; or list the features.
+    """Compute features of signals, or list the features.
 
     Each row of the table is a signal. Where a feature has no value, the last column gives the reason.
     """

@@ -52,7 +52,7 @@ def identify(
     force: Force = False,
     as_json: Json = False,
 ) -> None:
-    """Identify an impact from records of sensors: force, position, size and speed, with 95 % intervals.
+    """Identify an impact from records of sensors. Force, position, size and speed are estimated with 95 % intervals.
 
     The case specifies the plate, the sensors, named as the records, and the material of the sphere.
     """

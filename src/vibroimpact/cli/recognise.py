@@ -38,7 +38,7 @@ def recognise(
     force: Force = False,
     as_json: Json = False,
 ) -> None:
-    """Train classifiers of impact signals, and estimate their accuracy by grouped cross-validation without leakage.
+    """Train classifiers of impact signals, and validate them. Their accuracy is estimated by grouped cross-validation.
 
     Baselines and four classifiers are compared in a grouped and in a random split; the best one is saved, and --model applies it.
     """

@@ -35,7 +35,7 @@ def new(
     changes: Changes = None,
     force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
 ) -> None:
-    """Write a new case file from an existing case, with all unused keys as comments."""
+    """Write a new case file from an existing case. Unused keys are in it as comments."""
     from vibroimpact.cases.template import case_template
     from vibroimpact.files.atomic_write import write_text_file
     from vibroimpact.files.recover import recover
@@ -83,7 +83,7 @@ def laws(
     force: Annotated[bool, typer.Option("--force", help="Replace an existing image file.")] = False,
     as_json: Json = False,
 ) -> None:
-    """List the contact and friction laws, or show one: equation, parameters, sources; with -o PNG also the curves of a contact law."""
+    """List the contact and friction laws, or show one. With -o PNG the curves of a contact law are drawn."""
     from vibroimpact.contact.registry import find_contact_law, friction_laws
     from vibroimpact.laws.document import law_document, laws_document
     from vibroimpact.laws.sheet import law_sheet, law_table
@@ -139,7 +139,7 @@ def doctor(
     clear_store: Annotated[bool, typer.Option("--clear-store", help="Empty the store of computed modes.")] = False,
     as_json: Json = False,
 ) -> None:
-    """Show versions and the store of computed modes, and test this installation."""
+    """Show versions and the store of modes, and test this program."""
     from vibroimpact.cli.doctor import diagnose, diagnosis_rows, first_rebound_error
     from vibroimpact.runs.text import versions_table
 

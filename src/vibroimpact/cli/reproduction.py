@@ -24,7 +24,7 @@ def reproduce(
     force: Annotated[bool, typer.Option("--force", help="Replace an existing folder with all its parts.")] = False,
     as_json: Json = False,
 ) -> None:
-    """Reproduce the paper: its figures, and each printed value compared with the computed one.
+    """Reproduce the numbers and figures of the paper. Each printed value is compared with the computed one.
 
     The report states for each value whether it is reproduced, explained, or not reproduced, and why. It takes about half a minute. An
     interrupted run is continued with the same command.

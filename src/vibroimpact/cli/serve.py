@@ -19,7 +19,7 @@ def serve(
     port: Annotated[int, typer.Option("--port", metavar="N", help="Port on this machine; 0 for any free port.")] = _PORT,
     browser: Annotated[bool, typer.Option("--browser/--no-browser", help="Whether to open the browser.")] = True,
 ) -> None:
-    """Open a browser page that recomputes a case as its values are changed.
+    """Open a browser page that recomputes a case as it changes.
 
     The page is served on this machine only, until Ctrl-C.
     """

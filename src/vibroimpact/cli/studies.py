@@ -50,7 +50,7 @@ def sweep(
     memory: Memory = "500 MB",
     as_json: Json = False,
 ) -> None:
-    """Run a parameter study: all its drops, on all cores or on the workers of a Dask scheduler.
+    """Run a parameter study on all cores, or on a Dask cluster.
 
     The [sweep] section of the case specifies the swept keys. Completed drops are kept if the study is interrupted; --resume continues it.
     """
@@ -77,7 +77,7 @@ def dataset(
     memory: Memory = "500 MB",
     as_json: Json = False,
 ) -> None:
-    """Compute a data set of labelled signals: falls of rocks of several classes on several plates.
+    """Compute a data set of labelled signals. It has falls of rocks of several classes on several plates.
 
     Completed falls are kept if it is interrupted; --resume continues it. "vibroimpact recognise" trains classifiers on it.
     """
