@@ -85,7 +85,7 @@ def test_a_narrow_terminal_has_fewer_columns_and_whole_numbers(undamped: Result,
         ("rigid", None, "give the plate its damping, or judge"),
         ("elastic", None, "give the plate and the sphere their damping, or judge"),
         ("elastic", 0.02, "give the sphere its damping, or judge"),
-        ("rigid", 0.02, "possible; judge"),
+        ("rigid", 0.02, "predictable; judge"),
     ],
 )
 def test_only_what_has_no_damping_is_asked_for_it(sphere: str, damping: float | None, asked: str) -> None:

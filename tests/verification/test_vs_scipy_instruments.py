@@ -185,5 +185,5 @@ def test_voltage_of_an_accelerometer() -> None:
     np.testing.assert_array_equal(volts.value, 0.01 * plain.value)
     assert (volts.sensor.unit, plain.sensor.unit) == ("V", "m/s2")
     assert volts.peak == plain.peak
-    with pytest.raises(vi.InputError, match="the instrument puts out voltage, and not acceleration"):
+    with pytest.raises(vi.InputError, match="the output of the instrument is voltage, and not acceleration"):
         Sensor("a", instrument=GEOPHONE)
