@@ -79,6 +79,8 @@ FAULTS = [
     ({"sphere__model": "soft"}, "sphere.model: \"soft\" is not allowed; it must be 'rigid' or 'elastic'"),
     ({"schema_version": 2}, "schema_version: 2 is not allowed; it must be 1"),
     ({"sphere": 3}, "sphere: 3 is not a table"),
+    ({"sensors": {"name": "a1"}}, "sensors: this is one table, and it must be a list of tables; write [[sensors]] above each"),
+    ({"plate__thickness": 0.01}, 'plate.thickness: give size = ["600 mm", "400 mm", "10 mm"] (length, width, thickness), or with --set'),
     ({"name": 3}, "name: 3 is not a text; put it in quotes"),
 ]
 
@@ -163,12 +165,22 @@ def test_wrong_arguments(
     assert message in written
 
 
+def test_a_misspelt_key_is_not_reported_as_missing_too() -> None:
+    table = plain_case()
+    table["sphere"]["raduis"] = table["sphere"].pop("radius")
+    with pytest.raises(vi.InputError) as raised:
+        vi.read_case(table)
+    assert len(str(raised.value).splitlines()) == 1
+    assert 'Did you mean "radius"?' in str(raised.value)
+
+
 @pytest.mark.parametrize(
     ("line", "words"),
     [
         ("radius = 25 mm", 'a number with a unit is a text: write it in quotes, such as "25 mm"'),
         ("radius = 2.5e-2m", "write it in quotes"),
         ("radius = 1\nradius = 2", "stands there twice"),
+        ("[sensors]\n[sensors]", "write [[sensors]] above each table of a list"),
         ('material = "steel', "close the quotes on the line where they are opened"),
     ],
 )

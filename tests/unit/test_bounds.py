@@ -15,6 +15,7 @@ from vibroimpact.bounds.bound import Bound, bound_of
 from vibroimpact.bounds.falls import falls_of_sweep
 from vibroimpact.bounds.folder import save_bound
 from vibroimpact.bounds.observations import Channel
+from vibroimpact.bounds.tables import headline
 
 
 @pytest.fixture(scope="module")
@@ -30,6 +31,12 @@ def test_more_measured_tells_more(bound: Bound) -> None:
     one, more, all_of_it = (bound.remaining[name] for name in ("one impact", "height known", "height, bounce and size"))
     assert (more <= one + 1e-9).all()
     assert (all_of_it <= more + 1e-9).all()
+
+
+def test_the_headline_of_few_falls_states_what_they_tell(bound: Bound) -> None:
+    assert "falls are few" not in headline(bound)
+    few = headline(bound_of(vi.load_sweep("signals:coal-gangue", 64)))
+    assert few.endswith("64 falls are few: even an error of 0 may in truth be up to 4.7 % (95 %).")
 
 
 def test_noise_and_a_narrow_band_cost(bound: Bound) -> None:

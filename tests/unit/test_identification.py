@@ -176,6 +176,12 @@ def test_a_force_of_no_contact_law_is_found_from_one_sensor_at_a_known_place() -
     assert found.impulse[0] == pytest.approx(np.trapezoid(force, time), rel=0.02)
 
 
+def test_a_plate_of_another_thickness_is_doubted_without_noise_too() -> None:
+    thicker = small(plate={**SMALL["plate"], "size": [0.3, 0.3, 0.025]})
+    doubts = vi.identify(small(), its_records(thicker)).doubts
+    assert any("% of the records, and no noise before first touch explains it" in doubt for doubt in doubts)
+
+
 @pytest.mark.slow
 def test_too_few_modes_are_told() -> None:
     radius, speed, place = 0.02, 3.0, (0.06, 0.04)
@@ -221,6 +227,12 @@ def test_records_that_are_refused(change: Any, words: str) -> None:
     first, *others = its_records(small())
     with pytest.raises(vi.InputError, match=words.replace(".", r"\.")):
         vi.identify(small(), [change(first), *others])
+
+
+def test_a_column_of_a_table_is_named_after_its_sensor() -> None:
+    (record, *_) = its_records(small())
+    with pytest.raises(vi.InputError, match=r'named after its sensor and has its unit, such as "a \[m/s2\]"'):
+        vi.identify(small(), [replace(record, name="acceleration", source="one/a.csv")])
 
 
 @pytest.mark.parametrize(

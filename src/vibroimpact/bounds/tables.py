@@ -11,6 +11,8 @@ from vibroimpact.units.display import MISSING
 
 _FEW = 5.0
 """Median number of neighbours below which more falls would narrow a bracket."""
+_LEAST = 300
+"""Number of falls below which none wrong among them is said to be compatible with an error of 3 over their number (95 %), 1 % or more."""
 
 
 def error_words(error: BayesError) -> str:
@@ -30,11 +32,13 @@ def error_words(error: BayesError) -> str:
 def headline(bound: Bound) -> str:
     """Return the finding in a sentence."""
     time, impact = bound.errors["contact time"], bound.errors["one impact"]
+    number = len(bound.falls)
+    few = f" {number:,} falls are few: even an error of 0 may in truth be up to {300.0 / number:.1f} % (95 %)." if number < _LEAST else ""
     names = np.unique(bound.falls.classes).tolist()
     return (
         f"For {len(bound.falls):,} falls of {' and '.join(names)}, the error of the best possible classifier is {error_words(time)} "
         f"from the contact time alone, and {error_words(impact)} from one impact at a known position; that of the majority class is "
-        f"{100.0 * bound.majority:.1f} %."
+        f"{100.0 * bound.majority:.1f} %.{few}"
     )
 
 

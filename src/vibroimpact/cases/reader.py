@@ -173,7 +173,8 @@ def _toml_hint(text: str, fault: str) -> str:
     if re.match(r"[^=]{1,100}=\s*[+-]?[\d.]+(?:[eE][+-]?\d+)?\s*[^\W\d_][^\"']*$", line):
         return '; a number with a unit is a text: write it in quotes, such as "25 mm"'
     if "overwrite" in fault or "twice" in fault:
-        return "; a key or a table stands there twice"
+        again = re.match(r"\s*\[\s*(sensors|plate\.supports)\s*\]", line)
+        return f"; write [[{again[1]}]] above each table of a list" if again else "; a key or a table stands there twice"
     return "; close the quotes on the line where they are opened" if "Illegal character '\\n'" in fault else ""
 
 

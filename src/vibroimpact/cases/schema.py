@@ -120,6 +120,15 @@ class PlateSection(Section):
     reduction: MethodField | None = Field(None, description="model reduction of the finite elements; modal by default")
     attachment_mode: StrictBool = Field(False, description="add a residual attachment mode at the contact point")
 
+    @model_validator(mode="before")
+    @classmethod
+    def _check_sides(cls, given: Any) -> Any:
+        for side in ("thickness", "length", "width"):
+            if isinstance(given, Mapping) and side in given:
+                words = 'give size = ["600 mm", "400 mm", "10 mm"] (length, width, thickness)'
+                raise InputError(f"{words}, or with --set plate.size.{side}", side)
+        return given
+
     @model_validator(mode="after")
     def _check_body(self) -> PlateSection:
         check_elastic(self)

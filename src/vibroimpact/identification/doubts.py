@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -33,8 +34,9 @@ def doubts_about(plate: Plate, measured: Measured, search: Search, sphere: Spher
     """
     highest, passed = float(plate.problem.models["plate"].frequencies[-1]), _PASSED * measured.band
     if highest < passed:
-        words = f"the modes of the plate end at {highest:.4g} Hz, and the sensors hear up to {passed:.4g} Hz"
-        yield f"{words}; the intervals do not contain what the modes above lack; ask for more modes"
+        words = f"the modes of the plate end at {highest:,.0f} Hz, and the sensors hear up to {passed:,.0f} Hz"
+        more = f'ask for plate.max_frequency = "{math.ceil(passed / 1e3):d} kHz" or so'
+        yield f"{words}; the intervals do not contain what the modes above lack; {more}"
     others = ", ".join(f"({1e3 * one.place[0]:.1f}, {1e3 * one.place[1]:.1f}) mm" for one in search.candidates[1:])
     if others:
         yield f"a force at {others} explains the records as well; add a sensor off the axes of symmetry, or give the place"
@@ -50,7 +52,8 @@ def doubts_about(plate: Plate, measured: Measured, search: Search, sphere: Spher
     if not measured.quiet:
         part = float((left / np.sqrt(np.mean(measured.value**2, axis=1))).max())
         if part > _PART:
-            yield f"the records have no quiet part before first touch, and the fit leaves {100.0 * part:.2g} % of them"
+            words = f"the fit leaves {100.0 * part:.2g} % of the records, and no noise before first touch explains it"
+            yield f"{words}: the plate or the contact is not that of the case, or another sphere fits better; do not use these numbers"
     for name, deviation in zip(("radius", "speed"), np.sqrt(np.diag(sphere.covariance))[2:4].tolist(), strict=True):
         if deviation > _WIDE:
             yield f"the {name} is not told: its standard deviation is {100.0 * deviation:.2g} %"

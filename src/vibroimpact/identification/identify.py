@@ -219,7 +219,8 @@ def _started(plate: Plate, records: Sequence[Record], place: Place | None) -> tu
     """
     if place is not None and any(abs(at) > half for at, half in zip(place, plate.half, strict=True)):
         x, y = plate.half
-        raise InputError(f"the place ({place[0]:g}, {place[1]:g}) m is not on the plate, or at its edge; it reaches to ({x:g}, {y:g}) m")
+        words = f"the place ({place[0]:g}, {place[1]:g}) m is off the plate, or too near its edge"
+        raise InputError(f"{words}; from the plate's centre it may be up to {x:g} m along x and {y:g} m along y")
     measured = measured_of(plate.problem.sensors, records, plate.window)
     search = search_place(plate, measured, place)
     pulse = search.candidates[0]

@@ -112,7 +112,10 @@ def sensors_of(sensors: Sequence[Sensor], records: Sequence[Record]) -> tuple[Se
     for record in records:
         if record.name not in known:
             there = ", ".join(f'"{name}"' for name in known)
-            raise InputError(f"the case has no sensor {shown(record.name)}; it has {there}.{did_you_mean(record.name, known)}")
+            words = f"the case has no sensor {shown(record.name)}; it has {there}.{did_you_mean(record.name, known)}"
+            first = next(iter(known.values()))
+            column = f'; a column of a CSV file is named after its sensor and has its unit, such as "{first.name} [{first.unit}]"'
+            raise InputError(words if not record.source.lower().endswith(".csv") else words.removesuffix(".") + column)
         if record.name in chosen:
             raise InputError(f"there are two records {shown(record.name)}; give those of one fall")
         _check(record, known[record.name])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 
 from pydantic import BaseModel, ValidationError
 
@@ -15,7 +15,8 @@ SectionAt = Callable[[tuple[str, ...]], type[BaseModel] | None]
 
 def fault_messages(error: ValidationError, section_at: SectionAt) -> Iterator[tuple[str, str]]:
     """Yield the dotted key path and the message of each validation error."""
-    for fault in error.errors():
+    faults = error.errors()
+    for fault in faults:
         where = tuple(str(part) for part in fault["loc"] if not _is_branch(str(part)))
         if _of_a_text(fault["loc"]) and fault["type"] == "string_type" and isinstance(fault["input"], (list, tuple)):
             continue  # the field may also be a list, and the error of that alternative is reported
@@ -28,6 +29,8 @@ def fault_messages(error: ValidationError, section_at: SectionAt) -> Iterator[tu
             above = ".".join(part for part in where[:-1] if not part.isdigit())
             place = "a case" if not above else f"[[{above}]]" if where[-2].isdigit() else f"[{above}]"
             yield path, f"unknown key {shown(where[-1])}; {place} takes {', '.join(known)}.{did_you_mean(where[-1], known)}"
+        elif kind == "missing" and _is_misspelt(fault["loc"], [one["loc"] for one in faults if one["type"] == "extra_forbidden"]):
+            continue  # the unknown key is reported, with the one that was meant
         elif kind == "missing" and where[-1].isdigit():
             yield ".".join(where[:-1]), f"there are too few values; it takes {_about(where[:-1], section_at).removeprefix(': ')}"
         elif kind == "missing":
@@ -46,12 +49,21 @@ def fault_messages(error: ValidationError, section_at: SectionAt) -> Iterator[tu
         elif kind == "bool_type":
             yield path, f"{given} is not allowed; it must be true or false"
         elif kind in ("model_type", "dict_type"):
-            yield path, f"{given} is not a table"
+            said = given.lower() if isinstance(fault["input"], bool) else given  # as TOML spells it
+            section = section_at(where)
+            yield path, f"{said} is not a table" + (f"; it takes {', '.join(section.model_fields)}" if section else "")
+        elif kind in ("tuple_type", "list_type") and isinstance(fault["input"], Mapping):
+            yield path, f"this is one table, and it must be a list of tables; write [[{path}]] above each"
         elif kind in ("tuple_type", "too_long", "too_short"):
             about = _about(where, section_at).removeprefix(": ")
             yield path, f"{given} does not have the right number of values" + (f"; it takes {about}" if about else "")
         else:
             yield path, f"{given} is not allowed; {fault['msg'].replace('Input should', 'it must')}"
+
+
+def _is_misspelt(missing: tuple[int | str, ...], unknown: list[tuple[int | str, ...]]) -> bool:
+    """Return whether one of the unknown keys is close to a missing one of the same table."""
+    return any(one[:-1] == missing[:-1] and did_you_mean(str(one[-1]), [str(missing[-1])]) for one in unknown)
 
 
 def _of_a_text(loc: tuple[int | str, ...]) -> bool:
