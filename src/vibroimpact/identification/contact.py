@@ -10,10 +10,13 @@ from vibroimpact.arrays import Floats
 from vibroimpact.cases.rigid import rigid_problem
 from vibroimpact.cases.schema import CaseTable
 from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.simulate import simulate
 
 _NODES = np.polynomial.legendre.leggauss(96)
 """Nodes on [-1, 1] and weights of the quadrature of a force."""
+_INSTANTS, _REFINEMENTS = 400, 4
+"""Instants at which it is seen where the first of several touches ends, and how often they are refined."""
 
 
 @dataclass(frozen=True)
@@ -37,7 +40,10 @@ class ContactForce:
 
 
 def contact_forces(case: CaseTable, plate: Problem, radius: Floats, speed: Floats) -> list[ContactForce]:
-    """Return the contact forces of spheres.
+    """Return the contact forces of spheres, from first touch until they first leave the plate.
+
+    A sphere that leaves the plate more slowly than the plate follows it touches again within one impact. These touches come and go with
+    the parameters, and the records that are used end before the next touch.
 
     Parameters
     ----------
@@ -63,6 +69,20 @@ def contact_forces(case: CaseTable, plate: Problem, radius: Floats, speed: Float
         duration, peak = (float(one.impacts[name][0]) for name in ("duration_s", "max_force_N"))
         time = 0.5 * duration * (1.0 + nodes)
         value = one.at(time, ["force_N"])["force_N"]
+        if (value[:-1] == 0.0)[: np.flatnonzero(value)[-1]].any():
+            duration, peak = _first_touch(one, duration)
+            time = 0.5 * duration * (1.0 + nodes)
+            value = one.at(time, ["force_N"])["force_N"]
         impulse = 0.5 * duration * weights * value
         found.append(ContactForce(time, impulse, value, np.array([peak, impulse.sum(), duration])))
     return found
+
+
+def _first_touch(response: Response, duration: float) -> tuple[float, float]:
+    """Return the duration [s] and the largest force [N] of the first touch of an impact that has several."""
+    begin, end = 0.0, duration
+    for _ in range(_REFINEMENTS):  # between the last instant with a force and the first without one
+        time = np.linspace(begin, end, _INSTANTS)
+        without = 1 + int(np.argmax(response.at(time[1:], ["force_N"])["force_N"] == 0.0))
+        begin, end = time[without - 1], time[without]
+    return float(begin), float(response.at(np.linspace(0.0, begin, _INSTANTS), ["force_N"])["force_N"].max())

@@ -15,7 +15,7 @@ contain them:
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import NamedTuple
 
 import numpy as np
@@ -29,13 +29,15 @@ from vibroimpact.identification.measured import Measured
 from vibroimpact.identification.model_errors import model_error_signals
 from vibroimpact.identification.plate import Place, Plate, compliance_error, compliances_of, shapes_of, with_compliance, with_modes_left_out
 from vibroimpact.identification.pulses import Candidate
-from vibroimpact.signals.inverse.gauss_newton import gauss_newton
+from vibroimpact.signals.inverse.gauss_newton import Fit, gauss_newton
 from vibroimpact.signals.inverse.hertz_pulse import sphere_of_pulse
 
 _NUDGE, _LEAP, _RATIO = 1e-4, 0.02, 2e-3
 """Steps of derivatives: along the plate [m], in time [samples], in radius and speed [-]."""
 _RESTITUTION = 0.6
 """Restitution that the start is made with."""
+_ROUNDS, _SETTLED = 6, 0.7
+"""Most fits with the noise of the fit before, and the part of that noise that the last one leaves at least."""
 _NEXT_OCTAVE = 0.3
 """Standard deviation of the effect of the modes of the next octave, over its estimate: twice that over 60 places of a plate."""
 _FITTED = 5
@@ -125,9 +127,17 @@ def fit_sphere(plate: Plate, measured: Measured, start: Candidate, place: Place 
         residual = np.append(found.left / noise[:, None], given[_FITTED:] - expected)
         return residual, np.concatenate([slopes.reshape(-1, len(free)), by_prior])
 
-    fit = gauss_newton(lambda given: weighted(given, measured.noise), np.append(parameters, expected), most)
-    noise = _noise_of(explained(fit.parameters.tobytes()).left, weighted(fit.parameters, measured.noise)[1], fit.covariance)
-    fit = gauss_newton(lambda given: weighted(given, noise), fit.parameters, most)
+    def noise_left(fit: Fit, noise: Floats) -> Floats:
+        return _noise_of(explained(fit.parameters.tobytes()).left, weighted(fit.parameters, noise)[1], fit.covariance)
+
+    fit = gauss_newton(partial(weighted, noise=measured.noise), np.append(parameters, expected), most)
+    noise = noise_left(fit, measured.noise)
+    for _ in range(_ROUNDS):
+        fit = gauss_newton(partial(weighted, noise=noise), fit.parameters, most)
+        less = noise_left(fit, noise)
+        if np.all(less > _SETTLED * noise):
+            break
+        noise = less  # the fit came from afar, and ended with what was left there as noise
     found, half = explained(fit.parameters.tobytes()), np.array(plate.half)
     return SphereFit(
         np.append(np.clip(fit.parameters[:2], -half, half), fit.parameters[2:_FITTED]),

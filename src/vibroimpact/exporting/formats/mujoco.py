@@ -147,7 +147,8 @@ FORMAT = ExportFormat(
     name="mujoco",
     program="MuJoCo",
     files="a model (.xml, MJCF)",
-    tested="run with MuJoCo 3.2.7 and 3.17.0, the first impact compared with vibroimpact's between rigid bodies; an oblique one with 3.17.0",
+    tested="run with MuJoCo 3.2.7 and 3.17.0, the first impact compared with vibroimpact's between rigid bodies; an oblique one "
+    "with 3.17.0",
     write=_write,
     notes=_notes,
     prepare=as_rigid,
