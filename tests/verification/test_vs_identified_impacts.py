@@ -14,10 +14,10 @@ from identifying import DELAY, THICKNESS, an_impact, drawn, plate, records_of
 from vibroimpact.identification.identify import identify_on
 
 AGAINST = Against(
-    "impacts simulated with twice the modes, errors of the plate, and noise",
+    "identification of simulated impacts: twice the modes, errors of the plate model, noise",
     "consistency",
     "calibration, identification and studies",
-    "tests/identifying.py: what is identified from records of which the impact is known; no opponent",
+    "tests/identifying.py: estimates against the simulated impacts; no external reference",
 )
 
 
@@ -35,10 +35,12 @@ def test_400_impacts(agrees: Agrees) -> None:
         truth = dict(zip((*FITTED, *FROM_RECORDS), (*place, radius, speed, DELAY, *2 * (impact.peak, impact.impulse)), strict=True))
         held.append([told[name].interval[0] <= value <= told[name].interval[1] for name, value in truth.items()])
         case, found = "400 impacts, 40 dB", {name: estimate.value for name, estimate in told.items()}
-        agrees(case, "largest force, from the records", found["recovered_max_force_N"], impact.peak, unit="N", relative=0.05)
-        agrees(case, "impulse, from the records", found["recovered_impulse_N_s"], impact.impulse, unit="N s", relative=0.02)
+        agrees(
+            case, "maximum contact force, estimated from the records", found["recovered_max_force_N"], impact.peak, unit="N", relative=0.05
+        )
+        agrees(case, "impulse, estimated from the records", found["recovered_impulse_N_s"], impact.impulse, unit="N s", relative=0.02)
         off = np.hypot(found["place_x_m"] - place[0], found["place_y_m"] - place[1])
-        agrees(case, "distance from the place", off, 0.0, unit="m", absolute=0.5 * THICKNESS)
+        agrees(case, "distance of the estimated from the true position", off, 0.0, unit="m", absolute=0.5 * THICKNESS)
     part = dict(zip((*FITTED, *FROM_RECORDS), np.mean(held, axis=0), strict=True))
     assert min(part.values()) > 0.88
     if missed := [f"{name} {100.0 * value:.1f} %" for name, value in part.items() if not 0.93 <= value <= 0.97]:
