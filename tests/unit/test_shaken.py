@@ -136,7 +136,7 @@ def test_a_soft_sphere_comes_to_rest_on_a_plate_that_moves() -> None:
     sag = (0.1 * 9.8 / 1e7) ** (2.0 / 3.0)
     assert later["position_m"] - 0.01 == pytest.approx(later["surface_m"] - sag, abs=1e-15)
     assert later["velocity_m_s"] == pytest.approx(later["surface_velocity_m_s"], abs=1e-12)
-    assert later["force_N"] == pytest.approx(0.1 * (9.8 - (50.0 * np.pi) ** 2 * later["surface_m"]), rel=1e-12)
+    assert later["force_N"] == pytest.approx(0.1 * (9.8 - (50.0 * np.pi) ** 2 * later["surface_m"]), rel=1e-11)  # 1e-16 m
     assert response.status.endswith("on the sphere moves with the plate, which does not fall away from under it before the run ends.")
 
 
@@ -455,7 +455,7 @@ def test_a_sensor_on_an_elastic_plate_that_carries_a_sphere_reads_its_motion(fre
         rests = (heard.time > response.rest.time[0]) & (heard.time < 0.395)
         motion = response.at(heard.time[rests])
         expected = motion["plate_deflection_m"] - modes.residuals[name][2] * motion["force_N"]
-        error = {"none": 1e-11, "sigma-delta": 5e-3}[name] * np.ptp(expected)
+        error = {"none": 3e-11, "sigma-delta": 5e-3}[name] * np.ptp(expected)  # places of 10 mm are rounded to 2e-18 m
         assert heard.value[rests] == pytest.approx(expected, abs=error), name
 
 

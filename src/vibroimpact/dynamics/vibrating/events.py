@@ -19,6 +19,7 @@ GRID = np.linspace(0.0, 1.0, 33)
 """Values of x at which a stretch is searched for events."""
 
 ROUNDING = 1e-11  # relative to an indentation or a duration
+_ON_LEVEL = 1e-10  # relative to an indentation: a stretch that begins so near to a breakpoint begins on it; ends are solved to 1e-11
 ZERO_RATE = 1e-9  # of the speed of the motion: a slower approach counts as having turned already
 
 
@@ -67,7 +68,7 @@ def _events(stretch: VibratingStretch, place: int, weights: Floats, speed: float
         events.append((EndCondition("no push", 0.0, place), force, force < -slack))
     for level in (float(part) for part in law.breakpoints):
         beyond = delta - level
-        on_it = abs(beyond[0]) <= ROUNDING * max(abs(level), float(np.ptp(delta)))
+        on_it = abs(beyond[0]) <= _ON_LEVEL * max(abs(level), float(np.ptp(delta)))
         beyond = beyond * np.sign(beyond[1] if on_it else beyond[0])
         events.append((EndCondition("breakpoint", level, place), beyond, beyond < 0.0))
     if local.updates_memory(float(delta.max())):
