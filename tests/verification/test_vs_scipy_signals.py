@@ -23,34 +23,37 @@ AGAINST = Against(
 )
 
 
-RANDOM = np.random.default_rng(5)
+@pytest.fixture
+def random() -> np.random.Generator:
+    """Random numbers of each test, whichever runs first."""
+    return np.random.default_rng(5)
 
 
 @pytest.mark.parametrize("samples", [1, 2, 3, 100, 1001])
-def test_the_envelope(agrees: Agrees, samples: int) -> None:
-    signals = RANDOM.standard_normal((4, samples))
+def test_the_envelope(agrees: Agrees, samples: int, random: np.random.Generator) -> None:
+    signals = random.standard_normal((4, samples))
     padded = next_fast_len(2 * samples, real=True)
     exact = np.abs(hilbert(signals, N=padded + padded % 2))[:, :samples]
     agrees("1 to 1001 samples of white noise", "Hilbert envelope", hilbert_envelope(signals), exact, relative=1e-12)
 
 
-def test_the_envelope_is_that_between_silences() -> None:
-    signals = RANDOM.standard_normal((4, 2000))
+def test_the_envelope_is_that_between_silences(random: np.random.Generator) -> None:
+    signals = random.standard_normal((4, 2000))
     silent = np.abs(hilbert(signals, N=400_000))[:, :2000]
     np.testing.assert_allclose(hilbert_envelope(signals), silent, atol=0.02 * silent.max())
 
 
-def test_the_moments(agrees: Agrees) -> None:
-    signals = RANDOM.gamma(2.0, size=(6, 700))
+def test_the_moments(agrees: Agrees, random: np.random.Generator) -> None:
+    signals = random.gamma(2.0, size=(6, 700))
     table = vi.feature_table(signals, 1.0)
     agrees("six random signals", "skewness", table["skewness"], skew(signals, axis=1), relative=1e-12)
     agrees("six random signals", "kurtosis", table["kurtosis"], kurtosis(signals, axis=1, fisher=False), relative=1e-12)
 
 
-def test_the_cubic(agrees: Agrees) -> None:
-    signals, knots = RANDOM.standard_normal((5, 300)), np.zeros((5, 300), dtype=bool)
+def test_the_cubic(agrees: Agrees, random: np.random.Generator) -> None:
+    signals, knots = random.standard_normal((5, 300)), np.zeros((5, 300), dtype=bool)
     for number in range(5):
-        knots[number, RANDOM.choice(300, 1 + 20 * number, replace=False)] = True
+        knots[number, random.choice(300, 1 + 20 * number, replace=False)] = True
     found = cubic_through(signals, np.flatnonzero(knots))
     for signal, chosen, cubic in zip(signals, knots, found, strict=True):
         agrees("five random signals", "monotone cubic interpolation", cubic, _cubic(signal, np.flatnonzero(chosen)), absolute=1e-13)
@@ -63,8 +66,8 @@ def _cubic(signal: np.ndarray, knots: np.ndarray) -> np.ndarray:
     return PchipInterpolator(place, height)(np.arange(len(signal)))
 
 
-def test_the_intrinsic_modes(agrees: Agrees) -> None:
-    signals = RANDOM.standard_normal((4, 500)).cumsum(axis=1)
+def test_the_intrinsic_modes(agrees: Agrees, random: np.random.Generator) -> None:
+    signals = random.standard_normal((4, 500)).cumsum(axis=1)
     found = intrinsic_modes(signals, modes=3, siftings=5)
     for number, signal in enumerate(signals):
         rest, least = signal.copy(), 1e-10 * np.abs(signal).max()
@@ -84,8 +87,8 @@ def test_the_intrinsic_modes(agrees: Agrees) -> None:
             rest -= sifted
 
 
-def test_the_cepstrum(agrees: Agrees) -> None:
-    signal = RANDOM.standard_normal(640)
+def test_the_cepstrum(agrees: Agrees, random: np.random.Generator) -> None:
+    signal = random.standard_normal(640)
     power = np.abs(np.fft.rfft(signal)) ** 2
     power[1:-1] *= 2.0
     centres = np.linspace(0.0, 320.0, 22)

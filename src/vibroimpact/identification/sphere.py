@@ -38,6 +38,8 @@ _RESTITUTION = 0.6
 """Restitution that the start is made with."""
 _ROUNDS, _SETTLED = 6, 0.7
 """Most fits with the noise of the fit before, and the part of that noise that the last one leaves at least."""
+_EXACT = 1e-4
+"""Error of the responses of the model itself, over the rms value of a record: the least noise that a fit can have."""
 _NEXT_OCTAVE = 0.3
 """Standard deviation of the effect of the modes of the next octave, over its estimate: twice that over 60 places of a plate."""
 _FITTED = 5
@@ -131,10 +133,11 @@ def fit_sphere(plate: Plate, measured: Measured, start: Candidate, place: Place 
         return _noise_of(explained(fit.parameters.tobytes()).left, weighted(fit.parameters, noise)[1], fit.covariance)
 
     fit = gauss_newton(partial(weighted, noise=measured.noise), np.append(parameters, expected), most)
-    noise = noise_left(fit, measured.noise)
+    exact = _EXACT * np.sqrt((measured.value**2).mean(axis=1))
+    noise = np.maximum(noise_left(fit, measured.noise), exact)
     for _ in range(_ROUNDS):
         fit = gauss_newton(partial(weighted, noise=noise), fit.parameters, most)
-        less = noise_left(fit, noise)
+        less = np.maximum(noise_left(fit, noise), exact)
         if np.all(less > _SETTLED * noise):
             break
         noise = less  # the fit came from afar, and ended with what was left there as noise
