@@ -14,7 +14,8 @@ def needs_extra() -> Iterator[None]:
     try:
         yield
     except ModuleNotFoundError as error:
-        name = {"sklearn": "scikit-learn"}.get(error.name or "", error.name)
+        package = (error.name or "").split(".")[0]
+        name = {"sklearn": "scikit-learn"}.get(package, package)
         raise InputError(f'recognition needs {name}, which is not installed: pip install "vibroimpact[ml]"') from None
     except ImportError as error:  # versions that do not fit together
         raise InputError(f'recognition can\'t load its libraries ({error}): pip install --upgrade "vibroimpact[ml]"') from None
