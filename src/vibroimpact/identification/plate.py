@@ -54,8 +54,6 @@ class Plate:
         Length of the responses [s].
     frequency_errors : array, shape (modes,)
         Standard deviation of the relative error of the frequency of each rigid motion and mode [-].
-    lacking : tuple of two floats
-        Mean and standard deviation, over places, of the part of its static compliance that the mesh lacks [-].
     responses : dict
         Responses that were computed, by the names of sensors.
     """
@@ -64,7 +62,6 @@ class Plate:
     problem: Problem
     window: float
     frequency_errors: Floats
-    lacking: tuple[float, float] = (0.0, 0.0)
     responses: dict[tuple[str, ...], PlaceResponses] = field(default_factory=dict)
 
     @property
@@ -82,6 +79,21 @@ class Plate:
         x, y = (np.linspace(-half, half, max(5, round(2.0 * half / step) + 1)) for half in self.half)
         places = np.stack(np.meshgrid(x, y), axis=-1)
         return x, y, self.deflections(places.reshape(-1, 2)).reshape(len(y), len(x), -1)
+
+    @cached_property
+    def lacking(self) -> tuple[float, float]:
+        """Mean and deviation over places of the part of its static compliance that the mesh lacks, 0 for the mesh of a file [-].
+
+        It is what a finer mesh adds, which is most of it: near a point force the error falls with the square of the element size or faster.
+        """
+        recipe = elastic_bodies(self.case)["plate"].recipe
+        if not isinstance(recipe.shape, PlateOfPlates | PlateOfSolids):
+            return 0.0, 0.0
+        finer = replace(recipe, shape=replace(recipe.shape, element_size=recipe.shape.element_size / _FINER))
+        spread = _MIDDLE * np.asarray(recipe.shape.size[:2]) * (Halton(2, scramble=False).random(_PLACES + 1)[1:] - 0.5)
+        places = [(x, y) for x, y in spread.tolist()]
+        added = computed_compliances(finer, places) / computed_compliances(recipe, places) - 1.0
+        return float(added.mean()), float(added.std())
 
     def deflections(self, places: Floats) -> Floats:
         """Return the upward deflection at places (P, 2) in each rigid motion and mode, (P, modes) [kg^-1/2]."""
@@ -226,19 +238,4 @@ def plate_of(case: CaseTable, window: float, frequency_error: float = 0.0, progr
     assert modes is not None  # the plate is elastic
     of_mesh = np.zeros(len(modes.frequencies)) if modes.frequency_errors is None else np.nan_to_num(modes.frequency_errors)
     errors = np.concatenate([np.zeros(0 if rigid is None else len(rigid.frequencies)), np.hypot(of_mesh, frequency_error)])
-    return Plate(case, problem, window, errors, _lacking(case))
-
-
-def _lacking(case: CaseTable) -> tuple[float, float]:
-    """Return mean and deviation over places of the part of its static compliance that the mesh of a plate lacks, 0 for that of a file [-].
-
-    It is what a finer mesh adds, which is most of it: near a point force the error falls with the square of the element size or faster.
-    """
-    recipe = elastic_bodies(case)["plate"].recipe
-    if not isinstance(recipe.shape, PlateOfPlates | PlateOfSolids):
-        return 0.0, 0.0
-    finer = replace(recipe, shape=replace(recipe.shape, element_size=recipe.shape.element_size / _FINER))
-    spread = _MIDDLE * np.asarray(recipe.shape.size[:2]) * (Halton(2, scramble=False).random(_PLACES + 1)[1:] - 0.5)
-    places = [(x, y) for x, y in spread.tolist()]
-    added = computed_compliances(finer, places) / computed_compliances(recipe, places) - 1.0
-    return float(added.mean()), float(added.std())
+    return Plate(case, problem, window, errors)
