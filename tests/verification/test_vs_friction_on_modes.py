@@ -12,8 +12,7 @@ from scipy.integrate import solve_ivp
 
 import vibroimpact as vi
 from agreement import Against, Agrees
-from vibroimpact.contact.friction.law import Step
-from vibroimpact.contact.friction.turning_points import TurningPoints
+from turning_history import by_turning_points
 from vibroimpact.dynamics.vibrating.bodies import slices_of
 from vibroimpact.structures.modal_model import ModalBasis
 
@@ -352,17 +351,7 @@ def test_springs_follow_the_turning_points() -> None:
     depth = 1e-6 * np.maximum(np.sin(angle), 0.0)
     moved = 2e-7 * (np.sin(2.6 * angle + 0.3) - np.sin(0.3))
     ratio = 0.1 * MODULUS / SHEAR
-    exact, curve = TurningPoints(1), [0.0]
-    for point in range(1, len(angle)):
-        ways = []
-        for values in (depth, moved / ratio):  # straight steps
-            before, after = values[point - 1 : point], values[point : point + 1]
-            ways.append(np.array([before, after - before, after, after - before]))
-        inner, outer = np.sqrt(ways[0][0]), np.sqrt(ways[0][2])
-        swept = ways[1][1] * 2.0 / 3.0 * (inner + outer - inner * outer / (inner + outer + 1e-300))
-        found = exact.advance(np.array([0]), Step(*ways, np.array([[curve[-1]], inner * ways[1][1], swept])))
-        curve.append(float(found[0][0]))
-    curve = [2.0 * SHEAR * RADIUS**0.5 * ratio * integral for integral in curve]
+    curve = 2.0 * SHEAR * RADIUS**0.5 * ratio * by_turning_points(depth, moved / ratio)
     force = STIFFNESS * depth[::20] ** 1.5
     springs: Any = friction("mdr", 0.1).history(float(force.max()))
     for point in range(1, steps + 1):

@@ -16,7 +16,7 @@ from vibroimpact.dynamics.rest import Rest
 from vibroimpact.dynamics.run import Run
 from vibroimpact.errors import InputError
 
-_BLOCK, _OBLIQUE_BLOCK = 2000, 8000  # drops run together: many enough for array operations, few enough for the cache
+_BLOCK, _OBLIQUE_BLOCK = 2000, 16000  # drops run together, for the cache; oblique ones take more calls, each of some drops
 
 
 def tabulate(problem: StatesProblem, progress: Callable[[float], None] | None = None) -> Response:

@@ -4,18 +4,18 @@ A law is a frozen dataclass in a file of its own under `vibroimpact.contact.fric
 `equation` and `source`, its parameters as contact laws do, and is one of
 
 * `ImpulsiveFriction`, whose slip velocity follows from the normal impulse so far;
-* `CompliantFriction`, whose force depends on the tangential displacement and its history, kept in a `Memory` of many contacts along one
-  direction, or in the `TangentialHistory` of one contact in two.
+* `CompliantFriction`, whose force depends on the tangential displacement and its history: along one direction by the turning points of
+  this, or by a single spring; in two directions by the `TangentialHistory` of one contact.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, NamedTuple, Protocol
+from typing import ClassVar, Protocol
 
 import numpy as np
 
-from vibroimpact.arrays import Array, Bools, Drops, Floats
+from vibroimpact.arrays import Array, Floats
 from vibroimpact.contact.parameters import Parameters, parameter
 
 _TWISTING = 3.0 * np.pi / 16.0
@@ -133,8 +133,14 @@ class CompliantFriction(FrictionLaw):
     :math:`\mu F`, where :math:`I = \tfrac23 D^{3/2}`.
     """
 
-    sliding_bound: ClassVar[float] = 1.0
-    """While the depth shrinks, all of the contact slips on as long as the displacement shrinks by no more than this part of it."""
+    stretching: ClassVar[tuple[int, int]] = (0, 0)
+    r"""Powers :math:`\gamma` of the contact radius in the integral of a contact that sticks, as it grows and as it shrinks.
+
+    With the radius over the root of R, a, that is :math:`I = a^\gamma z`, where :math:`\dot z = a^{1 - \gamma} \dot s`.
+    """
+
+    slips_at_rim: ClassVar[bool] = False
+    """Do parts of the contact slip while others stick, as turning points tell? Otherwise it sticks or slides."""
 
     sliding_energy: ClassVar[float] = 0.4
     r"""Elastic work of a contact as it grows while all of it slides, over :math:`\mu F \kappa D`."""
@@ -162,65 +168,9 @@ class CompliantFriction(FrictionLaw):
         kappa = self.coefficient * self.effective_modulus / self.effective_shear_modulus
         return np.asarray(self.sliding_energy * self.coefficient * force * kappa * depth)
 
-    def memory(self, size: int) -> Memory:
-        """Return the memory of `size` contacts before first touch."""
-        raise NotImplementedError
-
     def history(self, largest_force: float) -> TangentialHistory:
         """Return the history of one contact before first touch, whose normal force will come to about `largest_force` [N]."""
         raise NotImplementedError
-
-
-class Step(NamedTuple):
-    r"""A step of b contacts; its parameter goes from 0 to 1.
-
-    `depth`, `displacement`: value and rate at its start and at its end, in this order (4, b): of the depth D under the normal force [m],
-    and of s over kappa [m]. `integral`: I at its start, its rate there, and :math:`\int \sqrt D^{\,p} ds` over the step (3, b), p as the
-    memory says.
-    """
-
-    depth: Floats
-    displacement: Floats
-    integral: Floats
-
-
-class Memory(Protocol):
-    r"""Tangential displacements of a contact under way, of B contacts, and the force that follows from them.
-
-    `power`: p of the integrals :math:`\int \sqrt D^{\,p} ds` that it needs.
-    """
-
-    power: ClassVar[int]
-
-    @property
-    def slides(self) -> Floats | Bools:
-        """Not zero where all of a contact slides (B,)."""
-
-    def slide(self, drops: Drops, depth: Floats, displacement: Floats, integral: Floats) -> Floats:
-        """Let contacts begin that have slid from first touch on; return the force as `advance` does.
-
-        `depth`, `displacement`: value and rate now (2, b); `integral`: I (b,).
-        """
-        ...
-
-    def turns(self, drops: Drops, step: Step) -> tuple[Drops, Floats, Floats]:
-        """Return which of b contacts change within a step, at which places in it, and how near these are to where the force is not smooth.
-
-        What changes is whether they stick, slip or slide; nothing at the place 1, the end of the step. The last is the distance over that
-        at the start of the step, and 1 if it does not matter.
-        """
-        ...
-
-    def turn(self, drops: Drops, depth: Floats, force: Floats) -> Floats:
-        """Let contacts change as `turns` told for where they are now; return the force from there on.
-
-        `depth`: with its rate (2, b); `force`: as `advance` returns it.
-        """
-        ...
-
-    def advance(self, drops: Drops, step: Step) -> Floats:
-        """Take a step with contacts; return the integral I [m^1.5], and its derivatives by displacement and by depth (3, b)."""
-        ...
 
 
 class TangentialHistory(Protocol):

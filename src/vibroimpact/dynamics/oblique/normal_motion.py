@@ -1,7 +1,7 @@
 """The normal motion of contacts on a grid, which drives their friction: time and force as functions of a parameter.
 
-The parameter rises evenly through each part of a contact, slowly at its ends, so that the depth of the contact grows with its square. It
-counts the steps of the grid.
+The parameter rises nearly evenly through each part of a contact, slowly at its ends, so that the depth of the contact grows with its
+square. It counts the steps of the grid.
 """
 
 from __future__ import annotations
@@ -73,8 +73,8 @@ def normal_motions(leg: Leg, contact: Contact, encounter: Encounter, steps: int)
     return found
 
 
-_BY_LENGTH = (1, 2, 0, 1)
-"""Powers of the length of a step with which pace, its slope, force and its slope go."""
+_COARSER = 0.2
+"""Part by which steps are longer than evenly where the contact is deepest, and shorter where it begins and ends."""
 
 _ARRAYS = ("time", "pace", "pace_slope", "force", "force_slope", "impulse")
 
@@ -93,24 +93,33 @@ def _of_phase(piece: Piece, encounter: Encounter, places: Drops, steps: int) -> 
     steps *= _MORE if _is_steep(rule, forces) else 1
     if encounter.law.tension == "cut":
         forces = np.maximum(forces, 0.0)
-    grid, left, found = np.linspace(0.0, 1.0, steps + 1), motion.duration, []
+    (grid, rate, bend), left, found = _graded(steps), motion.duration, []
     for pace, force in zip(rule.split(motion.pace), rule.split(forces), strict=True):
         ends = _reach(rule, pace, left)
-        nodes = (pace, rule.derivatives[0] @ pace, force, rule.derivatives[0] @ force)
         if (ends == 1.0).all():
-            values, sums = rule.weights_at(grid).T, rule.weights_to_end(grid).T
-            series = [(values / steps**power) @ one for one, power in zip(nodes, _BY_LENGTH, strict=True)]
-            time, impulse = sums @ (rule.integral @ pace), sums @ (rule.integral @ (force * pace))
+            values, sums = rule.weights_at(grid[:, 0]).T, rule.weights_to_end(grid[:, 0]).T @ rule.integral
+            slopes = values @ rule.derivatives[0]
+            speed, change = (rate * values) @ pace, (rate**2 * slopes + bend * values) @ pace
+            strength, growth = values @ force, (rate * slopes) @ force
+            time, impulse = sums @ pace, sums @ (force * pace)
         else:  # released within the segment, each drop at a place of its own
-            at = grid[:, None] * ends
+            at, first = grid * ends, rate * ends
             values, sums = (weights(at.ravel()).reshape(-1, *at.shape) for weights in (rule.weights_at, rule.weights_to_end))
-            series = [np.einsum("ngb,nb->gb", values, one) * (ends / steps) ** power for one, power in zip(nodes, _BY_LENGTH, strict=True)]
+            nodes = (pace, rule.derivatives[0] @ pace, force, rule.derivatives[0] @ force)
+            speed, change, strength, growth = (np.einsum("ngb,nb->gb", values, one) for one in nodes)
             time, impulse = (np.einsum("ngb,nb->gb", sums, rule.integral @ one) for one in (pace, force * pace))
+            speed, change, growth = speed * first, change * first**2 + speed * bend * ends, growth * first
         time[0] = impulse[0] = 0.0
-        speed, change, strength, growth = series
         found.append(NormalMotion(np.ones(steps), time, speed, change, np.maximum(strength, 0.0), growth, impulse))
         left = left - time[-1]
     return [_reversed(one) for one in reversed(found)] if compressing else found
+
+
+def _graded(steps: int) -> tuple[Floats, Floats, Floats]:
+    """Return y at the points of a segment, from 0 to 1, and its derivatives by the number of the step (G, 1)."""
+    share = np.linspace(0.0, 1.0, steps + 1)[:, None]
+    rate = 1.0 + _COARSER * (1.0 - 2.0 * share)
+    return share * (1.0 + _COARSER * (1.0 - share)), rate / steps, np.full_like(share, -2.0 * _COARSER / steps**2)
 
 
 def _is_steep(rule: PlaneRule, forces: Floats) -> bool:

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 from vibroimpact.contact.friction.law import CompliantFriction
 from vibroimpact.contact.friction.springs import ContactSprings, contact_springs
-from vibroimpact.contact.friction.turning_points import TurningPoints
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,10 +37,7 @@ class Mdr(CompliantFriction):
     name = "mdr"
     equation = "Q = G* int u dx, |u| <= mu E*/G* (D - x^2/R)"
     source = "Popov & Hess 2015, Method of Dimensionality Reduction, ch. 5"
-
-    def memory(self, size: int) -> TurningPoints:
-        """Return contacts without displacement; see `CompliantFriction`."""
-        return TurningPoints(size)
+    slips_at_rim = True
 
     def history(self, largest_force: float) -> ContactSprings:
         """Return springs without displacement; see `CompliantFriction`."""
