@@ -24,14 +24,14 @@ def by_turning_points(depth: Floats, displacement: Floats) -> Floats:
             curves.push(one, deep, moved, integral)
             slips = 0.0
         else:
-            tried = {}
-            for sign in [slips] if slips in fallen else fallen:
+            if slips not in fallen:  # it begins to slip, where both directions may: in that in which it slips deeper
+                tried = {}
+                for sign in fallen:
+                    curves.begin(one)
+                    tried[sign] = curves.held(one, np.array([sign]), deep - sign * moved)[1][0]
+                slips = min(tried, key=lambda sign: tried[sign])
                 curves.begin(one)
-                tried[sign] = curves.held(one, np.array([sign]), deep - sign * moved)
-            slips = min(tried, key=lambda sign: tried[sign][1][0])
-            known = tried[slips]
-            curves.begin(one)
-            curves.held(one, np.array([slips]), deep - slips * moved)
+            known = curves.held(one, np.array([slips]), deep - slips * moved)
             integral = slips * (2.0 / 3.0 * deep**1.5 - known[0])
         found.append(float(integral[0]))
     return np.array(found)
