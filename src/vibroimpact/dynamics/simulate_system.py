@@ -44,7 +44,7 @@ class BodyMotion:
     >>> balls = {"hit": vi.MovingBody(mass=0.1), "hitting": vi.MovingBody(mass=0.1, velocity=(0, 0, -1.0))}
     >>> contact = vi.PointContact(above="hitting", below="hit", law=vi.find_contact_law("hertz")(stiffness=1e9))
     >>> motion = vi.simulate_system(vi.System(bodies=balls, contacts={"contact": contact}), duration=1e-3).at([0.0, 1e-3])["hitting"]
-    >>> motion.velocity[:, 2].round(9).tolist(), motion.displacement.shape
+    >>> (motion.velocity[:, 2].round(9) + 0.0).tolist(), motion.displacement.shape
     ([-1.0, 0.0], (2, 3))
     """
 

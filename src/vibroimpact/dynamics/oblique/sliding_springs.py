@@ -6,7 +6,16 @@ import numpy as np
 
 from vibroimpact.arrays import Bools, Drops, Floats
 from vibroimpact.contact.friction.cubics import place_of_turn, place_of_value
-from vibroimpact.dynamics.oblique.tangential_motion import TINY, Change, Rest, TangentialMotion, excess_depth, rate_of_integral, rises
+from vibroimpact.dynamics.oblique.tangential_motion import (
+    TINY,
+    Change,
+    Rest,
+    TangentialMotion,
+    excess_depth,
+    rate_of_integral,
+    rest_of,
+    rises,
+)
 from vibroimpact.dynamics.oblique.tangential_steps import Drive, Motion, between, slide, stick
 
 _ROUNDS = 3
@@ -63,9 +72,9 @@ class SlidingSprings(TangentialMotion):
             return []
         places = place_of_turn(excess_depth(begin, finish, was, will, direction[some], least[some]))
         slips = self.every[here][some]
-        rest = self.go_back(slips, begin, finish, was, will, places)
-        self.cease(slips, rest[1], np.ones(len(slips), dtype=bool))
-        return [rest]
+        known = self.go_back(slips, begin, finish, was, will, places)
+        self.cease(slips, known, np.ones(len(slips), dtype=bool))
+        return [rest_of(slips, known, finish, places)]
 
     def cease(self, drops: Drops, known: Drive, slid: Bools) -> None:
         """Let springs stick from now on; see `TangentialMotion`."""

@@ -10,7 +10,7 @@ import numpy as np
 from vibroimpact.arrays import Bools, Drops, Floats, put
 from vibroimpact.contact.friction.cubics import cubic_at, place_of_turn, place_of_value
 from vibroimpact.contact.friction.turning_points import TurningPoints
-from vibroimpact.dynamics.oblique.tangential_motion import TINY, Change, Rest, TangentialMotion, excess_depth
+from vibroimpact.dynamics.oblique.tangential_motion import TINY, Change, Rest, TangentialMotion, excess_depth, rest_of
 from vibroimpact.dynamics.oblique.tangential_steps import Drive, Motion, moved, slide, slip, swept_to_middle
 
 _NEAR = 0.25
@@ -80,14 +80,14 @@ class SlipAtRim(TangentialMotion):
             arrivals = np.where(comes[some], place_of_value(ends, middle[some]), np.inf)
         arrives = arrivals < places
         places = np.minimum(places, arrivals)
-        rest = self.go_back(slips, begin, finish, was, will, places)
-        known, arriving, ceasing = rest[1], np.flatnonzero(arrives), np.flatnonzero(~arrives)
+        known = self.go_back(slips, begin, finish, was, will, places)
+        arriving, ceasing = np.flatnonzero(arrives), np.flatnonzero(~arrives)
         if arriving.size:
             to = places[arriving]
             self._arrive(slips[arriving], begin.take(arriving), known.take(arriving), was.take(arriving), ends[:, arriving], to)
         if ceasing.size:
             self._turn(slips[ceasing], known.take(ceasing), slid[ceasing])
-        return [rest]
+        return [rest_of(slips, known, finish, places)]
 
     def _mended(self, drops: Drops, start: Drive, end: Drive, was: Motion, will: Motion) -> tuple[Motion, Floats]:
         """Return motion and front at the end of a step of contacts that slip nearly to their middle, near where the force is not smooth."""
@@ -101,22 +101,18 @@ class SlipAtRim(TangentialMotion):
         mended.rows[2] = direction * (end.most - keeps)
         return mended, front
 
-    def _arrive(self, drops: Drops, start: Drive, rest: Drive, was: Motion, ends: Floats, places: Floats) -> None:
-        """Let contacts slide whose slip comes to their middle at places of a step.
-
-        `rest`: normal motion there, for what is left of the step. `ends`: x at both ends of the step, with its derivatives (4, b).
-        """
+    def _arrive(self, drops: Drops, start: Drive, known: Drive, was: Motion, ends: Floats, places: Floats) -> None:
+        """Let contacts slide whose slip comes to their middle; `ends`: x at both ends of the step, with its derivatives (4, b)."""
         direction, (there, slope) = self.direction[drops], cubic_at(ends, places)
-        part = places / np.maximum(1.0 - places, TINY)
         self.curves.begin(drops)
         held = partial(self.curves.held, drops, direction)
         x = np.array([ends[0], ends[1] * places, there, slope * places])
-        swept = swept_to_middle(start.shortened(places), rest.shortened(part), x, held, direction)
-        velocity = was.velocity + self.pull[drops] * (rest.time - start.time) - self.stiffness[drops] * swept
-        displacement = direction * (rest.depth - self.curves.middle(drops, direction))
-        self.motion[:, drops] = velocity, displacement, direction * rest.most
+        swept = swept_to_middle(start.shortened(places), known.shortened(places), x, held, direction)
+        velocity = was.velocity + self.pull[drops] * (known.time - start.time) - self.stiffness[drops] * swept
+        displacement = direction * (known.depth - self.curves.middle(drops, direction))
+        self.motion[:, drops] = velocity, displacement, direction * known.most
         self.front[drops] = 0.0
-        self.count(drops, -1.0, rest.depth)
+        self.count(drops, -1.0, known.depth)
 
     def _turn(self, drops: Drops, known: Drive, slid: Bools) -> None:
         """Let contacts cease to slip; those that shrink slip in the other direction."""

@@ -125,8 +125,8 @@ class TangentialMotion(ABC):
         stored = self.law.sliding_energy * self.stiffness[drops] * np.abs(integral) * depth
         self.microslip[drops] += sign * (0.5 * velocity**2 - self.pull[drops] * displacement + stored)
 
-    def go_back(self, drops: Drops, start: Drive, end: Drive, was: Motion, will: Motion, places: Floats) -> Rest:
-        """Let contacts have velocity and displacement at places in a step; return what is left of it."""
+    def go_back(self, drops: Drops, start: Drive, end: Drive, was: Motion, will: Motion, places: Floats) -> Drive:
+        """Let contacts have velocity and displacement at places in a step; return their normal motion there."""
         pull, stiffness = self.pull[drops], self.stiffness[drops]
         rates = [drive.pace * (pull - stiffness * motion.integral) for drive, motion in ((start, was), (end, will))]
         ends = [
@@ -136,7 +136,7 @@ class TangentialMotion(ABC):
             [rates[1], end.pace * will.velocity],
         ]
         self.motion[:2, drops], _ = cubic_at(np.array(ends), places)
-        return drops, between(start, end, places).shortened(1.0 - places), end.shortened(1.0 - places)
+        return between(start, end, places)
 
     def _advance(self, here: Drops | slice, start: Drive, end: Drive) -> None:
         """Take contacts to the end of a step, each from change to change."""
@@ -176,11 +176,11 @@ class TangentialMotion(ABC):
         stays = np.ones(len(drops), dtype=bool)
         stays[some] = False
         self.grow(drops[stays], end.depth[stays], after.displacement[stays], after.integral[stays])
-        rest = self.go_back(slips, begin, finish, was, will, places)
+        known = self.go_back(slips, begin, finish, was, will, places)
         ends = was.integral, rate_of_integral(begin, was, power), will.integral, rate_of_integral(finish, will, power)
         self.motion[2, slips], _ = cubic_at(np.array(ends), places)
-        self.begin(slips, rest[1], direction)
-        return [rest]
+        self.begin(slips, known, direction)
+        return [rest_of(slips, known, finish, places)]
 
     def _join(self, drops: Drops, start: Drive, end: Drive) -> None:
         """Change the depth of contacts at once, where two parts meet."""
@@ -192,6 +192,11 @@ class TangentialMotion(ABC):
         if slips.size:
             self.cease(drops[slips], start.take(slips), self.slides(drops[slips]))
         self.jump(drops, start, end)
+
+
+def rest_of(drops: Drops, known: Drive, end: Drive, places: Floats) -> Rest:
+    """Return what is left of a step from places in it."""
+    return drops, known.shortened(1.0 - places), end.shortened(1.0 - places)
 
 
 def rises(drive: Drive) -> Bools:

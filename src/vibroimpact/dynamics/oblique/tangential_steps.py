@@ -91,9 +91,7 @@ def between(start: Drive, end: Drive, place: Floats) -> Drive:
 
 def _pace_and_depth(start: Drive, end: Drive) -> Floats:
     """Return pace and depth with their slopes at both ends of a step (4, 2, b)."""
-    return np.array(
-        [[drive.pace, drive.depth] if value else [drive.pace_slope, drive.depth_slope] for drive in (start, end) for value in (1, 0)]
-    )
+    return np.array([rows for one in (start, end) for rows in ((one.pace, one.depth), (one.pace_slope, one.depth_slope))])
 
 
 def stick(start: Drive, end: Drive, motion: Motion, stiffness: Floats, pull: Floats, power: float) -> Motion:
