@@ -15,7 +15,7 @@ from typing import ClassVar, Protocol
 
 import numpy as np
 
-from vibroimpact.arrays import Array, Floats
+from vibroimpact.arrays import Array, Bools, Floats
 from vibroimpact.contact.parameters import Parameters, parameter
 
 _TWISTING = 3.0 * np.pi / 16.0
@@ -154,6 +154,14 @@ class CompliantFriction(FrictionLaw):
     effective_radius: Array = parameter(
         "effective radius R", "m", detail="Effective radius :math:`R`.", above=0, from_pair="effective_radius"
     )
+
+    def least_rate(self, grows: Bools) -> Floats:
+        """Return the rate of the displacement above which all of a contact slides on, over that of the depth [-].
+
+        `grows`: whether the contact grows, or shrinks.
+        """
+        growing, shrinking = self.stretching
+        return np.where(grows, 1.0 - growing / 3.0, 1.0 - shrinking / 3.0)
 
     def contact_radius(self, force: Floats) -> Floats:
         """Return the radius of Hertz's contact under a normal force [m]."""

@@ -19,7 +19,7 @@ from vibroimpact.contact.pair import hertz_stiffness
 from vibroimpact.dynamics.oblique.normal_motion import NormalMotion
 from vibroimpact.dynamics.oblique.sliding_springs import SlidingSprings
 from vibroimpact.dynamics.oblique.slip_at_rim import SlipAtRim
-from vibroimpact.dynamics.oblique.tangential_steps import Drive
+from vibroimpact.dynamics.oblique.tangential_steps import Drive, sliding_integral
 
 _LEAST, _MOST = 1e-9, 1e6
 """Bounds of kappa in slip per depth: contacts with less friction slide freely, and those with more stick."""
@@ -68,15 +68,9 @@ def slide_compliant(
     kappa[kappa == 0.0] = 1.0
     stiffness = np.where(asked < kappa, 0.0, 2.0 * shear * np.sqrt(radius))  # of the integral: none where friction is below the least
     per_force = (2.0 / 3.0) / hertz  # 2/3 of the depth to the power 3/2 is the integral
-    impulse = normal.impulse
-    if (impulse[-1] < impulse[-2]).any():  # a force that pulls at the end gives no slip back
-        impulse = np.maximum.accumulate(impulse, axis=0)
-    most, swept = per_force * normal.force, per_force * impulse
+    most, swept = per_force * normal.force, per_force * normal.pressed
     path = _slide_throughout(normal, most, swept, slip / kappa, stiffness / mass, pull / kappa)
-    growing, shrinking = law.stretching
-    least = depth_slope
-    if growing or shrinking:
-        least = np.where(depth_slope > 0.0, 1.0 - growing / 3.0, 1.0 - shrinking / 3.0) * depth_slope
+    least = law.least_rate(depth_slope > 0.0) * depth_slope
     may_stick = path[0] * normal.pace < least - _ROUNDING * depth_slope.max(axis=0)
     sticks = np.flatnonzero((stiffness > 0.0) & may_stick.any(axis=0))
     # in the order of their slip, in which contacts begin to stick and cease to
@@ -134,4 +128,4 @@ def _refined(grid: Floats, joints: Floats, number: int) -> Floats:
     fine[-1], rates[-1] = values[-1], slopes[-1]
     (time, pace, depth, swept), (_, bend, deepening, _) = fine.transpose(1, 0, 2), rates.transpose(1, 0, 2) / number
     depth = np.maximum(depth, 0.0)
-    return np.stack([time, pace / number, bend / number, depth, deepening, (2.0 / 3.0) * depth * np.sqrt(depth), swept], axis=1)
+    return np.stack([time, pace / number, bend / number, depth, deepening, sliding_integral(depth), swept], axis=1)

@@ -42,6 +42,11 @@ class NormalMotion:
     force_slope: Floats
     impulse: Floats
 
+    @property
+    def pressed(self) -> Floats:
+        """Impulse of the force so far [N s] (G, B), of which a force that pulls, as some laws have at the end, gives nothing back."""
+        return np.asarray(np.maximum.accumulate(self.impulse, axis=0))
+
     def integrals(self, values: Floats, slopes: Floats) -> Floats:
         """Return the integrals over time so far (G, B) of a quantity with these values, and slopes by the parameter."""
         rate, bend, step = self.pace * values, self.pace_slope * values + self.pace * slopes, self.steps[:, None]

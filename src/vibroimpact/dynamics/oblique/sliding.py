@@ -32,7 +32,7 @@ def slide(law: FrictionLaw | None, normal: NormalMotion, slip: Floats, mass: Flo
     free, none = slip + pull * normal.time, np.zeros_like(slip)
     if not isinstance(law, ImpulsiveFriction):
         return Sliding(normal.time, free, slip * normal.time + 0.5 * pull * normal.time**2, np.zeros_like(free), none)
-    pressed = np.maximum.accumulate(normal.impulse, axis=0)  # a force that pulls, as some laws have at the end, gives no slip back
+    pressed = normal.pressed
     left = law.slip_after(free, pressed, pressed[-1], mass)
     force = law.force(left, normal.force)
     return Sliding(normal.time, left, normal.integrals(left, normal.pace * (pull - force / mass)), force, none)

@@ -7,7 +7,6 @@ import numpy as np
 from vibroimpact.arrays import Bools, Drops, Floats
 from vibroimpact.contact.friction.cubics import place_of_turn, place_of_value
 from vibroimpact.dynamics.oblique.tangential_motion import (
-    TINY,
     Change,
     Rest,
     TangentialMotion,
@@ -16,7 +15,7 @@ from vibroimpact.dynamics.oblique.tangential_motion import (
     rest_of,
     rises,
 )
-from vibroimpact.dynamics.oblique.tangential_steps import Drive, Motion, between, slide, stick
+from vibroimpact.dynamics.oblique.tangential_steps import TINY, Drive, Motion, between, slide, stick
 
 _ROUNDS = 3
 """How often the place at which a spring begins to slide at the end of a contact is mended."""
@@ -57,13 +56,13 @@ class SlidingSprings(TangentialMotion):
         self.count(drops[slides], -1.0, known.depth[slides])
 
     def grow(self, drops: Drops, depth: Floats, displacement: Floats, integral: Floats) -> None:
-        """Keep nothing in mind: the spring is in the integral."""
+        """Record nothing: the stretch of a spring follows from its integral."""
 
     def slip(self, here: Drops | slice, start: Drive, end: Drive, last: bool) -> list[Rest]:
         """Take springs that slide to the end of a step, or to where they cease to; see `TangentialMotion`."""
         before, direction = Motion(self.motion[:, here]), self.direction[here]
         after = slide(start, end, before, self.stiffness[here], self.pull[here], direction)
-        least = np.where(rises(start) | (end.depth_slope > 0.0), 1.0 - self.growing / 3.0, 1.0 - self.shrinking / 3.0)
+        least = self.law.least_rate(rises(start) | (end.depth_slope > 0.0))
         turned = (direction * end.pace * after.velocity < least * end.depth_slope) & (end.depth > 0.0)
         some = np.flatnonzero(turned & (not last))
         was, will, begin, finish = before.take(some), after.take(some), start.take(some), end.take(some)
@@ -85,7 +84,7 @@ class SlidingSprings(TangentialMotion):
     def settle(self, drops: Drops, start: Drive) -> None:
         """Let springs cease to slide at the start of a part; see `TangentialMotion`."""
         direction = self.direction[drops]
-        least = np.where(start.depth_slope > 0.0, 1.0 - self.growing / 3.0, 1.0 - self.shrinking / 3.0)
+        least = self.law.least_rate(start.depth_slope > 0.0)
         turned = direction * start.pace * self.motion[0, drops] < least * start.depth_slope
         some = np.flatnonzero((direction != 0.0) & turned)
         self.cease(drops[some], start.take(some), np.ones(len(some), dtype=bool))

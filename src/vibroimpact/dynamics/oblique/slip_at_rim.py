@@ -10,8 +10,8 @@ import numpy as np
 from vibroimpact.arrays import Bools, Drops, Floats, put
 from vibroimpact.contact.friction.cubics import cubic_at, place_of_turn, place_of_value
 from vibroimpact.contact.friction.turning_points import TurningPoints
-from vibroimpact.dynamics.oblique.tangential_motion import TINY, Change, Rest, TangentialMotion, excess_depth, rest_of
-from vibroimpact.dynamics.oblique.tangential_steps import Drive, Motion, moved, slide, slip, swept_to_middle
+from vibroimpact.dynamics.oblique.tangential_motion import Change, Rest, TangentialMotion, excess_depth, rest_of
+from vibroimpact.dynamics.oblique.tangential_steps import TINY, Drive, Motion, moved, slide, slip, swept_to_middle
 
 _NEAR = 0.25
 """Part of the way of the slip to the middle of a contact that is left where its force is not smooth any more."""

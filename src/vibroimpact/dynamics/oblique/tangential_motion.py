@@ -14,16 +14,13 @@ import numpy as np
 from vibroimpact.arrays import Bools, Drops, Floats
 from vibroimpact.contact.friction.cubics import cubic_at
 from vibroimpact.contact.friction.law import CompliantFriction
-from vibroimpact.dynamics.oblique.tangential_steps import Drive, Motion, between, stick
+from vibroimpact.dynamics.oblique.tangential_steps import TINY, Drive, Motion, between, stick
 
 _MOST_TURNS = 6
 """Changes of a contact in one step at most."""
 
 _SAME = 1e-6
 """Relative difference below which the depths where two parts of a contact meet are the same."""
-
-TINY = 1e-150
-"""A depth or its change, to divide by."""
 
 Change = tuple[Drops, Floats, Floats]
 """Which of some contacts change in a step, at which places of it, and the directions in which they slip from then on."""
@@ -73,7 +70,7 @@ class TangentialMotion(ABC):
 
     @abstractmethod
     def grow(self, drops: Drops, depth: Floats, displacement: Floats, integral: Floats) -> None:
-        """Keep in mind where contacts are that stick and grow."""
+        """Record depth, displacement and integral of contacts that stick."""
 
     @abstractmethod
     def slip(self, here: Drops | slice, start: Drive, end: Drive, last: bool) -> list[Rest]:
@@ -108,8 +105,8 @@ class TangentialMotion(ABC):
                 self._advance(here, start, end)
             begins = bool(joins)
             self.path[:, point + 1, here] = self.motion[:, here]
-        left = ~self.slides(self.every)  # what these store at the end is lost
-        self.microslip[left] -= (0.5 * self.motion[0] ** 2 - self.pull * self.motion[1])[left]
+        left = np.flatnonzero(~self.slides(self.every))
+        self.count(left, -1.0, np.zeros(len(left)))  # what these store at the end is lost
         return self.microslip
 
     def slides(self, drops: Drops) -> Bools:
@@ -126,7 +123,7 @@ class TangentialMotion(ABC):
         self.microslip[drops] += sign * (0.5 * velocity**2 - self.pull[drops] * displacement + stored)
 
     def go_back(self, drops: Drops, start: Drive, end: Drive, was: Motion, will: Motion, places: Floats) -> Drive:
-        """Let contacts have velocity and displacement at places in a step; return their normal motion there."""
+        """Set velocity and displacement to those at places in a step; return the normal motion there."""
         pull, stiffness = self.pull[drops], self.stiffness[drops]
         rates = [drive.pace * (pull - stiffness * motion.integral) for drive, motion in ((start, was), (end, will))]
         ends = [
@@ -150,10 +147,9 @@ class TangentialMotion(ABC):
                     rest += go(self.every[here][some], start.take(some), end.take(some), turns == _MOST_TURNS)
             if not rest:
                 return
-            here, start, end = rest[0]
-            if len(rest) > 1:
-                here = np.concatenate([one for one, _, _ in rest])
-                start, end = (Drive(np.concatenate([drives.rows for drives in ends], axis=1)) for ends in list(zip(*rest, strict=True))[1:])
+            drops, starts, ends = zip(*rest, strict=True)
+            here = np.concatenate(drops)
+            start, end = (Drive(np.concatenate([drive.rows for drive in drives], axis=1)) for drives in (starts, ends))
 
     def _stick(self, here: Drops | slice, start: Drive, end: Drive, last: bool) -> list[Rest]:
         """Take contacts that stick to the end of a step, or to where they change; return what is then left. `last`: stay so."""

@@ -23,8 +23,8 @@ from numpy.polynomial import legendre
 from vibroimpact.arrays import Drops, Floats
 from vibroimpact.contact.friction.cubics import cubic_at
 
-_TINY = 1e-150
-"""A depth, for negative powers of zero."""
+TINY = 1e-150
+"""A depth or its change, to divide by."""
 
 _NODES, _SHARES = legendre.leggauss(3)
 _NODES, _SHARES = 0.5 * (_NODES + 1.0), 0.5 * _SHARES
@@ -76,15 +76,24 @@ class Motion(_Rows):
     velocity, displacement, integral = (_row(number) for number in range(3))
 
 
+def sliding_integral(depth: Floats) -> Floats:
+    """Return the integral I of a contact that slides [m^1.5]."""
+    return np.asarray((2.0 / 3.0) * depth * np.sqrt(depth))
+
+
 def between(start: Drive, end: Drive, place: Floats) -> Drive:
     """Return the normal motion at a place of a step, from 0 to 1."""
     time, _ = cubic_at(np.array([start.time, start.pace, end.time, end.pace]), place)
     (pace, depth), (pace_slope, depth_slope) = cubic_at(_pace_and_depth(start, end), place)
     depth = np.maximum(depth, 0.0)
-    root = np.sqrt(depth)
-    most, rest = (2.0 / 3.0) * depth * root, 1.0 - place
+    most, rest = sliding_integral(depth), 1.0 - place
     # from the end, where there may be little left
-    bend = pace_slope * most + pace * root * depth_slope - end.pace_slope * end.most - end.pace * np.sqrt(end.depth) * end.depth_slope
+    bend = (
+        pace_slope * most
+        + pace * np.sqrt(depth) * depth_slope
+        - end.pace_slope * end.most
+        - end.pace * np.sqrt(end.depth) * end.depth_slope
+    )
     left = rest * (0.5 * (pace * most + end.pace * end.most) + rest / 12.0 * bend)
     return Drive(np.array([time, pace, pace_slope, depth, depth_slope, most, end.swept - left]))
 
@@ -111,7 +120,7 @@ def stick(start: Drive, end: Drive, motion: Motion, stiffness: Floats, pull: Flo
         :math:`\gamma`.
     """
     velocity, _, integral = motion.rows
-    stretch = integral / np.maximum(start.depth, _TINY) ** (0.5 * power) if power else integral
+    stretch = integral / np.maximum(start.depth, TINY) ** (0.5 * power) if power else integral
     (pull_0, slope_0), (pull_1, slope_1) = (_paced(drive, power) for drive in (start, end))
     (spring_0, bend_0), (spring_1, bend_1) = (_paced(drive, 1.0 - power) for drive in (start, end))
     if power > 1.0:  # where the contact ends the pace over its radius is as before
@@ -133,7 +142,7 @@ def _paced(drive: Drive, power: float) -> tuple[Floats, Floats]:
     """Return the pace times a power of the root of the depth, and its derivative."""
     if power == 0.0:
         return drive.pace, drive.pace_slope
-    depth = np.maximum(drive.depth, _TINY)
+    depth = np.maximum(drive.depth, TINY)
     raised = np.sqrt(depth) if power == 1.0 else depth ** (0.5 * power)
     return drive.pace * raised, drive.pace_slope * raised + 0.5 * power * drive.pace * raised / depth * drive.depth_slope
 
@@ -163,20 +172,8 @@ def slip(
 ) -> tuple[Motion, Floats]:
     """Return the motion at the end of a step in which contacts slip, and the root of the depth at which the slip ends.
 
-    Parameters
-    ----------
-    start, end : Drive
-        Normal motion.
-    motion : Motion
-        At the start.
-    front : array, shape (b,)
-        Root of the depth at which the slip ends, at the start [m^0.5].
-    held : callable
-        H by x (see `contact.friction.turning_points`).
-    stiffness, pull : array, shape (b,)
-        As in `stick`.
-    direction : array, shape (b,)
-        Of the slip, 1 or -1.
+    `front`: that root at the start [m^0.5] (b,). `held`: from x to H and its derivative. `direction`: of the slip, 1 or -1 (b,). Others: as
+    in `stick`.
     """
     velocity, displacement, integral = motion.rows
     _, pace, pace_slope, depth, depth_slope, _, _ = end.rows
@@ -210,6 +207,5 @@ def swept_to_middle(start: Drive, end: Drive, ends: Floats, held: Held, directio
     for root, share in zip(_NODES[::-1], _SHARES[::-1], strict=True):  # of the distance to the end, where H has a power of 3/2
         (pace, depth), _ = cubic_at(drives, 1.0 - root**2)
         x, _ = cubic_at(ends, 1.0 - root**2)
-        depth = np.maximum(depth, 0.0)
-        found += 2.0 * root * share * pace * ((2.0 / 3.0) * depth * np.sqrt(depth) - held(x)[0])
+        found += 2.0 * root * share * pace * (sliding_integral(np.maximum(depth, 0.0)) - held(x)[0])
     return direction * found

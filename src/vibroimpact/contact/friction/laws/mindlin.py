@@ -118,7 +118,7 @@ class OneSpring:
     def after(self, force: float, moved: Floats) -> tuple[OneSpring, Floats]:
         """Stretch the spring, at most to sliding."""
         law, radius = self.law, self.law.radius_under(force)
-        kept = radius / self.radius if law.stretching[1] == 2 and radius < self.radius else 1.0
+        kept = (radius / self.radius) ** (law.stretching[1] - 1) if radius < self.radius else 1.0
         stretch, stiffness = self.stretch * kept + moved * (0.5 * (1.0 + kept)), 2.0 * float(law.effective_shear_modulus) * radius
         bounded = _kept(stiffness * stretch, float(law.coefficient) * force)
         slid, stretch = (1.0 - bounded) * float(np.hypot(*stretch)), stretch * bounded
