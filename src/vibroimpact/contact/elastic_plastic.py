@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import ClassVar, Self
 
 import numpy as np
@@ -46,7 +47,7 @@ class ElasticPlasticLaw(CompliantLaw):
     @property
     def touch_level(self) -> Array:
         """The residual indentation [m], at which contact begins and ends."""
-        return self.loaded_to - self.elastic_recovery(self.loaded_to)
+        return self.loaded_to - self._unloading[0]
 
     @property
     def breakpoints(self) -> tuple[Array, ...]:
@@ -56,8 +57,8 @@ class ElasticPlasticLaw(CompliantLaw):
     def forces(self, delta: Array, delta_dot: Array, approach_speed: Array) -> tuple[Array, Array]:
         """Return the static force and zero [N]."""
         with np.errstate(divide="ignore", invalid="ignore"):
-            recovery_left = np.maximum(delta - self.touch_level, 0.0) / self.elastic_recovery(self.loaded_to)
-            unloading = self.loading_force(self.loaded_to) * power(recovery_left, self.unloading_exponent)
+            recovery, largest = self._unloading
+            unloading = largest * power(np.maximum(delta - self.touch_level, 0.0) / recovery, self.unloading_exponent)
         force = np.where(delta < self.loaded_to, unloading, self.loading_force(np.maximum(delta, self.loaded_to)))
         return force, np.zeros_like(force)
 
@@ -90,6 +91,11 @@ class ElasticPlasticLaw(CompliantLaw):
             if np.all(np.abs(step) < 1e-9):  # convergence is quadratic: the next step would be below rounding
                 break
         return np.where(deepest > self.loaded_to, np.sqrt(np.minimum(self._unloading_work(deepest) / energy, 1.0)), 1.0)[()]
+
+    @cached_property
+    def _unloading(self) -> tuple[Array, Array]:
+        """The elastic recovery [m] and the force [N] at the largest indentation so far."""
+        return self.elastic_recovery(self.loaded_to), self.loading_force(self.loaded_to)
 
     def _unloading_work(self, deepest: Array) -> Array:
         return self.loading_force(deepest) * self.elastic_recovery(deepest) / (self.unloading_exponent + 1.0)

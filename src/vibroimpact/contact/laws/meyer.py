@@ -12,7 +12,7 @@ from vibroimpact.contact.yielding_sphere import YieldingSphereLaw
 
 _AT_YIELD, _FULLY_PLASTIC = 1.6, 2.8  # largest pressure at first yield, and mean pressure when fully plastic, over the yield strength
 _RISE = 1.5 * _FULLY_PLASTIC / _AT_YIELD  # ratio of the mean pressures, which is two thirds of the largest one at first yield
-_MOST_ITERATIONS, _CONVERGED = 60, 1e-15
+_MOST_ITERATIONS, _CONVERGED = 60, 1e-8  # convergence is quadratic: the next step would be below rounding
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -110,7 +110,8 @@ class Meyer(YieldingSphereLaw):
         full = 0.5 * (np.sqrt(_RISE * _RISE + 4.0 * depth) - _RISE)  # where the pressure is full: x^2 + _RISE x
         x = 0.5 * (np.sqrt(1.0 + 4.0 * depth) - 1.0)  # where it does not rise, and not less where it does
         for _ in range(_MOST_ITERATIONS):  # x^2 + x^(n-1) is convex: Newton's method goes down to the root
-            step = (x * x + x**power - depth) / (2.0 * x + power * x ** (power - 1.0))
+            rising = x**power
+            step = (x * x + rising - depth) / (2.0 * x + power * rising / x)
             x = x - step
             if np.all(np.abs(step) <= _CONVERGED * x):
                 break
