@@ -27,6 +27,9 @@ from vibroimpact.arrays import Drops, Floats, Indices
 
 _TINY, _SHORT = 1e-300, 1e-9  # a length, and that of a piece over its depth, which is none
 
+_LAYERS = 32
+"""Points of each curve for which there is room at first."""
+
 _MOST_SHARE = 2.0
 """How far H is extended from the last piece of a curve, in lengths of it from its lower end."""
 
@@ -55,7 +58,7 @@ class TurningPoints:
 
     def __init__(self, size: int) -> None:
         # layer upon layer, each with one point of every contact; those of the middle are the lowest
-        self.size, self.points, self.top = size, np.zeros((3, 8 * size)), np.arange(size)  # depth, displacement, integral
+        self.size, self.points, self.top = size, np.zeros((3, _LAYERS * size)), np.arange(size)  # depth, displacement, integral
         self.below = np.arange(size)  # the point below which, or at which, the slip ends
 
     def push(self, drops: Drops, depth: Floats, displacement: Floats, integral: Floats) -> None:

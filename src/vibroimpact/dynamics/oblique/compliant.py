@@ -86,7 +86,7 @@ def slide_compliant(
         joints, found, begins = normal.steps == 0.0, path.take(here, axis=2), _in_order(first[some])
         grid = np.empty((len(depth), 7, len(here)))
         for row, values in enumerate((normal.time, normal.pace, normal.pace_slope, depth, depth_slope, most, swept)):
-            values.take(here, axis=1, out=grid[:, row])
+            values.take(here, axis=1, out=grid[:, row], mode="clip")  # otherwise by way of a copy
         if number > 1:
             grid, joints = _refined(grid, joints, number), np.repeat(joints, number)
             found, begins = np.repeat(found, number, axis=1)[:, number - 1 :], begins * number
