@@ -380,7 +380,7 @@ def test_the_page_goes_on_after_the_server_was_started_again(page: Page, new_ser
 def test_cancel_keeps_the_last_plate(page: Page, server: Server) -> None:
     open_live(page, server, ELASTIC)
     before, charts = shown(page), page.evaluate("() => document.documentElement.dataset.drawn")
-    slow = {**ELASTIC, "plate": {**ELASTIC["plate"], "mesh": {"element_size": "6 mm"}, "modes": 120}}
+    slow = {**ELASTIC, "plate": {**ELASTIC["plate"], "mesh": {"element_size": "5 mm"}, "modes": 400}}
     drop_file(page, "slow.toml", tomli_w.dumps(slow).encode())
     page.locator("#work").wait_for()
     until(page, "() => document.getElementById('work-words').textContent === 'computing modes'")
@@ -400,7 +400,7 @@ def test_cancel_while_the_case_in_full_waits(page: Page, server: Server) -> None
     before = shown(page)
     page.evaluate(
         """() => vibroimpact.live.controls.change(
-            (table) => { table.plate.mesh = { element_size: "5.9 mm" }; table.plate.modes = 120; }, true)"""
+            (table) => { table.plate.mesh = { element_size: "4.9 mm" }; table.plate.modes = 400; }, true)"""
     )
     until(page, "() => document.getElementById('work-words').textContent === 'computing modes' && vibroimpact.live.state.detail === 'full'")
     page.locator("#cancel").click()
