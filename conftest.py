@@ -13,6 +13,22 @@ from _pytest.doctest import DoctestItem
 pytest_plugins = ["agreement"]
 
 
+_PART = 5
+"""Of a large population, one in so many is drawn where not all are asked for."""
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Add the option by which slow tests draw whole populations."""
+    parser.addoption("--whole", action="store_true", help="draw whole populations in slow tests, not the first fifth of them")
+
+
+@pytest.fixture
+def population(request: pytest.FixtureRequest) -> Callable[[int], int]:
+    """How many of a population are drawn: continuous integration has the time for a fifth, `make test-whole` draws all."""
+    whole = request.config.getoption("--whole")
+    return lambda size: size if whole else -(-size // _PART)
+
+
 @pytest.fixture(autouse=True, scope="session")
 def own_store(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     """Keep the modes that tests compute apart from those of the user; all processes of a run share them."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -180,9 +181,9 @@ def test_intervals_hold_the_truth_as_often_as_is_stated(known: bool, tmp_path: P
 
 @pytest.mark.slow
 @pytest.mark.parametrize("known", [True, False])
-def test_intervals_of_microslip_hold_the_truth_as_often_as_is_stated(known: bool, tmp_path: Path) -> None:
+def test_intervals_of_microslip_hold_the_truth_as_often_as_is_stated(known: bool, tmp_path: Path, population: Callable[[int], int]) -> None:
     contact = {"law": "hunt-crossley", "restitution": 0.7}
-    check_coverage(inside("mdr", ALL, {"coefficient": 0.15}, 80, tmp_path, known=known, contact=contact))
+    check_coverage(inside("mdr", ALL, {"coefficient": 0.15}, population(80), tmp_path, known=known, contact=contact))
 
 
 @pytest.mark.parametrize("known", [True, False])

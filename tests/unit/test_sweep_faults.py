@@ -11,6 +11,7 @@ import subprocess
 import sys
 import threading
 import time
+from collections.abc import Callable
 from concurrent.futures import BrokenExecutor, Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from functools import partial
@@ -83,8 +84,8 @@ def test_a_study_that_is_killed_goes_on_to_the_same_bits(tmp_path: Path) -> None
 
 
 @pytest.mark.slow
-def test_a_study_that_is_killed_twenty_times_goes_on_to_the_same_bits(tmp_path: Path) -> None:
-    killed_again_and_again(tmp_path, 20, seed=2)
+def test_a_study_that_is_killed_twenty_times_goes_on_to_the_same_bits(tmp_path: Path, population: Callable[[int], int]) -> None:
+    killed_again_and_again(tmp_path, population(20), seed=2)
 
 
 @pytest.mark.slow
@@ -450,9 +451,9 @@ def interrupted_after(seconds: float, study: Path, folder: Path) -> tuple[int, s
 
 
 @pytest.mark.slow
-def test_ctrl_c_is_never_lost(tmp_path: Path) -> None:
+def test_ctrl_c_is_never_lost(tmp_path: Path, population: Callable[[int], int]) -> None:
     study = study_file(tmp_path, {**RANDOM, "samples": 2_000_000})  # which would take a minute
-    for number in range(24):
+    for number in range(0, 24, 24 // population(24)):
         status, told = interrupted_after(0.4 + 0.2 * number, study, tmp_path / f"out{number}")
         assert status in (1, 130), (number, told)  # 1: before the command has begun
         assert told.count("Traceback") <= (number < 3), (number, told)  # of the interpreter, which was starting
