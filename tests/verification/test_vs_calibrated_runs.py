@@ -37,7 +37,7 @@ ANY_PAIR = ContactPair(1e9, 0.01, 0.01, 1e8, 0.3)
 FREE = {name: free for name, law in contact_laws().items() if (free := law.example(ANY_PAIR).free_parameter)}
 LEAST = {"hunt-crossley": 0.55, "herbert-mcwhannell": 0.55, "lankarani-nikravesh": 0.72, "lee-wang": 0.72}
 """Restitutions below which a law does not come, whatever its parameter, and a little."""
-SLOW = {"jkr", "krijt", "storakers", "kuwabara-kono", "adams-impact"}
+SLOW = {"jkr", "krijt", "storakers", "kuwabara-kono", "adams-impact", "meyer"}
 GRAVITIES = (9.8, 9.80665, 3.71, 1.62, 24.79, 0.1)
 MATERIALS = ("steel", "aluminium", "rock-paper", "glass", "granite", "nylon", "steel-paper")
 WITHIN = 1e-8

@@ -8,6 +8,7 @@ and dynamic. The oracle itself is held against Rayleigh and Lamb's equations, th
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -253,14 +254,18 @@ def test_some_impacts(agrees: Agrees, plate: Elastic, side: float, modes: int, m
 @pytest.mark.slow
 @pytest.mark.parametrize("more", [{}, {"element": "solid"}], ids=["plates", "bricks"])
 @pytest.mark.parametrize("ratio", list(SIDES))
-@pytest.mark.parametrize("plate", [PMMA, ALUMINIUM, STEEL], ids=["PMMA", "aluminium", "steel"])
-def test_impacts(agrees: Agrees, plate: Elastic, ratio: float, more: dict[str, Any]) -> None:
+def test_impacts(agrees: Agrees, ratio: float, more: dict[str, Any], population: Callable[[int], int]) -> None:
     """With default meshes. A heavy ball is still there when waves come back from the edges, and is kicked."""
     radius = ratio * THICKNESS
-    time = contact_time(plate, radius, STEEL, SPEED)
-    response = program(SIDES[ratio], plate, radius, max_frequency=PERIODS[ratio] / time, **more)
-    found = deviations(response, exact(SIDES[ratio], plate, radius, times=10.0 if ratio == 2.0 else 3.0))
-    case = f"sphere radius 0.3 to 2 plate thicknesses, {'solid' if more else 'plate'} elements, default meshes"
-    agrees(
-        case, "relative difference of maximum contact force, contact duration and coefficient of restitution", found, 0.0, absolute=ASKED
-    )
+    for plate in (STEEL, PMMA, ALUMINIUM)[: population(3) if more else 3]:
+        time = contact_time(plate, radius, STEEL, SPEED)
+        response = program(SIDES[ratio], plate, radius, max_frequency=PERIODS[ratio] / time, **more)
+        found = deviations(response, exact(SIDES[ratio], plate, radius, times=10.0 if ratio == 2.0 else 3.0))
+        case = f"sphere radius 0.3 to 2 plate thicknesses, {'solid' if more else 'plate'} elements, default meshes"
+        agrees(
+            case,
+            "relative difference of maximum contact force, contact duration and coefficient of restitution",
+            found,
+            0.0,
+            absolute=ASKED,
+        )
