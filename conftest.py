@@ -13,20 +13,24 @@ from _pytest.doctest import DoctestItem
 pytest_plugins = ["agreement"]
 
 
-_PART = 5
+_SHARE = 5
 """Of a large population of cases, one in so many is taken where not all are asked for."""
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     """Add the option by which slow tests take whole populations of cases."""
-    parser.addoption("--whole", action="store_true", help="take whole populations of cases in slow tests, not the first fifth of them")
+    parser.addoption(
+        "--whole",
+        action="store_true",
+        help="take whole populations of cases in slow tests, not the first fifth of them, and the tests marked `whole`",
+    )
 
 
 @pytest.fixture
-def population(request: pytest.FixtureRequest) -> Callable[[int], int]:
-    """How many of a population of cases are taken: continuous integration has the time for a fifth, `make test-whole` takes all."""
+def population(request: pytest.FixtureRequest) -> Callable[..., int]:
+    """How many of a population of cases are taken: continuous integration takes one in five, or in `share`; `make test-whole` takes all."""
     whole = request.config.getoption("--whole")
-    return lambda size: size if whole else -(-size // _PART)
+    return lambda size, share=_SHARE: size if whole else -(-size // share)
 
 
 @pytest.fixture(autouse=True, scope="session")
@@ -40,8 +44,12 @@ def own_store(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 
 
 @pytest.hookimpl(tryfirst=True)
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark examples of docstrings that train classifiers as slow."""
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Leave out tests marked `whole` where not all are asked for; mark examples of docstrings that train classifiers as slow."""
+    if not config.getoption("--whole"):
+        repeated = [item for item in items if item.get_closest_marker("whole")]
+        config.hook.pytest_deselected(items=repeated)
+        items[:] = [item for item in items if item not in set(repeated)]
     for item in items:
         if isinstance(item, DoctestItem) and _says(item, 'recognise("falls"', '"recognised"'):
             item.add_marker("slow")

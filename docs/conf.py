@@ -62,7 +62,10 @@ sphinx_gallery_conf = {
     "examples_dirs": ["../examples/gallery"],
     "gallery_dirs": ["gallery"],
     "within_subsection_order": ExplicitOrder([f"plot_{name}.py" for name in EXAMPLES.split()]),  # an example that is not in it is an error
-    "image_scrapers": ("matplotlib", "plotly_gallery.scrape"),
+    "image_scrapers": ("gallery_checks.scrape", "plotly_gallery.scrape"),
+    "reset_modules": ("matplotlib", "gallery_checks.check_example"),
+    "reset_modules_order": "both",
+    "run_stale_examples": True,  # they test the library, which changes without them
     "capture_repr": ("_repr_html_", "__repr__"),
     "ignore_repr_types": "NoneType|matplotlib",
     "write_computation_times": False,

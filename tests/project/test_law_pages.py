@@ -24,15 +24,14 @@ def test_every_law_has_a_page_and_every_page_a_law() -> None:
     assert all(f"](laws/{name}.md)" in (DOCS / "laws.md").read_text(encoding="utf-8") for name in LAWS)
 
 
-@pytest.mark.parametrize("name", LAWS)
-def test_markup_is_githubs(name: str) -> None:
-    text = (DOCS / "laws" / f"{name}.md").read_text(encoding="utf-8")
-    assert ":math:" not in text
-    assert ".. math::" not in text
-    assert text.count("```") % 2 == 0
-    assert f"$ vibroimpact laws {name}\n" in text
-    for target in re.findall(r"\]\(([^)#]+)\)", text):
-        assert (DOCS / "laws" / target).exists(), target
+def test_markup_is_githubs() -> None:
+    for name in LAWS:
+        text = (DOCS / "laws" / f"{name}.md").read_text(encoding="utf-8")
+        assert ":math:" not in text, name
+        assert ".. math::" not in text, name
+        assert text.count("```") % 2 == 0, name
+        assert f"$ vibroimpact laws {name}\n" in text
+        assert [target for target in re.findall(r"\]\(([^)#]+)\)", text) if not (DOCS / "laws" / target).exists()] == [], name
 
 
 def test_writing_again_changes_nothing_else(tmp_path: Path) -> None:

@@ -35,10 +35,9 @@ def test_type_checkers_know_the_public_names() -> None:
     assert sorted(re.findall(r"^    from vibroimpact\S+ import (\w+) as \1$", text, flags=re.M)) == sorted(NAMES)
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_every_public_name_has_an_example(name: str) -> None:
-    text = inspect.getdoc(getattr(vi, name)) or ""
-    assert re.search(r"^Examples\n--------\n.*>>> ", text, flags=re.S | re.M), name
+def test_every_public_name_has_an_example() -> None:
+    texts = {name: inspect.getdoc(getattr(vi, name)) or "" for name in NAMES}
+    assert [name for name, text in texts.items() if not re.search(r"^Examples\n--------\n.*>>> ", text, flags=re.S | re.M)] == []
 
 
 GOOD = '<h1 id="top">A</h1><a href="b.html#there">b</a><a class="right-next" href="b.html">next</a><img src="a.png" alt="A drop">'
@@ -83,3 +82,15 @@ def test_only_the_last_page_leads_no_further(site: Path) -> None:
 def test_heavy_pictures_count(site: Path) -> None:
     (site / "a.png").write_bytes(bytes(4_000_000))
     assert page_faults(read_pages(site)) == ["a.html: it weighs 4.0 MB with its pictures"]
+
+
+def test_a_figure_needs_a_title() -> None:
+    pytest.importorskip("sphinx_gallery", reason="make docs-site installs it")
+    from gallery_checks import has_title
+    from matplotlib.figure import Figure
+
+    figure = Figure()
+    axes = figure.subplots()
+    assert not has_title(figure)
+    axes.set_title("Force", loc="left")
+    assert has_title(figure)

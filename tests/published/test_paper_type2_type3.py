@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import math
 import tomllib
+from collections.abc import Callable
 from functools import cache
 from importlib.resources import files
 from typing import Any
@@ -111,9 +112,10 @@ def test_type_3_is_predicted(agrees: Agrees) -> None:
 
 
 @pytest.mark.slow
-def test_the_radius_of_the_patches_matters_little() -> None:
+def test_the_radius_of_the_patches_matters_little(population: Callable[..., int]) -> None:
     """Which the paper does not print. From 10 to 26 mm, the largest that the plate has room for: force and rebound 1 %, the plate 16 %."""
-    tables = [identified(radius, 200, 0.04) for radius in ("10 mm", "15 mm", "20 mm", "25 mm", "26 mm")]
+    radii = ("10 mm", "26 mm", "15 mm", "20 mm", "25 mm")  # the extremes first
+    tables = [identified(radius, 200, 0.04) for radius in radii[: population(5, share=3)]]
     for name, spread in {"max_force_N": 0.004, "rebound_height_m": 0.01, "plate_strain_J": 0.02, "plate_displacement_m": 0.18}.items():
         values = [table[name] for table in tables]
         assert max(values) / min(values) < 1.0 + spread, name

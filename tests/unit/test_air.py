@@ -46,7 +46,7 @@ def test_thin_air_tends_to_a_vacuum() -> None:
     assert np.all(off[0] < 0.0)
 
 
-@pytest.mark.parametrize("law", ["hunt-crossley", "newton"])
+@pytest.mark.parametrize("law", ["hunt-crossley", pytest.param("newton", marks=pytest.mark.slow)])
 @pytest.mark.parametrize("run", [{"impacts": 3}, {"impacts": "all"}, {"duration": 2.0}])
 @pytest.mark.parametrize("drop", [{}, {"velocity": [3.0, 0.0, 2.0], "spin": [0.0, 50.0, 0.0]}])
 def test_histories_keep_energy_and_show_the_drag(law: str, run: dict[str, Any], drop: dict[str, Any]) -> None:
@@ -66,6 +66,7 @@ def test_histories_keep_energy_and_show_the_drag(law: str, run: dict[str, Any], 
     assert near["acceleration_m_s2"][1] < -float(response.problem.gravity), "on the way up drag pulls down as well"
 
 
+@pytest.mark.slow
 def test_a_batch_is_its_drops() -> None:
     """Spheres of 0.1 to 50 mm at once, in air of several densities, obliquely."""
     radius, density = np.geomspace(1e-4, 0.05, 6), np.linspace(0.5, 1.5, 6)

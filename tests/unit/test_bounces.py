@@ -212,6 +212,7 @@ def test_a_contact_is_no_part_of_a_flight() -> None:
         vi.find_bounces(record_of(*touches), contact=0.5)
 
 
+@pytest.mark.slow
 def test_fits_over_the_speed_hold_the_truth() -> None:
     """Of 300 series that scatter by more than their uncertainty."""
     random = np.random.default_rng(0)

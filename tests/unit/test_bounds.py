@@ -23,6 +23,7 @@ def bound() -> Bound:
     return bound_of(vi.load_sweep("signals:coal-gangue", 4000))
 
 
+@pytest.mark.slow
 def test_more_measured_tells_more(bound: Bound) -> None:
     errors = {name: one.upper for name, one in bound.errors.items()}
     assert errors["one impact"] < errors["one impact, place unknown"] < errors["contact time"] < errors["impulse"] < bound.majority

@@ -331,6 +331,7 @@ def test_lines_are_those_of_the_file(tmp_path: Path) -> None:
     assert list(table.lines) == [5, 7]
 
 
+@pytest.mark.slow
 def test_the_same_measurement_in_the_case_and_in_a_file(tmp_path: Path) -> None:
     inside = calibrated({"target": SEVERAL, "degree": 1, "bootstrap": 0}, run={"impacts": 1})
     for text in (ROWS, "restitution [%];approach_speed (mm/s)\n70;1000\n60;2000\n50;3000\n"):

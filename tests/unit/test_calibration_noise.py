@@ -124,7 +124,8 @@ def test_unknown_deviations(measure: Callable[..., Observations]) -> None:
     assert sizes == pytest.approx(2e-3 if measure is heights else 0.02, rel=0.1)
 
 
-@pytest.mark.parametrize("times", [120, pytest.param(TIMES, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("times", [120, TIMES])
 def test_a_reading_that_two_impacts_share_counts_once(times: int) -> None:
     """A height is what one impact leaves with and the next comes with: the errors of their restitutions are opposite."""
     found = repeated(heights, known=True, confidence=0.95, times=times)

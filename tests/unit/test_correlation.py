@@ -47,6 +47,7 @@ def struck(damping: float = 0.008) -> Correlation:
     return vi.correlate(a_case(damping=damping), records(value), force=Record("hammer", force, RATE, "N"))
 
 
+@pytest.mark.slow
 def test_the_delay_is_found_to_a_part_of_a_sample() -> None:
     touch, _ = fallen()
     assert dropped().first_touch * RATE == pytest.approx(touch * RATE, abs=0.01)

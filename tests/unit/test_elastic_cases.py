@@ -420,6 +420,7 @@ def test_modes_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: 
     assert "these are modes of elastic bodies" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_the_meshes_written_are_those_of_the_modes(tmp_path: Path) -> None:
     """A solid plate written for Nastran, and brought back, has the same frequencies."""
     case = vi.read_case(plate_case(element="solid", mesh={"element_size": 0.2}))

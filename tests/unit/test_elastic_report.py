@@ -275,6 +275,7 @@ def test_paraview_takes_fewer_frames_of_a_fine_mesh(response: vi.Response, tmp_p
     assert not (tmp_path / "none").exists()
 
 
+@pytest.mark.slow
 def test_the_animation_is_small_and_tells_its_scale(result: Result, folder: Path) -> None:
     deflection = result.deflection
     assert deflection is not None

@@ -64,6 +64,7 @@ def test_a_result_folder_has_none_unless_asked(folder: Path) -> None:
     assert not (folder / "figures").exists()
 
 
+@pytest.mark.slow
 def test_figures_of_a_folder(
     folder: Path,
     elsewhere: tuple[Path, list[float]],

@@ -74,6 +74,7 @@ def test_pictures_are_to_scale() -> None:
         assert frames[panel.x].size == frames[panel.y].size
 
 
+@pytest.mark.slow
 def test_words_of_a_run_neither_collide_nor_are_cut(figures: dict[str, Figure]) -> None:
     assert len(figures) == 7
     for figure in figures.values():
@@ -133,6 +134,7 @@ def deflected(size: tuple[float, float], frames: int = 40) -> Chart:
     return deflection_chart(Result(case, impacts, {}, {}, "", deflection=deflection), "a caption")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", PLATES)
 def test_names_of_sensors_stay_on_the_plate(size: tuple[float, float]) -> None:
     figure = drawn(deflected(size))

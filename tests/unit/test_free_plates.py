@@ -93,6 +93,7 @@ def test_a_rigid_one_is_the_reduced_mass(lever: float, inertia: float) -> None:
     assert row["restitution_achieved"] == pytest.approx([1.0], rel=1e-10)
 
 
+@pytest.mark.slow
 def test_its_static_compliance_is_that_of_its_modes() -> None:
     """By the thin theory, where a point has a finite one: under the force and the inertia that balances it."""
     recipe = Recipe(PlateOfPlates((0.2, 0.15, 0.004), 0.02, theory="thin"), 7850.0, 210e9, 0.3, (), Reduction(modes=160))

@@ -52,6 +52,7 @@ def test_cause_is_that_of_the_worst_mode() -> None:
     assert main_cause({}) == ""
 
 
+@pytest.mark.slow
 def test_what_is_said_of_a_sphere_is_how_far_it_is_off() -> None:
     """Twenty modes of the default mesh against the roots of Lamb's equations, omega R / c_T, for a Poisson's ratio of 0.28."""
     model = computed_model(Recipe(SphereOfSolids(1.0), 1.0, 2.0 * 1.28, 0.28, (), Reduction(modes=20)))  # the speed of shear is 1
@@ -120,6 +121,7 @@ def case(**plate: object) -> vi.Case:
     )
 
 
+@pytest.mark.slow
 def test_they_are_written(tmp_path: Path) -> None:
     asked = case(mesh={"element_size": 0.1})
     modes = vi.compute_modes(asked)

@@ -22,6 +22,7 @@ def separation_speed(problem: vi.Problem, element: tuple[float, float]) -> float
     return float(vi.simulate(replace(problem, impacts=1, local_element=element)).impacts["separation_speed_m_s"][0])
 
 
+@pytest.mark.slow
 def test_deviations_are_those_of_elements_identified_from_other_readings(problem: vi.Problem) -> None:
     """The element is identified again from a force, and from a rebound, that is off by a little."""
     element = vi.identify_local_element(problem, FORCE, rebound_height=REBOUND)

@@ -94,6 +94,7 @@ def test_modes_are_those_that_arpack_finds(held: Callable[[], HeldStructure]) ->
     assert np.abs(left).max() < 1e-6 * np.abs(structure.stiffness @ found.shapes).max()
 
 
+@pytest.mark.slow
 def test_modes_of_a_sphere_are_those_of_the_whole() -> None:
     """Many are equal, and a number of modes may end among equal ones."""
     structure = sphere()
@@ -128,6 +129,7 @@ def test_a_number_of_modes_that_is_not_to_be_had_is_refused_as_ever(number: int)
         elastic_system(sphere(4)).modes(number)
 
 
+@pytest.mark.slow
 def test_the_factors_of_a_sphere_are_those_of_its_eighths(monkeypatch: pytest.MonkeyPatch) -> None:
     structure = sphere(6, kind="hex27")
     entries = [Factors(structure.stiffness + structure.mass, structure.order).entries]

@@ -42,6 +42,7 @@ def simple() -> tuple[vi.BodyModes, Chart]:
     return body, chart
 
 
+@pytest.mark.slow
 def test_the_shapes_of_a_simply_supported_plate_are_sines(simple: tuple[vi.BodyModes, Chart]) -> None:
     """Between the nodes too; and panels are numbered with their frequencies."""
     body, chart = simple

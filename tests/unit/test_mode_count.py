@@ -25,6 +25,7 @@ def estimated(recipe: Recipe, frequency: float) -> float:
     return modes_expected(replace(recipe, reduction=Reduction(max_frequency=frequency)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("case", "body", "frequency"),
     [("paper:type2", "sphere", 25e3), ("paper:type2", "sphere", 30e3), ("paper:type3", "plate", 5e3), ("paper:type3", "plate", 20e3)],

@@ -249,7 +249,8 @@ def test_none_of_a_million_random_impacts_makes_energy(population: Callable[[int
     no_random_impact_makes_energy(population(1_000_000))
 
 
-@pytest.mark.parametrize("rolling", [pytest.param(0.01, marks=pytest.mark.slow), 0.3, pytest.param(10.0, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("rolling", [0.01, 0.3, 10.0])
 def test_no_random_impact_makes_energy_by_rolling_resistance(rolling: float) -> None:
     without, with_it = (energies_of_random_impacts(4000, 6, coefficient)[1] for coefficient in (0.0, rolling))
     assert (with_it <= without * (1.0 + 1e-12)).all()

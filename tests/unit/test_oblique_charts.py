@@ -141,6 +141,7 @@ def test_the_dimensionless_map_of_a_study(tmp_path: Path) -> None:
         np.testing.assert_allclose(line.y, line.x - 7.0 * factor, rtol=1e-6)
 
 
+@pytest.mark.slow
 def test_the_dimensionless_map_of_a_calibration(tmp_path: Path) -> None:
     """By measured velocities, angles or spins the same points, which lie on the curve of the law that made them."""
     drops = [{"speed": 2.0, "angle": float(np.radians(angle)), "gravity": 0.0} for angle in ANGLES]

@@ -103,6 +103,7 @@ def test_which_treatment_has_a_face() -> None:
     assert "plate_theory_inertia_m_s2_N" not in thin.facts
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("more", one_in(2, [{"reduction": "craig-bampton"}, {"attachment_mode": True}], lambda more: next(iter(more))))
 def test_other_bases_meet_the_same_face(more: dict[str, Any]) -> None:
     """Modes that stand for the statics are no waves, which matters little."""
@@ -127,6 +128,7 @@ def test_bricks_lack_nothing_of_that() -> None:
     assert math.isnan(plate_theory_error(response.problem.facts, response.impacts))
 
 
+@pytest.mark.slow
 def test_how_far_plate_theory_is_off_in_frequency_is_said() -> None:
     (thick,) = vi.compute_modes(case({"modes": 20, "size": [0.12, 0.1, 0.03]}))["plate"].doubts
     assert "due to the theory of plates" in thick

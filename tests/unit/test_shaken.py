@@ -523,6 +523,7 @@ def test_a_ball_that_rolls_on_a_table_moves_with_two_sevenths_of_its_velocity() 
     assert abs(rest) < 1e-4
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("law", "most", "kept"), [("rigid", 0.2, 0.3), ("rigid", 1e9, 0.3), ("coulomb", 0.2, 0.0)], ids=["rigid", "sticking", "coulomb"]
 )
@@ -645,6 +646,7 @@ OBLIQUE: dict[str, Any] = {
 }
 
 
+@pytest.mark.slow
 def test_an_amplitude_of_zero_leaves_an_oblique_drop_on_an_elastic_plate_as_it_is() -> None:
     still = case(**OBLIQUE, **{"plate.motion.amplitude": 0.0})
     one, other = vi.simulate(still), vi.simulate(replace(still, motion=None))
@@ -668,6 +670,7 @@ def test_the_ledger_of_oblique_impacts_on_an_elastic_screen_closes() -> None:
     assert touch["plate_deflection_m"] == pytest.approx(touch["position_m"] - 0.02, abs=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("drive", ["slow", "table"])
 def test_an_elastic_plate_that_drifts_is_one_at_rest_to_an_observer_who_drifts(tmp_path: Path, drive: str) -> None:
     """A steady velocity along the plate, of a slow motion, or of a table, whose cosines have it to 3e-5: the place on the plate counts.

@@ -244,6 +244,7 @@ def test_a_large_study_stays_light(tmp_path: Path) -> None:
 # signals ----------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_signals_are_laid_over_each_other_at_first_touch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def ringing(table: Any, keep: Any, first: int, points: Mapping[str, Any], window: Any) -> ChunkResult:
         touch = np.asarray(points["drop.height"], dtype=float) / 100.0

@@ -62,6 +62,7 @@ def alone(*place: int) -> vi.Response:
     return vi.simulate(case_at(table, values))
 
 
+@pytest.mark.slow
 def test_the_drops_are_those_of_single_runs(study: vi.Study) -> None:
     for place in ((0, 0), (1, 2)):
         single = alone(*place)

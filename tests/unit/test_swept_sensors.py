@@ -43,6 +43,7 @@ def study(tmp_path_factory: pytest.TempPathFactory) -> vi.Study:
     return vi.read_study(vi.run_sweep(vi.read_sweep(table(**over)), tmp_path_factory.mktemp("sensors") / "study"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("place", [0, 1])
 def test_a_swept_sensor_reads_what_one_mounted_there_reads(study: vi.Study, place: int) -> None:
     case = vi.read_case(with_values(table(), {"sensors.a1.position.x": [0.1, 0.097][place], "sweep": {"over": {"sphere.radius": [0.02]}}}))

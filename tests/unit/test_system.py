@@ -198,6 +198,7 @@ def test_contacts_that_turn_or_part_at_once() -> None:
             np.testing.assert_allclose(both.at(2e-2)[one].velocity, alone.at(2e-2)["x"].velocity, rtol=1e-9)
 
 
+@pytest.mark.slow
 def test_a_ball_does_not_fall_through_its_dent() -> None:
     """Which the next impact does not find again: it parts within it, and comes back into it."""
     law = vi.find_contact_law("walton-braun")(stiffness=1e6, restitution=0.3)

@@ -104,6 +104,7 @@ def test_the_motion_of_a_stretch_is_kept_for_a_while(monkeypatch: pytest.MonkeyP
         np.testing.assert_array_equal(values, kept[name])
 
 
+@pytest.mark.slow
 def test_runs_of_other_threads_leave_the_motions_that_are_kept() -> None:
     problem = drop_on(LOSSY, random_modes(3, 30, 100.0, 2e4, 1.2, 0.02), height=0.3, impacts=3)
 

@@ -134,6 +134,7 @@ def test_the_papers_drops(agrees: Agrees, read, case: str) -> None:
         same(agrees, "the paper's drop, sensor triggered once per impact", drop, Motion(model).run(always=False))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("read", one_in(2, [read.values[0] for read in READERS], lambda read: read.__name__))
 def test_random_laws(agrees: Agrees, read) -> None:
     random = np.random.default_rng(20240611)
@@ -343,6 +344,7 @@ def test_the_oracles_functions(text: str, value: float) -> None:
     assert parse_function(text, Scope({}, {}, {}))(State({}, {}, {})) == pytest.approx(value, rel=1e-14)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("read", READERS)
 @pytest.mark.parametrize("coefficient", [0.05, 0.4])
 def test_oblique_drops(agrees: Agrees, read, coefficient: float) -> None:

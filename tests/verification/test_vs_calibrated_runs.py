@@ -198,6 +198,7 @@ def test_restitutions_near_the_ends(agrees: Agrees, restitution: float) -> None:
     )
 
 
+@pytest.mark.slow
 def test_several_outcomes_are_as_near_as_they_can_be() -> None:
     """No other damping has a lower weighted sum of squares, by runs of the drop on both sides."""
     weights = {"separation_speed": 1.0, "max_force": 0.3}
@@ -231,6 +232,7 @@ def test_the_full_damping_penetration_that_gives_the_printed_height() -> None:
     assert run["rebound_height_m"][0] == pytest.approx(2.41132, rel=1e-8)
 
 
+@pytest.mark.slow
 def test_damping_of_an_elastic_sphere(agrees: Agrees) -> None:
     """The damping ratio of a sphere's modes comes back from the rebound that it gives."""
     problem = drop_on(Hertz(stiffness=STIFFNESS, exponent=1.5), sphere=random_modes(3, 6, 5e3, 4e4, 2.0, damping=0.3))

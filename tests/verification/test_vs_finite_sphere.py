@@ -55,6 +55,7 @@ def force_of(case: dict) -> float:
     return float(vi.simulate(vi.read_case(case)).impacts["max_force_N"][0])
 
 
+@pytest.mark.slow
 def test_the_part_of_the_force_that_hertz_lacks(agrees: Agrees) -> None:
     """Within 5 % of itself, at the same energy, of finite elements up to a/R = 0.3, where the sphere is no paraboloid."""
     approach = RADIUS * np.linspace(0.06, 0.3, 5) ** 2

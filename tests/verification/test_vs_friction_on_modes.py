@@ -122,6 +122,7 @@ def integrated(
     return {"time": found.t[-1], "fall": end[1], "point": end[4:6], "place": end[6 : 6 + count], "rate": end[6 + count : 6 + 2 * count]}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_a_contact_that_sticks_in_two_directions(agrees: Agrees, seed: int) -> None:
     """A single spring without limit is smooth: all velocities agree with an integration in time to 1e-7."""

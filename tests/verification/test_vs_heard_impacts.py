@@ -22,6 +22,7 @@ AGAINST = Against(
 RATE = 48e3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("restitution", "impacts"), [(0.3, 6), (0.5, 7), (0.7, 9), (0.9, 11)])
 def test_restitutions_of_a_simulated_record(agrees: Agrees, restitution: float, impacts: int, tmp_path: Path) -> None:
     """A steel ball on a clamped steel plate that rings: with 20 dB of noise too."""

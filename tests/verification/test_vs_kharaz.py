@@ -91,6 +91,7 @@ def test_steep_impacts_do_not_depend_on_the_tangential_compliance() -> None:
         np.testing.assert_allclose(tangential_restitution(friction)[6:], tangential_restitution("coulomb")[6:], atol=1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("friction", "rows", "coefficient", "interval"),
     [

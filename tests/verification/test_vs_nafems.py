@@ -97,6 +97,7 @@ def test_fv21_targets_have_mindlins_factor() -> None:
     np.testing.assert_allclose(found, [45.897, 109.44, 167.89, 204.51], rtol=1e-4)
 
 
+@pytest.mark.slow
 def test_fv21_with_bricks(agrees: Agrees) -> None:
     """Three layers of bricks, within 0.1 % of the exact solution in three dimensions (test_vs_navier has it)."""
     structure = solid_structure(solid_plate_mesh((10.0, 10.0, 1.0), 1.0, 3, "hex27"), STEEL)

@@ -137,6 +137,7 @@ def strains(response: vi.Response) -> dict[str, Floats]:
     return {"along x": x, "along y": y, "slanting": 0.5 * (x + y + shear), "below": -x}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["along x", "along y", "slanting", "below"])
 @pytest.mark.parametrize("kind", one_in(2, ["sigma-delta", "butterworth"]))
 def test_a_drop(agrees: Agrees, response: vi.Response, strains: dict[str, Floats], name: str, kind: str) -> None:

@@ -43,6 +43,7 @@ def chain() -> vi.SystemResponse:
     return vi.simulate_system(row_of_balls(60, 0.5, mass=MASS, law=Hertz(stiffness=STIFFNESS)), duration=5e-4)
 
 
+@pytest.mark.slow
 def test_speed_of_the_wave(agrees: Agrees, chain: vi.SystemResponse) -> None:
     peaks = chain.impacts["time_of_max_force_s"]  # contacts begin in their order
     speed = 2.0 * RADIUS * 15.0 / (peaks[40] - peaks[25])

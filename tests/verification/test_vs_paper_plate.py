@@ -62,7 +62,8 @@ def test_plate_elements(agrees: Agrees) -> None:
     agrees("plate elements of 40 mm", "natural frequencies, modes 1 and 2", found, REFERENCE, unit="Hz", relative=2e-3)
 
 
-@pytest.mark.parametrize("element", ["plate", pytest.param("solid", marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("element", ["plate", "solid"])
 def test_default_meshes(agrees: Agrees, element: Literal["plate", "solid"]) -> None:
     """Within half a per cent, and within what is said of each mode beside the 0.2 % of the reference."""
     steel = find_material("steel-paper")

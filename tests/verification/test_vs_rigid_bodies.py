@@ -206,6 +206,7 @@ def test_the_remedy_that_is_named_rebounds_as_the_run(agrees: Agrees, place: Pat
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("model", ["rigid", "elastic"])
 @pytest.mark.parametrize("to", one_in(2, ["adams", "adams-view"]))
 def test_a_function_is_taken_at_the_speeds_of_rigid_bodies(agrees: Agrees, to: str, model: str, place: Path) -> None:

@@ -150,7 +150,8 @@ def test_a_sphere_that_rolls_over_the_uphill_edge_does_not_come_back() -> None:
     assert rolls.edge_time(np.full((2, 1), 0.5 * speed**2 / up * (1.0 + 1e-12)))[0] == rolls.until[0]
 
 
-@pytest.mark.parametrize("rolling", [0.0, pytest.param(0.1, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("rolling", [0.0, 0.1])
 def test_the_first_edge_of_spheres_that_turn(rolling: float) -> None:
     """Against the motion at 20,000 times: spheres that slip and roll across a slope, and come back from an edge in part."""
     random, back = np.random.default_rng(3), 0

@@ -136,6 +136,7 @@ def test_period_doubling(agrees: Agrees, restitution: float) -> None:
     )
 
 
+@pytest.mark.slow
 def test_two_bounces_of_different_length_beyond_the_doubling() -> None:
     times = [vi.simulate(on_orbit(factor * doubling(0.5), 0.5, 1e-3, impacts=900)).impacts["time_s"] for factor in (0.98, 1.02)]
     (even, odd) = (np.diff(times[0][-21:]), np.diff(times[1][-21:]))
@@ -144,6 +145,7 @@ def test_two_bounces_of_different_length_beyond_the_doubling() -> None:
     assert abs(odd[0] - odd[1]) * FREQUENCY > 0.01
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("strength", "restitution"), [(2.5, 0.8), (8.0, 0.7), (1.5, 0.95)])
 def test_ledger_of_a_billiard_of_a_thousand_impacts(strength: float, restitution: float) -> None:
     response = vi.simulate(ball(restitution, table(strength), impacts=1000))
@@ -202,6 +204,7 @@ def test_lump_on_a_deck(agrees: Agrees, deck: float, relaxation: float, height: 
     assert response.energy["closure_relative"] <= 1e-9
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("relaxation", "height"), [(2e-5, 0.02), (2e-3, 0.006)], ids=["bouncing", "riding and launched again"])
 @pytest.mark.parametrize("deck", [np.inf, 1.4], ids=["stiff deck", "sprung deck"])
 def test_a_light_lump_on_a_deck_in_air(agrees: Agrees, deck: float, relaxation: float, height: float) -> None:

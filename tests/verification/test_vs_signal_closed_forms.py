@@ -226,6 +226,7 @@ def test_entropy_of_wavelet_packets() -> None:
     assert noise["wavelet_entropy"] == pytest.approx(1.0, abs=1e-3)
 
 
+@pytest.mark.slow
 def test_white_noise() -> None:
     """Means over 300 signals, within five standard errors of theory and its bias of one over the number of samples."""
     rate, samples, number = 1000.0, 4096, 300

@@ -98,6 +98,7 @@ def test_what_thin_theory_would_miss() -> None:
     assert exact(0.05) * rigidity(0.05) / SIDE**2 != pytest.approx(0.0116, rel=0.015)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("thickness", "solid", "layers", "of_shear"), one_in(2, [(0.01, 0.02, 2, 0.005), (0.05, 0.025, 3, 0.06)]))
 def test_clamped_plates_of_either_elements(agrees: Agrees, thickness: float, solid: float, layers: int, of_shear: float) -> None:
     """Within 1 %, which the bricks lack at the clamped edge; the thin theory lacks the shear that goes with the bending there."""

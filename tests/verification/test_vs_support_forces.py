@@ -64,6 +64,7 @@ def on_points(**one: Any) -> list[dict[str, Any]]:
     return [{"position": place, **one} for place in THREE]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("supports", [on_points(type="point"), on_points(type="spring", stiffness=1e6)], ids=["points", "springs"])
 def test_lever_rule(agrees: Agrees, supports: Any) -> None:
     agrees(
@@ -134,6 +135,7 @@ def off(found: Floats, force: Floats) -> float:
     return rms(found - exact) / rms(exact)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", range(4))
 def test_edges(agrees: Agrees, response: vi.Response, forces: Floats, number: int) -> None:
     found = response.signals()[f"{number}"].value
@@ -148,7 +150,8 @@ def test_balance_of_momentum(agrees: Agrees, response: vi.Response, forces: Floa
     agrees("sum of all supports after an impact", "support force signal", found, exact, unit="N", rms=0.01)
 
 
-@pytest.mark.parametrize("frequency", [16e3, pytest.param(30e3, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("frequency", [16e3, 30e3])
 def test_what_fewer_modes_change_is_told(forces: Floats, frequency: float) -> None:
     for name, signal in on_edges(frequency).signals().items():
         assert 0.25 < signal.uncertainty / off(signal.value, forces[int(name)]) < 4.0

@@ -54,6 +54,7 @@ def heard() -> dict[float, np.ndarray]:
     return {diameter: amplitudes(diameter) for diameter in KIRCHHOFF}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("diameter", [12.3, 17.4])
 def test_small_grains_lie_at_the_class_limits(agrees: Agrees, heard: dict[float, np.ndarray], diameter: float) -> None:
     limit = 4.6e-4 * diameter**1.71
@@ -87,6 +88,7 @@ def test_places_differ_as_they_are_known_to(heard: dict[float, np.ndarray], diam
     assert 1.3 < heard[diameter].max() / heard[diameter].min() < 2.5
 
 
+@pytest.mark.slow
 def test_larger_grains_reach_the_limits_more_slowly() -> None:
     """At the class limit a grain of 28 mm arrives at about half a metre per second along the normal, one of 12 mm at more than one."""
     speeds = np.array([0.3, 0.5, 1.0, 1.5])

@@ -87,6 +87,7 @@ def compared(response: vi.Response, sensor: Sensor, exact: Floats) -> float:
     return rms(found - exact[: len(found)]) / rms(exact[: len(found)])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", AWAY)
 @pytest.mark.parametrize("quantity", ["acceleration", "velocity", "displacement"])
 def test_bare_points(agrees: Agrees, response: vi.Response, motion: dict[str, dict[str, Floats]], name: str, quantity: Any) -> None:

@@ -80,6 +80,7 @@ def off(response: vi.Response, sensor: Sensor, exact: Floats) -> float:
     return rms(found - exact[: len(found)]) / rms(exact[: len(found)])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("quantity", ["acceleration", "velocity", "displacement"])
 def test_points(agrees: Agrees, response: vi.Response, motion: dict[str, Floats], quantity: str) -> None:
     sensor = Sensor("two", quantity)  # type: ignore[arg-type]

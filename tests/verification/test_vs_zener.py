@@ -133,6 +133,7 @@ def kirchhoff(side: float, radius: float, modes: int, theory: str = "thin") -> t
     return vi.simulate(vi.read_case(case)), series, float(inelasticity)
 
 
+@pytest.mark.slow
 def test_the_thin_theory_is_kirchhoffs(agrees: Agrees) -> None:
     """With point shapes and the deflection of a point, which is finite, a plate of thin elements meets the Navier series."""
     response, series, _ = kirchhoff(0.1, 0.003, 80)
