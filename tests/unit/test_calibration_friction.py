@@ -183,7 +183,7 @@ def test_intervals_hold_the_truth_as_often_as_is_stated(known: bool, tmp_path: P
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("known", [True, False])
+@pytest.mark.parametrize("known", [True, pytest.param(False, marks=pytest.mark.whole)])
 def test_intervals_of_microslip_hold_the_truth_as_often_as_is_stated(known: bool, tmp_path: Path, population: Callable[[int], int]) -> None:
     contact = {"law": "hunt-crossley", "restitution": 0.7}
     check_coverage(inside("mdr", ALL, {"coefficient": 0.15}, population(80), tmp_path, known=known, contact=contact))

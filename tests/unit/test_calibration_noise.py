@@ -93,7 +93,7 @@ def scatter_over_stated(found: list[Calibration]) -> Floats:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("confidence", [0.95, pytest.param(0.8, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("confidence", [0.95, pytest.param(0.8, marks=pytest.mark.whole)])
 @pytest.mark.parametrize(
     ("measure", "exact"),
     [

@@ -36,7 +36,7 @@ CALIBRATION = plain_case(
 )
 UNSTEADY = {"ledger.sqlite"}  # which has the time at which a chunk was done
 
-EVERY = int(os.environ.get("VIBROIMPACT_EVERY", "32"))
+EVERY = int(os.environ.get("VIBROIMPACT_EVERY", "96"))
 """Which of the file operations the slow tests try: each (1), each second, ...; of the last ones eight times as many."""
 
 _LAST = 40
@@ -261,7 +261,9 @@ def test_a_command_that_is_killed_at_any_file_operation_leaves_the_old_result_or
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("error", [errno.ENOSPC, errno.EACCES], ids=["full disk", "no permission"])
+@pytest.mark.parametrize(
+    "error", [pytest.param(errno.ENOSPC, id="full disk"), pytest.param(errno.EACCES, id="no permission", marks=pytest.mark.whole)]
+)
 @pytest.mark.parametrize("stage", SCENES, indirect=True)
 def test_a_command_whose_file_operation_fails_says_so_once_and_leaves_the_old_result(stage: Stage, error: int) -> None:
     def fails(moment: int, which: str) -> None:

@@ -56,7 +56,7 @@ def test_a_case_says_how_well_its_element_is_known() -> None:
     assert 0.01 < told[0] / element[0] < 0.05
 
 
-@pytest.mark.parametrize("heights", [8, pytest.param(400, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("heights", [8, pytest.param(400, marks=[pytest.mark.slow, pytest.mark.whole])])
 def test_contacts_that_end_a_step_at_the_penetration_depth_go_on_from_it(heights: int) -> None:
     """The end of a step is solved to rounding, and the next one begins on the breakpoint; 13 of 400 drops failed there."""
     element = {"local_compliance": "identified", "local_stiffness": 2e7, "local_damping": 500.0}

@@ -76,9 +76,9 @@ def check_round_trip(agrees: Agrees, table: dict) -> None:
     agrees("all laws with a free parameter, random cases", "coefficient of restitution", achieved, wanted, absolute=WITHIN)
 
 
-@pytest.mark.parametrize("law", one_in(8, sorted(FREE, key="meyer".__eq__)))
+@pytest.mark.parametrize("law", one_in(8, sorted(set(FREE) - {"meyer"})))
 def test_the_restitution_wanted_is_achieved(agrees: Agrees, law: str) -> None:
-    """Of Meyer's law, whose contacts take fifty times as long as others, where there is time; and at one impact below."""
+    """Of Meyer's law, whose contacts take fifty times as long as others, at one impact below."""
     for seed in range(1 if law in SLOW else 2):
         check_round_trip(agrees, random_case(law, seed))
 

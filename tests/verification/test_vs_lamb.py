@@ -183,6 +183,7 @@ def test_mass_converges() -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.whole
 def test_finest_mesh() -> None:
     """16 elements across: every frequency printed for nu = 0.28 within 0.01 %, with its multiplicity."""
     found = eta_of(elastic("hex27", 16).modes(41).angular_frequencies)

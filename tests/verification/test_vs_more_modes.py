@@ -102,6 +102,7 @@ def test_the_mesh_does_not_matter(agrees: Agrees) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.whole
 def test_finer_meshes_agree_better(agrees: Agrees) -> None:
     kinds = ((0.08, "plate"), (0.04, "plate"), (0.02, "plate"), (0.02, "solid"))
     forces = np.array([force(problem("hertz", 120, size, element)) for size, element in kinds])

@@ -41,6 +41,7 @@ def modes_of(shape: PlateOfPlates | PlateOfSolids, radius: float = 0.02) -> Moda
 
 
 @pytest.mark.slow
+@pytest.mark.whole
 def test_bricks_refined_at_the_rims(agrees: Agrees) -> None:
     found = modes_of(PlateOfSolids(SIZE, element_size=0.013, splits=2)).frequencies
     agrees("solid elements refined at the patch rims", "natural frequencies, modes 1 and 2", found, REFERENCE, unit="Hz", relative=2e-3)

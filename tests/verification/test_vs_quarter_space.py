@@ -17,7 +17,7 @@ AGAINST = Against(
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("ratio", [0.0, 0.3])
+@pytest.mark.parametrize("ratio", [pytest.param(0.0, marks=pytest.mark.whole), 0.3])
 def test_what_an_edge_adds(agrees: Agrees, ratio: float) -> None:
     """Within 6 %: a block of 150 distances from the edge is 2 % too stiff."""
     share = 1.0 / (2.0 / (3.0 * 3.141592653589793))  # of the compliance of Hertz's contact; then the factor of the image is left

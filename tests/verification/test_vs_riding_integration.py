@@ -114,22 +114,12 @@ def at_rest_of(agrees: Agrees, drops: dict[str, vi.Problem]) -> int:
 
 
 @pytest.mark.slow
-def test_two_drops_at_random(agrees: Agrees) -> None:
-    assert at_rest_of(agrees, {f"any {seed}": random_drop(seed) for seed in range(2)}) == 1
-
-
-@pytest.mark.slow
-def test_drops_at_random(agrees: Agrees) -> None:
-    assert at_rest_of(agrees, {f"any {seed}": random_drop(seed) for seed in range(4)}) >= 2
-
-
-@pytest.mark.slow
 def test_a_drop_at_random_on_a_plate_on_one_patch(agrees: Agrees) -> None:
     assert at_rest_of(agrees, {"held 291": random_held_drop(291)}) == 1
 
 
 @pytest.mark.slow
-def test_three_hundred_drops_at_random(agrees: Agrees, population: Callable[[int], int]) -> None:
-    drops = {f"any {seed}": random_drop(seed) for seed in range(population(276))}
-    drops |= {f"held {seed}": random_held_drop(seed) for seed in range(276, 276 + population(24))}
-    assert at_rest_of(agrees, drops) >= population(80)
+def test_three_hundred_drops_at_random(agrees: Agrees, population: Callable[..., int]) -> None:
+    drops = {f"any {seed}": random_drop(seed) for seed in range(population(276, share=20))}
+    drops |= {f"held {seed}": random_held_drop(seed) for seed in range(276, 276 + population(24, share=20))}
+    assert at_rest_of(agrees, drops) >= population(80, share=20)
