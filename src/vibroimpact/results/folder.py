@@ -6,7 +6,6 @@ import json
 import math
 import os
 import shlex
-import tomllib
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from functools import partial
@@ -24,6 +23,7 @@ from vibroimpact.files.check_sums import CHECK_SUMS, DamageError, check_file, fi
 from vibroimpact.files.damaged_part import check_hdf5
 from vibroimpact.files.hdf5 import short_reason
 from vibroimpact.files.recover import recover
+from vibroimpact.files.toml_reading import read_toml
 from vibroimpact.resolved_case import ResolvedCase
 from vibroimpact.results.csv_files import write_impacts, write_signal_files
 from vibroimpact.results.netcdf import read_groups, write_groups
@@ -174,7 +174,7 @@ def read_result(directory: str | PathLike[str]) -> Result:
         case: ResolvedCase = {}
         if "problem" not in summary["provenance"]:
             check_file(folder / name, expected.get(name))
-            case = cast("ResolvedCase", tomllib.loads((folder / name).read_text(encoding="utf-8")))
+            case = cast("ResolvedCase", read_toml(folder / name))
         name = NETCDF
         check_hdf5(folder / name, expected.get(name))
         return _result_from(case, summary, read_groups(folder / name))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import shlex
-import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -18,10 +17,10 @@ from numpy.typing import NDArray
 
 from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError
-from vibroimpact.files.check_sums import CHECK_SUMS, DamageError, read_sealed
+from vibroimpact.files.check_sums import DamageError, recorded_digest
 from vibroimpact.files.damaged_part import check_hdf5
 from vibroimpact.files.hdf5 import read_array, short_reason
-from vibroimpact.results.folder import SUMMARY
+from vibroimpact.files.toml_reading import parse_toml
 from vibroimpact.studies.drop_variables import DOUBTS, LIMIT, SIGNAL
 from vibroimpact.studies.plan import SAMPLE
 from vibroimpact.studies.population import LABELS
@@ -237,9 +236,9 @@ def read_study(directory: str | PathLike[str]) -> Study:
         command = f"vibroimpact sweep {shlex.quote(str(folder / STUDY))} -o {shlex.quote(str(folder))} --resume"
         raise InputError(f"{folder}: the study is not done; if nothing is at work on it, go on with: {command}")
     with _reported_damage(path):
-        check_hdf5(path, _check_sum(path.parent))
+        check_hdf5(path, recorded_digest(path))
     with _reported_damage(path), h5py.File(path, "r") as file:
-        table = tomllib.loads(str(file.attrs["study"]))
+        table = parse_toml(str(file.attrs["study"]))
         over = swept_keys(table)
         is_grid = _design(table) == "grid"
         coordinates = {key: _coordinate(file[key]) for key in over}
@@ -252,23 +251,6 @@ def read_study(directory: str | PathLike[str]) -> Study:
         shapes = {one: tuple(file[one].shape) for one in names}
         name, version = str(file.attrs["title"]), str(file.attrs["version"])
         return Study(path, name, table, version, dimensions, coordinates, meanings, shapes, failures, labels)
-
-
-def _check_sum(folder: Path) -> str | None:
-    """Return the checksum of the dataset; None for an earlier version, which wrote none.
-
-    Raises
-    ------
-    InputError
-        If the summary that holds it is damaged.
-    """
-    try:
-        return dict(read_sealed(folder / SUMMARY)[CHECK_SUMS])[DATASET] if (folder / SUMMARY).is_file() else None
-    except KeyError:
-        return None
-    except (OSError, ValueError, TypeError) as error:
-        words = "delete it, and the dataset is read without being checked"
-        raise InputError(f"{folder / SUMMARY}: the file is damaged: {short_reason(error)}; {words}") from None
 
 
 @contextmanager

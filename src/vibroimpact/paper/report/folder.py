@@ -17,6 +17,7 @@ from vibroimpact.charts.plotly import plotly_chart
 from vibroimpact.errors import InputError
 from vibroimpact.files.atomic_write import write_into
 from vibroimpact.files.check_sums import CHECK_SUMS, check_file, file_digest, read_sealed, sealed
+from vibroimpact.files.json_reading import read_json_table
 from vibroimpact.files.recover import recover
 from vibroimpact.paper.report.outline import PARTS, ReportPart, find_parts, render_part
 from vibroimpact.paper.report.page import report_html, report_text
@@ -209,8 +210,8 @@ def _repair_hint(folder: Path, *names: str) -> str:
 def is_reproduction(folder: Path) -> bool:
     """Return whether a folder is that of a reproduction."""
     try:
-        return bool(json.loads((folder / SUMMARY).read_text(encoding="utf-8")).get("reproduction"))
-    except (OSError, ValueError, AttributeError):
+        return bool(read_json_table(folder / SUMMARY).get("reproduction"))
+    except InputError:
         return False
 
 
