@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -19,8 +18,7 @@ TINY = {"rocks": 12, "falls": 3, "samples": 128}
 CLASSIFIERS = tuple(one.name for one in all_classifiers() if one.kind == CLASSIFIER)
 
 
-@cache
-def tiny_recognised(folder: Path) -> Path:
+def write_tiny_models(folder: Path) -> Path:
     """Write the data set into `folder / "data"`, and a model of each classifier into `folder / NAME`; return the folder."""
     write_knocks(folder / "data", **TINY)
     signals = vi.read_labelled_signals(folder / "data")

@@ -12,7 +12,7 @@ import pytest
 
 import vibroimpact as vi
 from attack import failures, number, seed
-from recognised import CLASSIFIERS, tiny_recognised
+from recognised import CLASSIFIERS
 from recognition_mutations import (
     CARD_CHANGES,
     DATASET_CHANGES,
@@ -25,13 +25,6 @@ from recognition_mutations import (
 )
 from vibroimpact.recognition.input_faults import check_signals
 from vibroimpact.recognition.signal_features import features_of
-
-
-@pytest.fixture(scope="session")
-def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tiny_recognised(tmp_path_factory.mktemp("tiny"))
-    read_once(folder / "data")
-    return folder
 
 
 @cache
@@ -70,6 +63,12 @@ def apply_model(made: Path, damage: Callable[[Path, Hostile], None], hostile: Ho
     assert (found.probabilities >= 0.0).all(), "a probability is negative"
     np.testing.assert_allclose(found.probabilities.sum(axis=1), 1.0, atol=1e-3)
     assert found.probabilities.shape[1] == len(found.class_names)
+
+
+@pytest.fixture
+def made(tiny_models: Path) -> Path:
+    read_once(tiny_models / "data")
+    return tiny_models
 
 
 def no_failures(function: Callable[[Hostile], None], changes: Iterable[str], few: int, first: int) -> None:
