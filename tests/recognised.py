@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import h5py
 import numpy as np
 
 import vibroimpact as vi
@@ -21,6 +22,9 @@ CLASSIFIERS = tuple(one.name for one in all_classifiers() if one.kind == CLASSIF
 def write_tiny_models(folder: Path) -> Path:
     """Write the data set into `folder / "data"`, and a model of each classifier into `folder / NAME`; return the folder."""
     write_knocks(folder / "data", **TINY)
+    with h5py.File(folder / "data" / "dataset.nc", "a") as file:  # with times, so that other readers find records too
+        file["time_a1"].attrs["units"] = "s"
+        file["signal_a1"].dims[1].attach_scale(file["time_a1"])
     signals = vi.read_labelled_signals(folder / "data")
     features = features_of(signals)
     assert signals.classes is not None

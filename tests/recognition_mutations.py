@@ -348,7 +348,7 @@ def _attributes(model: Any, draw: random.Random) -> None:
         attribute.name = draw.choice(("axis", "to", "nothing", "", "post_transform"))
 
 
-def _loop(model: Any, draw: random.Random) -> None:
+def add_loop(model: Any, draw: random.Random) -> None:
     """Add a loop that never ends, whose result the probabilities depend on."""
     body = helper.make_graph(
         [helper.make_node("Identity", ["condition"], ["goes_on"]), helper.make_node("Identity", ["state"], ["state_out"])],
@@ -366,7 +366,7 @@ def _loop(model: Any, draw: random.Random) -> None:
     model.graph.initializer.extend(
         [numpy_helper.from_array(np.array(2**62), "for_ever"), numpy_helper.from_array(np.array(True), "always")]
     )
-    _after_probabilities(model, helper.make_node("Loop", ["for_ever", "always", "inner_probabilities"], ["probabilities"], body=body))
+    after_probabilities(model, helper.make_node("Loop", ["for_ever", "always", "inner_probabilities"], ["probabilities"], body=body))
 
 
 def _tensors(model: Any, draw: random.Random) -> None:
@@ -376,7 +376,7 @@ def _tensors(model: Any, draw: random.Random) -> None:
     made = helper.make_node("ConstantOfShape", ["count"], ["large"])
     total = helper.make_node("ReduceSum", ["large"], ["total"], keepdims=0)
     model.graph.node.extend([made, total])
-    _after_probabilities(model, helper.make_node("Add", ["inner_probabilities", "total"], ["probabilities"]))
+    after_probabilities(model, helper.make_node("Add", ["inner_probabilities", "total"], ["probabilities"]))
 
 
 def _growing(model: Any, draw: random.Random) -> None:
@@ -386,10 +386,10 @@ def _growing(model: Any, draw: random.Random) -> None:
     for number in range(draw.choice((8, 20, 40))):
         nodes.append(helper.make_node("Concat", [last, last], [f"doubled{number}"], axis=draw.choice((0, 1))))
         last = f"doubled{number}"
-    _after_probabilities(model, *nodes, helper.make_node("Identity", [last], ["probabilities"]))
+    after_probabilities(model, *nodes, helper.make_node("Identity", [last], ["probabilities"]))
 
 
-def _after_probabilities(model: Any, *nodes: Any) -> None:
+def after_probabilities(model: Any, *nodes: Any) -> None:
     """Put nodes between what gives the probabilities and the output."""
     for node in model.graph.node:
         for place, name in enumerate(node.output):
@@ -455,11 +455,11 @@ def _probabilities(model: Any, draw: random.Random) -> None:
     """Return what is no probability, by operators that the classifiers have too."""
     factor = np.float32(draw.choice((np.nan, -1.0, 2.0, np.inf, 0.0, 1.01)))
     model.graph.initializer.append(numpy_helper.from_array(np.array(factor), "factor"))
-    _after_probabilities(model, helper.make_node("Mul", ["inner_probabilities", "factor"], ["probabilities"]))
+    after_probabilities(model, helper.make_node("Mul", ["inner_probabilities", "factor"], ["probabilities"]))
 
 
 GRAPH_CHANGES: dict[str, Callable[[Any, random.Random], None]] = {
-    "numbers": _numbers, "lengths": _lengths, "operator": _operator, "attributes": _attributes, "loop": _loop, "tensors": _tensors,
+    "numbers": _numbers, "lengths": _lengths, "operator": _operator, "attributes": _attributes, "loop": add_loop, "tensors": _tensors,
     "growing": _growing, "initializers": _initializers, "ends": _ends, "probabilities": _probabilities,
 }  # fmt: skip
 

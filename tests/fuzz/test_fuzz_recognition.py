@@ -32,7 +32,7 @@ def read_once(dataset: Path) -> vi.LabelledSignals:
     return vi.read_labelled_signals(dataset)
 
 
-def read_dataset(made: Path, hostile: Hostile) -> None:
+def read_dataset(use: Callable[[Path], None], made: Path, hostile: Hostile) -> None:
     """Read a damaged data set."""
     copy = made / "copy"
     shutil.rmtree(copy, ignore_errors=True)
@@ -41,7 +41,13 @@ def read_dataset(made: Path, hostile: Hostile) -> None:
     with pytest.MonkeyPatch.context() as patch:
         if hostile.change != "bytes":  # such files HDF5 endures
             patch.setattr("vibroimpact.files.damaged_part.endures", lambda path: True, raising=False)
-        prepare(copy)
+        use(copy)
+
+
+def hear(dataset: Path) -> None:
+    """Read its signals as any records."""
+    for record in vi.read_records(dataset):
+        assert np.isfinite(record.rate)
 
 
 def prepare(dataset: Path) -> None:
@@ -78,7 +84,12 @@ def no_failures(function: Callable[[Hostile], None], changes: Iterable[str], few
 
 @pytest.mark.parametrize("few", [22, pytest.param(165, marks=pytest.mark.slow)])
 def test_data_sets(few: int, made: Path) -> None:
-    no_failures(partial(read_dataset, made), DATASET_CHANGES, few, 41)
+    no_failures(partial(read_dataset, prepare, made), DATASET_CHANGES, few, 41)
+
+
+@pytest.mark.parametrize("few", [11, pytest.param(88, marks=pytest.mark.slow)])
+def test_records(few: int, made: Path) -> None:
+    no_failures(partial(read_dataset, hear, made), DATASET_CHANGES, few, 44)
 
 
 @pytest.mark.parametrize("few", [18, pytest.param(165, marks=pytest.mark.slow)])
