@@ -124,7 +124,7 @@ def test_ledgers(few: int, tmp_path: Path) -> None:
     with pytest.raises(KeyboardInterrupt):
         vi.run_sweep(sweep, tmp_path / "out", progress=stop)
     chunks = [f"chunks/{file.name}" for file in (tmp_path / "out" / "chunks").iterdir()]
-    no_failures(partial(resume, sweep), tmp_path / "out", [LEDGER, LEDGER, *chunks], 6 * few, 55)
+    no_failures(partial(resume, sweep), tmp_path / "out", [LEDGER, LEDGER, "summary.json", *chunks], 6 * few, 55)
 
 
 @FEW

@@ -47,12 +47,13 @@ def read_sealed(path: Path, kind: FileKind = JSON_TABLE) -> dict[str, Any]:
 
     Raises
     ------
-    InputError
-        If it can't be read, or is not a table in JSON of bounded size; the message does not include the path.
     DamageError
-        If its checksum does not match.
+        If it can't be read, is not a table in JSON of bounded size, or its checksum does not match; the message does not include the path.
     """
-    table = read_json_table(path, kind)
+    try:
+        table = read_json_table(path, kind)
+    except InputError as error:
+        raise DamageError(f"the file is missing or damaged: {error}") from None
     expected = table.pop(SHA256, None)
     if expected is not None and digest(table) != expected:
         raise DamageError(CHANGED)
@@ -92,9 +93,9 @@ def recorded_digest(path: Path) -> str | None:
         return None
     try:
         recorded = read_sealed(summary).get(CHECK_SUMS, {})
-    except ValueError as error:
+    except DamageError as error:
         words = "delete it, and the dataset is read without being checked"
-        raise with_path(summary, InputError(f"the file is damaged: {error}; {words}")) from None
+        raise with_path(summary, InputError(f"{error}; {words}")) from None
     expected = recorded.get(path.name) if isinstance(recorded, dict) else None
     return expected if isinstance(expected, str) else None
 

@@ -7,6 +7,7 @@ from os import PathLike
 from typing import Any
 
 from vibroimpact.errors import InputError
+from vibroimpact.files.check_sums import DamageError
 from vibroimpact.files.reading import FileKind, read_text
 
 _OWN = FileKind("it is a case in TOML", 20_000_000, "no case is so large")
@@ -17,7 +18,7 @@ def parse_toml(text: str) -> dict[str, Any]:
 
     Raises
     ------
-    InputError
+    DamageError
         If it is not TOML.
 
     Examples
@@ -25,14 +26,14 @@ def parse_toml(text: str) -> dict[str, Any]:
     >>> parse_toml("sphere = ")
     Traceback (most recent call last):
         ...
-    vibroimpact.errors.InputError: it is not TOML: Invalid value (at end of document)
+    vibroimpact.files.check_sums.DamageError: the file is damaged: it is not TOML: Invalid value (at end of document)
     """
     try:
         return tomllib.loads(text)
     except RecursionError:
-        raise InputError("it is not TOML: its tables lie too deep in one another") from None
+        raise DamageError("the file is damaged: it is not TOML: its tables lie too deep in one another") from None
     except ValueError as error:
-        raise InputError(f"it is not TOML: {error}") from None
+        raise DamageError(f"the file is damaged: it is not TOML: {error}") from None
 
 
 def read_toml(path: str | PathLike[str]) -> dict[str, Any]:
@@ -40,7 +41,10 @@ def read_toml(path: str | PathLike[str]) -> dict[str, Any]:
 
     Raises
     ------
-    InputError
+    DamageError
         If it can't be read, or is not TOML; the message does not include the path.
     """
-    return parse_toml(read_text(path, _OWN))
+    try:
+        return parse_toml(read_text(path, _OWN))
+    except InputError as error:
+        raise DamageError(f"the file is missing or damaged: {error}") from None
