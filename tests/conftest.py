@@ -38,6 +38,14 @@ def damping() -> vi.Calibration:
     return vi.calibrate_case(vi.load_calibration("paper:calibration"))
 
 
+@pytest.fixture(scope="session")
+def tiny_models(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with a small data set in `data`, and a model of each classifier that was trained on it."""
+    from recognised import write_tiny_models
+
+    return write_tiny_models(tmp_path_factory.mktemp("tiny"))
+
+
 @pytest.fixture
 def command(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Callable[..., tuple[int, str, str]]:
     """Run `vibroimpact` with words in the folder of the test, and return its exit status, its output and its errors."""

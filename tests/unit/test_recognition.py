@@ -466,7 +466,7 @@ def test_each_classifier_is_the_same_when_saved(name: str, count: int) -> None:
     values = values.astype(np.float32).astype(float)
     (classifier,) = (one for one in all_classifiers() if one.name == name)
     fitted, _ = fit_tuned(classifier, values, classes, np.arange(240) // 6, 0)
-    told = run_graph(graph_of(fitted, values, count), values)
+    told = run_graph(graph_of(fitted, values, count), values, count)
     np.testing.assert_allclose(told, probabilities(fitted, values, count), atol=1e-4)
 
 

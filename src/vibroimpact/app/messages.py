@@ -32,17 +32,14 @@ It is told documents with arrays, as `vibroimpact.charts.pack` writes them, each
 
 from __future__ import annotations
 
-import json
 from typing import Any, Literal, NamedTuple
 
 from vibroimpact.errors import InputError
+from vibroimpact.files.json_reading import parse_json
 from vibroimpact.shown import shown
 
 LONGEST = 200_000
 """Largest size of a message from a window [bytes]."""
-
-_DEEPEST = 100  # levels of tables and lists that are read; of these, a case that has too many is refused with its key
-_DEEP = f"tables and lists of the message lie more than {_DEEPEST} deep in one another"
 
 Detail = Literal["draft", "full"]
 
@@ -109,21 +106,4 @@ def _parsed(block: bytes) -> Any:
     """Return what a block of JSON says."""
     if len(block) > LONGEST:
         raise InputError(f"the message has {len(block)} bytes; {LONGEST} are the most")
-    try:
-        found = json.loads(block, parse_constant=_refuse)
-        json.dumps(found, ensure_ascii=False).encode()  # half of a surrogate pair is no text, and can't be answered
-    except RecursionError:
-        raise InputError(_DEEP) from None
-    except ValueError:
-        raise InputError("the message is not JSON") from None
-    level: list[Any] = [[found]]
-    for _ in range(_DEEPEST + 1):
-        tables = (one.values() if isinstance(one, dict) else one for one in level)
-        level = [value for table in tables for value in table if isinstance(value, (dict, list))]
-    if level:
-        raise InputError(_DEEP)
-    return found
-
-
-def _refuse(constant: str) -> float:
-    raise ValueError(constant)
+    return parse_json(block, "the message")

@@ -17,9 +17,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from vibroimpact.files.json_reading import parse_json
+
 _ALIGNED = 8
 _LONG = 32
 """Texts from which on a list of them is kept apart, as the points of several charts may have the same."""
+
+_MOST_STEPS = 100_000_000
+"""Evenly spaced values of one array."""
 
 _EVEN = 1e-9
 """Largest deviation of evenly spaced values from equal steps, in steps."""
@@ -91,20 +96,34 @@ def pack(document: Any) -> bytes:
 def unpack(block: bytes) -> Any:
     """Return the document that `pack` returned as bytes; an array of more than two dimensions has its last one as columns.
 
+    Raises
+    ------
+    ValueError
+        If the bytes are damaged.
+
     Examples
     --------
     >>> found = unpack(pack({"time": np.linspace(0.0, 1.0, 5), "force": np.array([0.0, 2.5])}))
     >>> found["time"].tolist(), found["force"].tolist()
     ([0.0, 0.25, 0.5, 0.75, 1.0], [0.0, 2.5])
     """
+    try:
+        return _unpacked(block)
+    except (struct.error, KeyError, TypeError, IndexError, OverflowError) as error:
+        raise ValueError(f"the chart is damaged ({error})") from None
+
+
+def _unpacked(block: bytes) -> Any:
     (length,) = struct.unpack_from("<I", block)
     begin = struct.calcsize("<I") + length
     known: dict[str, Any] = {}
 
     def array(kind: str, first: float, second: float, *more: int) -> Any:
         if kind == "texts":
-            return json.loads(block[begin + int(first) : begin + int(first) + int(second)])
+            return parse_json(block[begin + int(first) : begin + int(first) + int(second)])
         if kind == "even":
+            if more[0] > _MOST_STEPS:
+                raise ValueError("the chart is damaged")
             return np.asarray(first + second * np.arange(more[0]))
         values = np.frombuffer(block, f"<{kind}", count=int(second), offset=begin + int(first))
         return values.reshape(-1, *more) if more and len(values) else values
@@ -121,12 +140,12 @@ def unpack(block: bytes) -> Any:
             known[key] = array(*part["$"])
         return known[key]  # what was stored once is one array again
 
-    return filled(json.loads(block[struct.calcsize("<I") : begin]))
+    return filled(parse_json(block[struct.calcsize("<I") : begin]))
 
 
 def _even(array: NDArray[Any]) -> tuple[float, float] | None:
     """Return the first value and the step of evenly spaced values; None if they are not."""
-    if array.ndim != 1 or len(array) < 3 or array.dtype.kind != "f":
+    if array.ndim != 1 or len(array) < 3 or array.dtype.kind != "f" or not np.isfinite(array).all():
         return None
     first, step = float(array[0]), float(array[-1] - array[0]) / (len(array) - 1)
     if not (math.isfinite(step) and step) or abs(float(array[1] - array[0]) - step) > _EVEN * abs(step) * 1e3:
@@ -140,7 +159,8 @@ def _narrowed(array: NDArray[Any]) -> NDArray[Any]:
     if array.dtype.kind in "iub":
         return np.ascontiguousarray(array, dtype="<i4")
     single = np.ascontiguousarray(array, dtype="<f4")
-    steps = np.diff(array) if array.ndim == 1 and array.dtype == np.float64 else np.empty(0)
+    is_row = array.ndim == 1 and array.dtype == np.float64 and bool(np.isfinite(array).all())
+    steps = np.diff(array) if is_row else np.empty(0)
     ascends = len(steps) > 0 and bool((steps >= 0.0).all())
     # ascending values are places, whose differences are looked at: of these a thousandth must be kept
     fine = ascends and float(np.abs(single - array).max()) > 1e-3 * float(steps[steps > 0.0].min(initial=np.inf))

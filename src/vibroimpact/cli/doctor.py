@@ -10,8 +10,12 @@ from importlib.metadata import PackageNotFoundError, requires, version
 from typing import Any
 
 from vibroimpact._version import __version__
+from vibroimpact.recognition.onnx_runtime import SWITCH
 from vibroimpact.structures.free_memory import free_memory
 from vibroimpact.structures.store import entries, store_folder, store_size
+
+_SWITCHES = {"onnxruntime": SWITCH}
+"""Packages that send usage data to their makers unless they are told not to, and the environment variable by which they are."""
 
 _FIRST_REBOUND = 6.8386265  # m/s: PAPER, section 4, theory, integrated independently at 1e-12
 
@@ -22,7 +26,7 @@ def diagnose() -> dict[str, Any]:
     Examples
     --------
     >>> sorted(diagnose())
-    ['packages', 'platform', 'python', 'resources', 'store', 'version']
+    ['packages', 'platform', 'python', 'resources', 'store', 'usage_data', 'version']
     """
     folder = store_folder()
     usable = not os.path.lexists(folder) or (folder.is_dir() and os.access(folder, os.W_OK))
@@ -37,6 +41,7 @@ def diagnose() -> dict[str, Any]:
             "entries": len(entries()) if usable else 0,
             "size_byte": store_size() if usable else 0,
         },
+        "usage_data": {name: {"sent": False, "switch": switch} for name, switch in _SWITCHES.items() if _installed(name)},
         "packages": {name: _installed(name) for name in _requirements()},
     }
 
@@ -57,6 +62,7 @@ def diagnosis_rows(found: Mapping[str, Any]) -> list[tuple[str, str]]:
         ("processors", str(found["resources"]["processors"])),
         ("memory free", f"{memory / 1e9:.3g} GB"),
         ("store of modes", _store_words(found["store"])),
+        ("usage data", _usage_words(found["usage_data"])),
         *((name, version or _missing(extras[name])) for name, version in found["packages"].items()),
     ]
 
@@ -80,6 +86,11 @@ def _installed(name: str) -> str | None:
 
 def _missing(extra: str) -> str:
     return f'not installed; pip install "vibroimpact[{extra}]"' if extra else "missing"
+
+
+def _usage_words(usage: Mapping[str, Any]) -> str:
+    switches = ", ".join(f"that of {name} by {one['switch']}=1" for name, one in usage.items())
+    return f"none is sent; {switches}, before it is loaded" if switches else "none is sent"
 
 
 def _store_words(store: Mapping[str, Any]) -> str:

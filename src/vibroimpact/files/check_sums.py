@@ -10,8 +10,15 @@ from typing import Any
 
 import numpy as np
 
+from vibroimpact.errors import InputError
+from vibroimpact.files.json_reading import JSON_TABLE, read_json_table
+from vibroimpact.files.reading import FileKind, with_path
+
 SHA256, CHECK_SUMS = "sha256", "check_sums"
 """Keys of a JSON file: the checksum of the rest of its content, and the checksums of other files."""
+
+
+_SUMMARY = "summary.json"
 
 
 class DamageError(ValueError):
@@ -35,19 +42,18 @@ def sealed(table: Mapping[str, Any]) -> str:
     return json.dumps({**plain, SHA256: digest(plain)}, indent=2) + "\n"
 
 
-def read_sealed(path: Path) -> dict[str, Any]:
+def read_sealed(path: Path, kind: FileKind = JSON_TABLE) -> dict[str, Any]:
     """Read a table written by `sealed` and verify its checksum; one without checksum, from an earlier version, is not verified.
 
     Raises
     ------
-    OSError
-        If it can't be read.
-    ValueError
-        If it is not JSON, not a table, or its checksum does not match (`DamageError`).
+    DamageError
+        If it can't be read, is not a table in JSON of bounded size, or its checksum does not match; the message does not include the path.
     """
-    table = json.loads(path.read_text(encoding="utf-8"))
-    if not isinstance(table, dict):
-        raise DamageError("the file is damaged (it holds no table)")
+    try:
+        table = read_json_table(path, kind)
+    except InputError as error:
+        raise DamageError(f"the file is missing or damaged: {error}") from None
     expected = table.pop(SHA256, None)
     if expected is not None and digest(table) != expected:
         raise DamageError(CHANGED)
@@ -72,6 +78,26 @@ def check_file(path: Path, expected: str | None) -> None:
     """
     if expected is not None and file_digest(path) != expected:
         raise DamageError(CHANGED)
+
+
+def recorded_digest(path: Path) -> str | None:
+    """Return the SHA-256 of a file that the `summary.json` beside it records; None if there is no summary, or it records none.
+
+    Raises
+    ------
+    InputError
+        If the summary is damaged.
+    """
+    summary = path.with_name(_SUMMARY)
+    if not summary.is_file():
+        return None
+    try:
+        recorded = read_sealed(summary).get(CHECK_SUMS, {})
+    except DamageError as error:
+        words = "delete it, and the dataset is read without being checked"
+        raise with_path(summary, InputError(f"{error}; {words}")) from None
+    expected = recorded.get(path.name) if isinstance(recorded, dict) else None
+    return expected if isinstance(expected, str) else None
 
 
 CHANGED = "the file is damaged, or was changed after it was written (its check sum does not match)"

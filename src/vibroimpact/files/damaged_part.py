@@ -1,10 +1,13 @@
-"""Locate the damaged part of an HDF5 file, in a separate process, since HDF5 may hang or crash on a damaged file."""
+"""Look at HDF5 files in a separate process, since HDF5 may hang or crash on a damaged file."""
 
 from __future__ import annotations
 
 import subprocess
 import sys
+from collections.abc import Callable, Iterator
+from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 import h5py
 
@@ -12,18 +15,24 @@ from vibroimpact.files.check_sums import CHANGED, DamageError, check_file
 from vibroimpact.files.hdf5 import read_array, short_reason
 
 _TIMEOUT = 20.0  # seconds
+_SOLID = 32_000_000  # bytes up to which an array is read as a trial; of larger ones the places of their parts are looked up
+_OTHER_PROCESS = "import sys; from pathlib import Path; from vibroimpact.files.damaged_part import {0}; print({0}(Path(sys.argv[1])))"
 
 
 def check_hdf5(path: Path, expected: str | None) -> None:
-    """Verify the SHA-256 of an HDF5 file; None skips the check.
+    """Verify the SHA-256 of an HDF5 file; where none is known, verify that HDF5 neither hangs nor crashes on it.
 
     Raises
     ------
     OSError
         If it can't be read.
     DamageError
-        If it does not match; the message names the damaged part, if it can be located.
+        If it does not match; the message names the damaged part, if it can be located. If HDF5 hangs or crashes.
     """
+    if expected is None:
+        if not endures(path):
+            raise DamageError("the file is damaged: it can't be opened without risk; make or copy it anew")
+        return
     try:
         check_file(path, expected)
     except DamageError:
@@ -32,37 +41,70 @@ def check_hdf5(path: Path, expected: str | None) -> None:
 
 def damaged_part(path: Path) -> str:
     """Return a description of the damaged part of an HDF5 file, beginning with its name; "" if it can't be located."""
-    command = [sys.executable, "-m", __name__, str(path)]
+    done = _in_other_process(first_damaged, path)
+    return done.stdout.strip() if done is not None and done.returncode == 0 else ""
+
+
+def endures(path: Path) -> bool:
+    """Return whether a process that reads an HDF5 file lives, and ends in time; True where no process can be started."""
     try:
-        done = subprocess.run(command, capture_output=True, text=True, timeout=_TIMEOUT, check=False)
-    except (OSError, subprocess.SubprocessError):
-        return ""
-    return done.stdout.strip() if done.returncode == 0 else ""
+        done = _in_other_process(try_all, path)
+    except OSError:
+        return True
+    return done is not None and done.returncode >= 0
+
+
+def _in_other_process(function: Callable[[Path], object], path: Path) -> subprocess.CompletedProcess[str] | None:
+    """Run a function of this module on a file in another process; None if it takes too long."""
+    command = [sys.executable, "-c", _OTHER_PROCESS.format(function.__name__), str(path)]
+    try:
+        return subprocess.run(command, capture_output=True, text=True, timeout=_TIMEOUT, check=False)
+    except subprocess.TimeoutExpired:
+        return None
 
 
 def first_damaged(path: Path) -> str:
     """Return the description of the first damaged group or dataset, found in this process; "" if there is none."""
     with h5py.File(path, "r") as file:
-        return _in_group(file)
-
-
-def _in_group(group: h5py.Group) -> str:
-    """Return the description of the first damaged part of a group, searched recursively; "" if there is none."""
-    for name in group:
-        try:
-            found = group[name]
-        except Exception as error:  # of any type, depending on the damage
-            return f"{group.name.strip('/')}/{name}".lstrip("/") + f" is damaged ({short_reason(error)})"
-        try:
-            description = _in_group(found) if isinstance(found, h5py.Group) else ""
-            if isinstance(found, h5py.Dataset):
-                read_array(found)
-        except DamageError as error:
-            return str(error)
-        if description:
-            return description
+        for name, member in _all_members(file, set()):
+            if isinstance(member, Exception):
+                return f"{name} is damaged ({short_reason(member)})"
+            try:
+                if isinstance(member, h5py.Dataset):
+                    read_array(member)
+            except DamageError as error:
+                return str(error)
     return ""
 
 
-if __name__ == "__main__":
-    print(first_damaged(Path(sys.argv[1])))
+def try_all(path: Path) -> None:
+    """Open all groups, attributes and arrays of a file; a fault that raises an error is left to who reads the file."""
+    with suppress(Exception), h5py.File(path, "r") as file:
+        for member in (file, *(member for _, member in _all_members(file, set()))):
+            with suppress(Exception):
+                dict(member.attrs)
+            with suppress(Exception):
+                if member.nbytes <= _SOLID:
+                    read_array(member)
+                elif member.chunks:
+                    member.id.get_num_chunks()
+
+
+def _all_members(group: h5py.Group, seen: set[int]) -> Iterator[tuple[str, Any]]:
+    """Yield the path and the content of all members of a group, or the error that they raise; links to other files are left out."""
+    for name in group:
+        path = f"{group.name.strip('/')}/{name}".lstrip("/")
+        try:
+            if isinstance(group.get(name, getlink=True), h5py.ExternalLink):
+                continue
+            member = group[name]
+            address = h5py.h5o.get_info(member.id).addr
+        except Exception as error:  # of any type, depending on the damage
+            yield path, error
+            continue
+        if address in seen:  # links may lead in circles
+            continue
+        seen.add(address)
+        yield path, member
+        if isinstance(member, h5py.Group):
+            yield from _all_members(member, seen)

@@ -26,6 +26,8 @@ PACKED: dict[str, Any] = {"compression": "gzip", "compression_opts": 1, "shuffle
 """Dataset options of smooth data: fast compression. It also reveals a block overwritten by zeros, whose Fletcher sum is zero too."""
 
 _CHUNK = 2**18  # bytes
+_PACKING = 1100  # the most that gzip reduces data by
+_UNPACKED = 100_000_000  # bytes that any array may take, however few of them are stored
 
 
 class _ErrorStoringFile(FileIO):
@@ -110,12 +112,56 @@ def read_array(data: h5py.Dataset, place: Any = ()) -> NDArray[Any]:
     Raises
     ------
     DamageError
-        If it can't be read, because its checksum does not match for instance.
+        If it can't be read, because its checksum does not match for instance, or the file does not hold so many values.
     """
     try:
+        stored = int(data.id.get_storage_size())
+        size = int(data.size or 0) * data.dtype.itemsize
+        if size > _UNPACKED and size > _PACKING * stored:
+            raise ValueError(f"its shape {data.shape} is of {size / 1e9:.3g} GB, of which the file holds {stored} bytes")
         return np.asarray(data[place])
     except Exception as error:  # of any type, depending on the damage
         raise DamageError(f"{data.name.lstrip('/')} is damaged ({short_reason(error)})") from None
+
+
+def members(group: h5py.Group) -> dict[str, h5py.Dataset | h5py.Group]:
+    """Return what a group holds by name, without following a link to another file.
+
+    Raises
+    ------
+    DamageError
+        If a link leads nowhere or out of the file, or the data of a member lie in other files.
+    """
+    found: dict[str, h5py.Dataset | h5py.Group] = {}
+    for name in group:
+        place = f"{group.name.strip('/')}/{name}".lstrip("/")
+        if isinstance(group.get(name, getlink=True), h5py.ExternalLink):
+            raise DamageError(f"{place} is a link that leads out of the file")
+        try:
+            member = group[name]
+        except Exception as error:  # of any type, depending on the damage
+            raise DamageError(f"{place} is a link that leads nowhere, or is damaged ({short_reason(error)})") from None
+        if isinstance(member, h5py.Dataset) and (member.is_virtual or member.external):
+            raise DamageError(f"the values of {place} lie in another file")
+        found[name] = member
+    return found
+
+
+def attribute(owner: h5py.Dataset | h5py.Group, name: str, otherwise: Any = None) -> Any:
+    """Return an attribute as numbers, texts and lists of them; `otherwise` if there is none.
+
+    Raises
+    ------
+    DamageError
+        If it can't be read.
+    """
+    try:
+        value = owner.attrs.get(name, otherwise)
+    except Exception as error:  # of any type, depending on the damage
+        raise DamageError(f"the attribute {name} is damaged ({short_reason(error)})") from None
+    if isinstance(value, (np.ndarray, np.generic)):
+        value = value.tolist()
+    return value.decode("utf-8", "replace") if isinstance(value, bytes) else value
 
 
 def short_reason(error: Exception) -> str:

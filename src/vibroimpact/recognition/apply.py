@@ -12,7 +12,9 @@ import numpy as np
 
 from vibroimpact._version import __version__
 from vibroimpact.arrays import Floats
+from vibroimpact.errors import InputError
 from vibroimpact.files.plain_names import one_line
+from vibroimpact.files.reading import with_path
 from vibroimpact.recognition.fraction import Estimate
 from vibroimpact.recognition.labelled_signals import LabelledSignals
 from vibroimpact.recognition.read_dataset import read_labelled_signals
@@ -91,7 +93,10 @@ def apply_recogniser(model: Recogniser | str | PathLike[str], dataset: str | Pat
     """
     recogniser = model if isinstance(model, Recogniser) else load_recogniser(model)
     signals = dataset if isinstance(dataset, LabelledSignals) else read_labelled_signals(dataset)
-    found = recogniser.probabilities(signals)
+    try:
+        found = recogniser.probabilities(signals)
+    except InputError as error:
+        raise error if isinstance(model, Recogniser) else with_path(model, error) from None
     guessed, names = found.argmax(axis=1), recogniser.class_names
     doubts = doubts_of_version(recogniser)
     if signals.check_sum and signals.check_sum == recogniser.card["data"]["sha256"]:

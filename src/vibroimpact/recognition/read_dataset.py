@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from math import isfinite
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -12,12 +13,15 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from vibroimpact.arrays import Indices
+from vibroimpact.arrays import Floats, Indices
 from vibroimpact.bounds.bound import least_error
 from vibroimpact.bounds.falls import falls_of_study
 from vibroimpact.errors import InputError
-from vibroimpact.files.check_sums import DamageError, file_digest, read_sealed
-from vibroimpact.files.hdf5 import read_array
+from vibroimpact.files.check_sums import DamageError, file_digest, read_sealed, recorded_digest
+from vibroimpact.files.damaged_part import check_hdf5
+from vibroimpact.files.hdf5 import attribute, members, read_array, short_reason
+from vibroimpact.files.plain_names import one_line
+from vibroimpact.files.reading import with_path
 from vibroimpact.recognition.labelled_signals import GROUPS, LabelledSignals, SensorSignals
 from vibroimpact.results.folder import SUMMARY
 from vibroimpact.shown import shown
@@ -30,6 +34,7 @@ DATASET, FORMAT = "dataset.nc", "vibroimpact dataset 1"
 
 _SIGNAL, _CLASS = "signal_", "class"
 _BLOCK = 4096  # signals read at once
+_MOST_CLASSES = 100
 
 
 def read_labelled_signals(dataset: str | PathLike[str], *, most: int | None = None, group: str = "rock", seed: int = 0) -> LabelledSignals:
@@ -68,36 +73,48 @@ def read_labelled_signals(dataset: str | PathLike[str], *, most: int | None = No
         path = next((path / name for name in (DATASET, STUDY) if (path / name).is_file()), path)
     if not path.is_file():
         raise InputError(f"{dataset}: this is not a data set; there is no {STUDY} or {DATASET}")
-    try:
+    with _faults_of(path):
+        check_hdf5(path, recorded_digest(path))
         with h5py.File(path) as file:
-            found = _read(file, path, most, group, seed)
+            return _read(file, path, most, group, seed)
+
+
+@contextmanager
+def _faults_of(path: Path) -> Iterator[None]:
+    """Report what is wrong with a data set, whose damage raises errors of many types."""
+    try:
+        yield
     except DamageError as error:
-        raise InputError(f"{path}: {error}") from None
+        raise with_path(path, InputError(str(error))) from None
+    except InputError as error:
+        raise error if str(path.parent) in str(error) else with_path(path, error) from None
     except OSError:
-        raise InputError(f"{path}: this is not a NetCDF-4 file, or it is damaged") from None
-    return found
+        raise with_path(path, InputError("this is not a NetCDF-4 file, or it is damaged")) from None
+    except Exception as error:
+        raise with_path(path, InputError(f"the file is damaged: {short_reason(error)}")) from None
 
 
 def _read(file: h5py.File, path: Path, most: int | None, group: str, seed: int) -> LabelledSignals:
-    if path.name != STUDY and (form := file.attrs.get("format", "")) != FORMAT:
-        raise InputError(f'{path}: the attribute "format" is {shown(form)}; this version reads "{FORMAT}"')
-    sensors = [name.removeprefix(_SIGNAL) for name, one in file.items() if name.startswith(_SIGNAL) and one.ndim == 2]
-    if not sensors:
-        raise InputError(f"{path}: there are no signals; a variable signal_SENSOR (signal, time_SENSOR) holds those of a sensor")
-    count = len(file[f"{_SIGNAL}{sensors[0]}"])
-    columns = {name: read_array(one) for name, one in file.items() if one.ndim == 1 and len(one) == count and not _is_scale(one)}
-    groups = {name: columns[name].astype(np.intp) for name in GROUPS if name in columns}
+    if path.name != STUDY and (form := attribute(file, "format", "")) != FORMAT:
+        raise InputError(f'the attribute "format" is {shown(form)}; this version reads "{FORMAT}"')
+    variables = members(file)
+    signals = _signals(variables)
+    count = len(next(iter(signals.values())))
+    columns = {name: read_array(data) for name, data in variables.items() if _is_column(name, data, count)}
+    groups = {name: _whole_numbers(name, columns[name]) for name in GROUPS if name in columns}
     groups.setdefault("fall", np.arange(count))
-    classes, names = _classes(file, path, columns)
+    classes, names = _classes(file, columns)
     kept = np.arange(count)
     if most is not None and count > most and group in groups:
         kept = _drawn_groups(groups[group], most, seed)
-    numbers = {name: one.astype(float) for name, one in columns.items() if one.dtype.kind in "fiu" and name not in (*GROUPS, _CLASS)}
-    texts = {name: one.astype(str) for name, one in columns.items() if one.dtype.kind in "OS"}
-    values = {sensor: _rows(file[f"{_SIGNAL}{sensor}"], kept) for sensor in sensors}
+    numbers = {
+        name: values.astype(float) for name, values in columns.items() if values.dtype.kind in "fiu" and name not in (*GROUPS, _CLASS)
+    }
+    texts = {name: _texts(values) for name, values in columns.items() if values.dtype.kind in "OS"}
+    values = {sensor: _rows(data, kept) for sensor, data in signals.items()}
     found = LabelledSignals(
-        str(file.attrs.get("title", path.parent.name)),
-        {sensor: SensorSignals(values[sensor], *_rate_and_unit(file, path, sensor)) for sensor in sensors},
+        one_line(str(attribute(file, "title", path.parent.name))),
+        {sensor: SensorSignals(values[sensor], *_rate_and_unit(data, sensor)) for sensor, data in signals.items()},
         None if classes is None else classes[kept],
         names,
         {name: one[kept] for name, one in groups.items()},
@@ -109,44 +126,113 @@ def _read(file: h5py.File, path: Path, most: int | None, group: str, seed: int) 
     )
     # of a drop that failed there is no sample
     there = np.any([np.isfinite(one).any(axis=1) for one in values.values()], axis=0)
+    if not there.any():
+        raise InputError("no signal has a sample that is a finite number")
     return found if there.all() else found.only(np.flatnonzero(there))
 
 
-def _is_scale(one: h5py.Dataset) -> bool:
-    return one.attrs.get("CLASS", b"") == b"DIMENSION_SCALE" and one.name.lstrip("/") not in (*GROUPS, _CLASS)
+def _signals(variables: Mapping[str, h5py.Dataset | h5py.Group]) -> dict[str, h5py.Dataset]:
+    """Return the variable with the signals of each sensor, all of as many rows."""
+    found = {}
+    for name, data in variables.items():
+        if not name.startswith(_SIGNAL):
+            continue
+        if not isinstance(data, h5py.Dataset):
+            raise InputError(f"{name} is a group; it must be a variable of two dimensions (signal, time)")
+        if data.ndim != 2:
+            continue
+        if data.dtype.kind not in "fiu":
+            raise InputError(f"{name} is of the type {data.dtype}; the samples of signals must be real numbers")
+        if not data.size:
+            raise InputError(f"{name} has no samples; its shape is {data.shape}")
+        found[name.removeprefix(_SIGNAL)] = data
+    if not found:
+        raise InputError("there are no signals; a variable signal_SENSOR (signal, time_SENSOR) holds those of a sensor")
+    first, *others = found
+    for sensor in others:
+        if len(found[sensor]) != len(found[first]):
+            words = f"{len(found[first])} signals, and signal_{sensor} has {len(found[sensor])}"
+            raise InputError(f"signal_{first} has {words}; a row of each must be of the same impact")
+    return found
 
 
-def _classes(file: h5py.File, path: Path, columns: Mapping[str, NDArray[Any]]) -> tuple[Indices | None, tuple[str, ...]]:
+def _is_column(name: str, data: h5py.Dataset | h5py.Group, count: int) -> bool:
+    """Return whether a variable has a value for each signal."""
+    if not isinstance(data, h5py.Dataset):
+        if name in (*GROUPS, _CLASS):
+            raise InputError(f"{name} is a group; it must be a variable with a value for each signal")
+        return False
+    is_label = name in (*GROUPS, _CLASS)
+    if is_label and data.shape != (count,):
+        raise InputError(f"{name} is of the shape {data.shape}; it must have a value for each of {count} signals")
+    return data.shape == (count,) and (is_label or attribute(data, "CLASS", "") != "DIMENSION_SCALE")
+
+
+def _whole_numbers(name: str, values: NDArray[Any]) -> Indices:
+    """Return labels, which must be whole numbers."""
+    if values.dtype.kind not in "fiub":
+        raise InputError(f"{name} is of the type {values.dtype}; number each {name} with whole numbers")
+    wrong = np.flatnonzero(~np.isfinite(values) | (values != np.floor(values)) | (np.abs(values.astype(float)) > 2.0**53))
+    if len(wrong):
+        raise InputError(f"{name} of signal {wrong[0]} is {shown(values[wrong[0]].item())}; it must be a whole number")
+    return values.astype(np.intp)
+
+
+def _texts(values: NDArray[Any]) -> NDArray[Any]:
+    return np.array([value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value) for value in values.tolist()])
+
+
+def _classes(file: h5py.File, columns: Mapping[str, NDArray[Any]]) -> tuple[Indices | None, tuple[str, ...]]:
     """Return the index of each signal's class, None if there are no classes, and the names of the classes."""
     if _CLASS not in columns:
         return None, ()
-    attributes = file[_CLASS].attrs
-    if not {"flag_values", "flag_meanings"} <= attributes.keys():
-        raise InputError(f"{path}: the variable class has no flag_values and flag_meanings, which name the classes")
-    values, names = np.atleast_1d(attributes["flag_values"]), tuple(str(attributes["flag_meanings"]).split())
-    place = {int(value): number for number, value in enumerate(values)}
-    unknown = sorted({int(value) for value in columns[_CLASS]} - place.keys())
-    if len(values) != len(names):
-        raise InputError(f"{path}: the variable class has {len(values)} flag_values and {len(names)} flag_meanings")
+    flags, meanings = (attribute(file[_CLASS], name) for name in ("flag_values", "flag_meanings"))
+    if flags is None or meanings is None:
+        raise InputError("the variable class has no flag_values and flag_meanings, which name the classes")
+    flags = flags if isinstance(flags, list) else [flags]
+    if not all(type(flag) in (int, float) and isfinite(flag) and flag == int(flag) for flag in flags) or len(set(flags)) < len(flags):
+        raise InputError(f"flag_values of the variable class is {shown(flags)}; it must be a list of different whole numbers")
+    names = tuple(meanings.split()) if isinstance(meanings, str) else ()
+    if not names or len(set(names)) < len(names) or not all(map(str.isprintable, names)):
+        raise InputError(f"flag_meanings of the variable class is {shown(meanings)}; it must be different names, separated by blanks")
+    if len(flags) != len(names):
+        raise InputError(f"the variable class has {len(flags)} flag_values and {len(names)} flag_meanings")
+    if len(names) > _MOST_CLASSES:
+        raise InputError(f"there are {len(names)} classes; {_MOST_CLASSES} are the most")
+    numbers = _whole_numbers(_CLASS, columns[_CLASS]).tolist()
+    place = {int(flag): number for number, flag in enumerate(flags)}
+    unknown = sorted(set(numbers) - place.keys())
     if unknown:
-        raise InputError(f"{path}: {unknown[0]} is in the variable class and not in its flag_values")
-    return np.array([place[int(value)] for value in columns[_CLASS]], dtype=np.intp), names
+        raise InputError(f"{unknown[0]} is in the variable class and not in its flag_values")
+    return np.array([place[number] for number in numbers], dtype=np.intp), names
 
 
-def _rate_and_unit(file: h5py.File, path: Path, sensor: str) -> tuple[float, str]:
-    data = file[f"{_SIGNAL}{sensor}"]
-    rate = float(data.attrs["rate_Hz"]) if "rate_Hz" in data.attrs else _rate_of_scale(data)
-    if not (np.isfinite(rate) and rate > 0.0):
-        raise InputError(f"{path}: signal_{sensor} has neither an attribute rate_Hz that is greater than 0 nor times of its samples")
-    return rate, str(data.attrs.get("units", "1"))
+def _rate_and_unit(data: h5py.Dataset, sensor: str) -> tuple[float, str]:
+    rate, unit = attribute(data, "rate_Hz"), attribute(data, "units", "1")
+    if rate is None:
+        rate = _rate_of_scale(data)
+    elif isinstance(rate, list) and len(rate) == 1:
+        (rate,) = rate
+    if rate is None or (type(rate) in (int, float) and not 0.0 < rate < np.inf):
+        raise InputError(f"signal_{sensor} has neither an attribute rate_Hz that is greater than 0 nor times of its samples")
+    if type(rate) not in (int, float):
+        raise InputError(f"rate_Hz of signal_{sensor} is {shown(rate)}; it must be a number, in Hz")
+    if not isinstance(unit, str):
+        raise InputError(f"units of signal_{sensor} is {shown(unit)}; it must be a text")
+    return float(rate), one_line(unit)
 
 
-def _rate_of_scale(data: h5py.Dataset) -> float:
-    """Return the sampling rate by the times that signals are over; NaN if there are none."""
+def _rate_of_scale(data: h5py.Dataset) -> float | None:
+    """Return the sampling rate by the times that signals are over; None if there are none, or they do not go on."""
     if not len(data.dims[1]) or data.shape[1] < 2:
-        return float("nan")
-    time = read_array(data.dims[1][0])
-    return float(f"{(len(time) - 1) / (time[-1] - time[0]):.12g}")  # without the rounding of the times
+        return None
+    time: Floats = read_array(data.dims[1][0])
+    if time.dtype.kind not in "fiu" or len(time) != data.shape[1]:
+        return None
+    span = float(time[-1]) - float(time[0])
+    if not 0.0 < span < np.inf:
+        return None
+    return float(f"{min((len(time) - 1) / span, np.finfo(float).max):.12g}")  # without the rounding of the times
 
 
 def _drawn_groups(groups: Indices, most: int, seed: int) -> Indices:
@@ -159,11 +245,13 @@ def _drawn_groups(groups: Indices, most: int, seed: int) -> Indices:
 
 def _rows(data: h5py.Dataset, kept: Indices) -> NDArray[np.float32]:
     """Return some rows of signals; blocks are read whole, since HDF5 reads single rows slowly."""
+    read_array(data, slice(0, 0))  # which refuses a shape that the file does not hold, before memory is taken for it
     found = np.empty((len(kept), data.shape[1]), dtype=np.float32)
     for first in range(0, len(data), _BLOCK):
         start, end = np.searchsorted(kept, (first, first + _BLOCK))
         if end > start:
-            found[start:end] = read_array(data, slice(first, first + _BLOCK))[kept[start:end] - first]
+            with np.errstate(over="ignore"):  # beyond single precision a sample is infinite, which is a feature's reason to have no value
+                found[start:end] = read_array(data, slice(first, first + _BLOCK))[kept[start:end] - first]
     return found
 
 
@@ -176,8 +264,8 @@ def _bayes_error(path: Path) -> float | None:
         return least_error(falls_of_study(read_study(path.parent)))
     try:
         value = read_sealed(summary).get("bayes_error")
-    except (ValueError, OSError, json.JSONDecodeError) as error:
-        raise InputError(f"{summary}: {error}") from None
+    except (DamageError, InputError) as error:
+        raise with_path(summary, InputError(str(error))) from None
     if value is None:
         return None
     if not isinstance(value, int | float) or isinstance(value, bool) or not 0.0 <= value < 1.0:

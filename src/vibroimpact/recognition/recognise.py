@@ -14,6 +14,7 @@ from vibroimpact._version import __version__
 from vibroimpact.arrays import Floats, Indices
 from vibroimpact.errors import InputError
 from vibroimpact.recognition.bound import bound_doubts
+from vibroimpact.recognition.card import FORMAT
 from vibroimpact.recognition.classifiers import CLASSIFIER, PROBE, Classifier, all_classifiers, fit_tuned
 from vibroimpact.recognition.cross_validation import Chosen, Validated, cross_validate
 from vibroimpact.recognition.extra import needs_extra
@@ -22,8 +23,9 @@ from vibroimpact.recognition.importance import Importance, permutation_importanc
 from vibroimpact.recognition.input_faults import check_signals
 from vibroimpact.recognition.jobs import Progress, silent
 from vibroimpact.recognition.labelled_signals import LabelledSignals
+from vibroimpact.recognition.onnx_runtime import silent_onnxruntime
 from vibroimpact.recognition.read_dataset import read_labelled_signals
-from vibroimpact.recognition.recogniser import FORMAT, Recogniser, graph_of
+from vibroimpact.recognition.recogniser import Recogniser, graph_of
 from vibroimpact.recognition.reliability import Reliable, reliability
 from vibroimpact.recognition.robustness import Noisy, score_in_noise
 from vibroimpact.recognition.scores import Bootstrap, Score, Scores, score
@@ -168,9 +170,9 @@ def recognise(
     True
     """
     with needs_extra():
-        import onnxruntime as onnxruntime
         import skl2onnx as skl2onnx
         import sklearn as sklearn
+    silent_onnxruntime()  # before hours of training, and before the worker processes, which inherit that it is silent
     check_settings(folds, seeds, most)
     signals = dataset if isinstance(dataset, LabelledSignals) else read_labelled_signals(dataset, most=most, group=group, seed=seed)
     signals = signals.of_present_classes()

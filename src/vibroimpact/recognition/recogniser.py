@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import json
 import logging
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
+from hashlib import sha256
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -16,18 +16,25 @@ import numpy as np
 from vibroimpact._version import __version__
 from vibroimpact.arrays import Floats
 from vibroimpact.errors import ComputationError, InputError
-from vibroimpact.files.check_sums import CHECK_SUMS, DamageError, check_file, file_digest, read_sealed, sealed
+from vibroimpact.files.check_sums import CHANGED, CHECK_SUMS, DamageError, file_digest, read_sealed, sealed
+from vibroimpact.files.reading import FileKind, read_bytes, with_path
+from vibroimpact.recognition.card import CARD_FILE, check_card
 from vibroimpact.recognition.extra import needs_extra
 from vibroimpact.recognition.fraction import Estimate, Rates, estimate_fraction
+from vibroimpact.recognition.graph_check import ROWS, check_graph
 from vibroimpact.recognition.labelled_signals import LabelledSignals
+from vibroimpact.recognition.onnx_runtime import silent_onnxruntime
 from vibroimpact.recognition.signal_features import by_name, features_of
-from vibroimpact.shown import shown
+from vibroimpact.shown import shortened, shown, visible
 
-FOLDER, CARD, GRAPH, FORMAT = "model", "card.json", "model.onnx", "vibroimpact model 1"
+FOLDER, CARD, GRAPH = "model", "card.json", "model.onnx"
+_GRAPH_FILE = FileKind("a graph is a file in ONNX", 100_000_000, "no graph is so large; train on fewer signals")
 _DIFFERENT = 0.005
 """Largest part of the training signals that the saved graph may take for another class, by rounding to single precision at a threshold."""
+_TOLERANCE = 1e-3
+"""Largest deviation of the sum of probabilities from 1: they are of single precision."""
 
-_KEYS = ("format", "version", "classifier", "classes", "features", "sensors", "group", "data")
+_LONGEST_REASON = 120
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,7 +87,7 @@ class Recogniser:
             if (length := one.values.shape[1]) != trained["samples"]:
                 raise InputError(f"{sensor}: the model was trained on {trained['samples']} samples a signal, and these have {length}")
         features = features_of(signals)
-        return run_graph(self.graph, by_name(features, tuple(self.card["features"])))
+        return run_graph(self.graph, by_name(features, tuple(self.card["features"])), len(self.class_names))
 
     def fractions(self, guessed: Any, seed: int = 0) -> dict[str, Estimate]:
         """Return the fraction of each class in a stream of impacts, corrected by what the model confuses.
@@ -124,7 +131,7 @@ def graph_of(estimator: Any, values: Floats, classes: int) -> bytes:
         warnings.simplefilter("ignore")  # of attributes that scikit-learn will drop and the conversion asks for
         logging.getLogger("skl2onnx").setLevel(logging.ERROR)
         graph: bytes = to_onnx(estimator, values[:1].astype(np.float32), options={"zipmap": False}).SerializeToString()
-    found, expected = run_graph(graph, values), estimator.predict_proba(values)
+    found, expected = run_graph(graph, values, classes), estimator.predict_proba(values)
     different = float(np.mean(found.argmax(axis=1) != expected.argmax(axis=1)))
     if found.shape != (len(values), classes) or different > _DIFFERENT:
         words = f"the saved model takes {different:.1%} of the signals for another class than the trained one"
@@ -132,17 +139,49 @@ def graph_of(estimator: Any, values: Floats, classes: int) -> bytes:
     return graph
 
 
-def run_graph(graph: bytes, values: Floats) -> Floats:
-    """Return the probabilities that an ONNX graph gives for features."""
-    with needs_extra():
-        import onnxruntime
+def run_graph(graph: bytes, values: Floats, classes: int) -> Floats:
+    """Return the probabilities that an ONNX graph gives for features, after a check of the graph and of what it gives.
+
+    Parameters
+    ----------
+    graph : bytes
+        The graph.
+    values : array, shape (signals, features)
+        The features.
+    classes : int
+        Number of classes.
+
+    Raises
+    ------
+    InputError
+        If the graph is no classifier of this program, can't be run, or does not give probabilities.
+    """
+    check_graph(graph, values.shape[1], classes)
+    onnxruntime = silent_onnxruntime()
     options = onnxruntime.SessionOptions()
     options.intra_op_num_threads = 1
     options.log_severity_level = 4
-    session = onnxruntime.InferenceSession(graph, options, providers=["CPUExecutionProvider"])
-    (given,) = session.get_inputs()
-    _, found = session.run(None, {given.name: values.astype(np.float32)})
-    return np.asarray(found, dtype=float)
+    found = np.empty((len(values), classes))
+    try:
+        session = onnxruntime.InferenceSession(graph, options, providers=["CPUExecutionProvider"])
+        (given,) = session.get_inputs()
+        for first in range(0, len(values), ROWS):
+            _, probabilities = session.run(None, {given.name: values[first : first + ROWS].astype(np.float32)})
+            found[first : first + ROWS] = probabilities
+    except Exception as error:  # onnxruntime has a class of its own for each kind of fault
+        raise InputError(f"the graph can't be run: {shortened(visible(str(error)), _LONGEST_REASON)}; train the model anew") from None
+    return _probabilities(found)
+
+
+def _probabilities(values: Floats) -> Floats:
+    """Return probabilities, after a check that they are."""
+    with np.errstate(invalid="ignore"):
+        right = (values >= -_TOLERANCE).all(axis=1) & (np.abs(values.sum(axis=1) - 1.0) <= _TOLERANCE)
+    if not right.all():  # a comparison with NaN is not right either
+        first = int(np.flatnonzero(~right)[0])
+        what = shown([float(f"{value:.4g}") for value in values[first]])
+        raise InputError(f"the model gives {what} for signal {first}; probabilities are from 0 to 1, and add up to 1: train it anew")
+    return np.clip(values, 0.0, 1.0)
 
 
 def save_recogniser(recogniser: Recogniser, folder: Path) -> None:
@@ -180,24 +219,16 @@ def load_recogniser(directory: str | PathLike[str]) -> Recogniser:
     folder = folder / FOLDER if (folder / FOLDER).is_dir() else folder
     if not (folder / CARD).is_file():
         raise InputError(f"{directory}: this is no saved model; there is no {CARD}")
+    name = CARD  # the file being read: error messages name it
     try:
-        card = read_sealed(folder / CARD)
-    except (ValueError, OSError, json.JSONDecodeError) as error:
-        raise InputError(f"{folder / CARD}: {error}") from None
-    if card.get("format") != FORMAT:
-        by = f" by vibroimpact {card['version']}" if "version" in card else ""
-        words = f'the model was saved in the format {shown(card.get("format"))}{by}; this version reads "{FORMAT}"'
-        raise InputError(f"{folder}: {words}: train it anew")
-    missing = [key for key in (*_KEYS, "confusion") if key not in card]
-    if missing:
-        raise InputError(f"{folder / CARD}: the card has no {missing[0]}")
-    try:
-        check_file(folder / GRAPH, card.pop(CHECK_SUMS, {}).get(GRAPH))
-        graph = (folder / GRAPH).read_bytes()
-    except DamageError as error:
-        raise InputError(f"{folder / GRAPH}: {error}") from None
-    except OSError as error:
-        raise InputError(f"{folder / GRAPH}: {error.strerror}") from None
+        card = read_sealed(folder / name, CARD_FILE)
+        check_card(card, GRAPH)
+        name = GRAPH
+        graph = read_bytes(folder / name, _GRAPH_FILE)
+        if sha256(graph).hexdigest() != card.pop(CHECK_SUMS)[GRAPH]:
+            raise DamageError(CHANGED)
+    except (DamageError, InputError) as error:
+        raise with_path(folder / name, InputError(str(error))) from None
     return Recogniser(card, graph)
 
 

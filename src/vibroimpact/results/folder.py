@@ -6,7 +6,6 @@ import json
 import math
 import os
 import shlex
-import tomllib
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from functools import partial
@@ -17,18 +16,26 @@ from typing import Any, cast
 import numpy as np
 import tomli_w
 
-from vibroimpact.dynamics.columns import FIRST_IMPACT_COLUMNS, IMPACT_COLUMNS, history_columns, impact_columns
+from vibroimpact.dynamics.columns import (
+    FIRST_IMPACT_COLUMNS,
+    HISTORY_COLUMNS,
+    IMPACT_COLUMNS,
+    VIBRATION_HISTORY_COLUMNS,
+    history_columns,
+    impact_columns,
+)
 from vibroimpact.errors import InputError
 from vibroimpact.files.atomic_write import atomic_folder
 from vibroimpact.files.check_sums import CHECK_SUMS, DamageError, check_file, file_digest, read_sealed, sealed
 from vibroimpact.files.damaged_part import check_hdf5
 from vibroimpact.files.hdf5 import short_reason
 from vibroimpact.files.recover import recover
+from vibroimpact.files.toml_reading import read_toml
 from vibroimpact.resolved_case import ResolvedCase
 from vibroimpact.results.csv_files import write_impacts, write_signal_files
 from vibroimpact.results.netcdf import read_groups, write_groups
 from vibroimpact.results.result import Result
-from vibroimpact.results.summary import check_types, summary_of
+from vibroimpact.results.summary import check_case, check_types, summary_of
 
 SUMMARY, CASE, NETCDF = "summary.json", "case.toml", "result.nc"
 
@@ -174,7 +181,8 @@ def read_result(directory: str | PathLike[str]) -> Result:
         case: ResolvedCase = {}
         if "problem" not in summary["provenance"]:
             check_file(folder / name, expected.get(name))
-            case = cast("ResolvedCase", tomllib.loads((folder / name).read_text(encoding="utf-8")))
+            case = cast("ResolvedCase", read_toml(folder / name))
+            check_case(case)
         name = NETCDF
         check_hdf5(folder / name, expected.get(name))
         return _result_from(case, summary, read_groups(folder / name))
@@ -196,8 +204,9 @@ def _result_from(case: ResolvedCase, summary: Mapping[str, Any], groups: Mapping
     for key in IMPACT_COLUMNS.keys() - found.keys():  # of a folder that was written before there was this column
         impacts[key] = np.full(impacts["impact"].shape, np.nan)
     history = {key: groups["history"][key] for key in history_columns(groups["history"])}
+    _check_history(history)
     for group, columns in (("impacts", impacts), ("history", history)):
-        if len({column.shape for column in columns.values()}) != 1:
+        if len({column.shape for column in columns.values()}) != 1 or next(iter(columns.values())).ndim != 1:
             raise ValueError(f"the columns of {group} are not of one length")
     return Result(
         case,
@@ -212,6 +221,14 @@ def _result_from(case: ResolvedCase, summary: Mapping[str, Any], groups: Mapping
         groups["sensors"],
         groups["deflection"]["deflection"],
     )
+
+
+def _check_history(history: Mapping[str, Any]) -> None:
+    """Raise KeyError if a history lacks a column that every one has, or one of those that it has where a body vibrates."""
+    needed = set(HISTORY_COLUMNS) | (set(VIBRATION_HISTORY_COLUMNS) if history.keys() & set(VIBRATION_HISTORY_COLUMNS) else set())
+    missing = sorted(needed - history.keys())
+    if missing:
+        raise KeyError(f"no {', '.join(missing)}")
 
 
 def _cause(error: Exception) -> str:

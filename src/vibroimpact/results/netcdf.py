@@ -8,11 +8,13 @@ from typing import Any
 
 import h5py
 import numpy as np
+from numpy.typing import NDArray
 
 from vibroimpact.dynamics.columns import history_columns, impact_columns, meanings
 from vibroimpact.dynamics.sensors.recording import Signal
 from vibroimpact.dynamics.sensors.sensor import Sensor
-from vibroimpact.files.hdf5 import PACKED, chunk_shape, new_array, new_hdf5, read_array
+from vibroimpact.files.check_sums import DamageError
+from vibroimpact.files.hdf5 import PACKED, chunk_shape, members, new_array, new_hdf5, read_array
 from vibroimpact.files.plain_names import plain_names
 from vibroimpact.results.deflection import Deflection
 from vibroimpact.results.result import Result
@@ -53,10 +55,18 @@ def read_groups(path: Path) -> dict[str, dict[str, Any]]:
         If the file is missing or otherwise damaged.
     """
     with h5py.File(path, "r") as file:
+        parts = members(file)
         groups: dict[str, dict[str, Any]] = {
-            group: {name: read_array(file[group][name]) for name in file[group]} for group in ("impacts", "history", "energy")
+            group: {name: _numbers(data) for name, data in members(parts[group]).items()} for group in ("impacts", "history", "energy")
         }
         return {**groups, "sensors": dict(read_signals(file)), "deflection": {"deflection": read_deflection(file)}}
+
+
+def _numbers(data: h5py.Dataset) -> NDArray[Any]:
+    """Return a variable, which must hold real numbers."""
+    if not isinstance(data, h5py.Dataset) or data.dtype.kind not in "fiub":
+        raise DamageError(f"{data.name.lstrip('/')} is no variable of real numbers")
+    return read_array(data)
 
 
 def _write_group(file: h5py.File, name: str, dimension: str, columns: Mapping[str, Any], meaning: Mapping[str, tuple[str, str]]) -> None:
@@ -103,13 +113,16 @@ def read_signals(file: h5py.File) -> dict[str, Signal]:
     The properties of an accelerometer are not stored, only their effect on the values; the case holds them.
     """
     found = {}
-    for group in file["sensors"].values() if "sensors" in file else ():
+    for group in members(file["sensors"]).values() if "sensors" in file else ():
         name, told = str(group.attrs["name"]), group.attrs
         x, y, z = (float(part) for part in told["direction"])
         corner = float(told["filter_corner_Hz"]) if "filter_corner_Hz" in told else None
         sensor = Sensor(name, told["quantity"], (x, y, z), float(told["rate_Hz"]), None, str(told.get("filter", "none")), corner)
         facts = (told.get("relative_uncertainty", np.nan), told.get("peak_before_range_m_s2", np.nan), told.get("overload_time_s", 0.0))
-        found[name] = Signal(sensor, read_array(group["value"]), *map(float, facts))
+        value = _numbers(members(group)["value"])
+        if value.ndim != 1 or not 0.0 < sensor.rate < np.inf:
+            raise DamageError(f"{group.name.lstrip('/')} is no signal of equal steps")
+        found[name] = Signal(sensor, value, *map(float, facts))
     return found
 
 
@@ -147,7 +160,10 @@ def read_deflection(file: h5py.File) -> Deflection | None:
         return None
     group = file["deflection"]
     names = ("time_s", "x_m", "y_m", "deflection_m", "sphere_position_m", "contact_deflection_m")
-    time, x, y, height, position, contact = (read_array(group[name]) for name in names)
+    variables = members(group)
+    time, x, y, height, position, contact = (_numbers(variables[name]) for name in names)
+    if height.shape != (len(time), len(y), len(x)) or position.shape != time.shape or contact.shape != time.shape:
+        raise DamageError("the variables of deflection are not of one size")
     return Deflection(time, x, y, height, position, contact, (float(group.attrs["contact_x_m"]), float(group.attrs["contact_y_m"])))
 
 

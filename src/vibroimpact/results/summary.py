@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+from vibroimpact.cases.limits.plate_waves import PLATE_THEORY_INERTIA
 from vibroimpact.results.csv_files import impact_rows
 from vibroimpact.results.result import Result
 
@@ -67,9 +68,28 @@ def check_types(summary: Mapping[str, Any]) -> None:
     for key, kinds in (("provenance", (str,)), ("deformation", (str, int, float)), ("truncation", (int, float, type(None)))):
         table = summary.get(key, {})
         _check(key, isinstance(table, dict) and all(isinstance(value, kinds) for value in table.values()))
+    inertia = summary.get("deformation", {}).get(PLATE_THEORY_INERTIA, 0.0)
+    _check(PLATE_THEORY_INERTIA, isinstance(inertia, (int, float)))
     for body in ("sphere", "plate"):
         peaks = summary.get(body, {})
         _check(body, isinstance(peaks, dict) and all(_is_peak(value) for value in peaks.values()))
+
+
+def check_case(case: Mapping[str, Any]) -> None:
+    """Check that a resolved case has the tables that `write_result` writes.
+
+    Raises
+    ------
+    KeyError
+        If one is missing.
+    ValueError
+        If one is no table.
+    """
+    for section in ("sphere", "plate", "drop", "contact", "run"):
+        _check(section, isinstance(case[section], dict))
+    sensors = case.get("sensors", [])
+    _check("sensors", isinstance(sensors, list) and all(isinstance(sensor, dict) for sensor in sensors))
+    _check("name", isinstance(case.get("name", ""), str))
 
 
 def _is_peak(value: Any) -> bool:

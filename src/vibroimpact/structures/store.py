@@ -23,6 +23,7 @@ import numpy as np
 from vibroimpact._version import __version__
 from vibroimpact.errors import InputError
 from vibroimpact.files.atomic_write import write_file
+from vibroimpact.files.json_reading import parse_json
 from vibroimpact.files.recover import clear
 from vibroimpact.structures.geometry import MassProperties
 from vibroimpact.structures.memory_cache import MemoryCache
@@ -320,5 +321,5 @@ def _model(entry: Mapping[str, Any]) -> ModalModel:
         entry["rigid_coefficients"],
         entry["frequency_errors"],
         thickness,
-        json.loads(entry["facts"].tobytes()),
+        parse_json(entry["facts"].tobytes()),
     )

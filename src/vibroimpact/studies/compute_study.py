@@ -9,6 +9,7 @@ from collections.abc import Callable
 from functools import partial
 from os import PathLike
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -121,8 +122,12 @@ def _create(folder: Path, sweep: Sweep, memory: float, *, force: bool) -> None:
         (working / STUDY).write_text(study_toml(sweep.whole_table), encoding="utf-8")
         (working / FOLDER).mkdir()
         make_ledger(working, _facts(sweep), sweep.size, chunk_size(sweep, memory))
-        summary = {"name": sweep.name, "version": __version__, "study": {"design": sweep.section.design, "drops": sweep.size}}
-        (working / SUMMARY).write_text(sealed(summary), encoding="utf-8")
+        (working / SUMMARY).write_text(sealed(_summary(sweep)), encoding="utf-8")
+
+
+def _summary(sweep: Sweep) -> dict[str, Any]:
+    """Return the content of `summary.json`, to which the checksum of the dataset is added when that is written."""
+    return {"name": sweep.name, "version": __version__, "study": {"design": sweep.section.design, "drops": sweep.size}}
 
 
 def _restore_ledger(folder: Path, sweep: Sweep, memory: float) -> None:
@@ -189,7 +194,7 @@ def _assemble(folder: Path, ledger: Ledger, sweep: Sweep) -> None:
     try:
         if sweep.size <= MOST_ROWS:
             write_drops(folder, chunks, sweep.digest, sweep.plan, sweep.meanings)
-        write_dataset(folder, sweep.name, chunks, sweep.digest, sweep.plan, sweep.whole_table, sweep.meanings, rates)
+        write_dataset(folder, sweep.name, chunks, sweep.digest, sweep.plan, sweep.whole_table, sweep.meanings, rates, _summary(sweep))
     except OSError as error:
         why = os.strerror(error.errno) if error.errno else str(error)
         words = f"the results can't be put together: {why}; see to the disk, then go on with --resume"

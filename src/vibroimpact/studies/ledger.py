@@ -122,6 +122,7 @@ def open_ledger(folder: Path) -> Iterator[Ledger]:
             connection.execute("PRAGMA locking_mode = EXCLUSIVE")
             connection.execute("BEGIN EXCLUSIVE")
             connection.execute("COMMIT")
+            _check_schema(connection)
             found = connection.execute("PRAGMA quick_check").fetchone()[0]
             if found != "ok":
                 raise sqlite3.DatabaseError(found)
@@ -129,6 +130,14 @@ def open_ledger(folder: Path) -> Iterator[Ledger]:
         yield Ledger(connection, path)
     finally:
         connection.close()
+
+
+def _check_schema(connection: sqlite3.Connection) -> None:
+    """Check that the database has the tables of a ledger, and no views and triggers, which would run."""
+    expected = {" ".join(statement.split()) for statement in _SCHEMA.split(";") if statement.strip()}
+    rows = connection.execute("SELECT sql FROM sqlite_master WHERE sql IS NOT NULL LIMIT 10").fetchall()
+    if {" ".join(str(sql).split()) for (sql,) in rows} != expected:
+        raise sqlite3.DatabaseError("it has other tables than a ledger")
 
 
 def _check_chunks(connection: sqlite3.Connection) -> None:

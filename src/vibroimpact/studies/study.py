@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import shlex
-import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -18,10 +17,10 @@ from numpy.typing import NDArray
 
 from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError
-from vibroimpact.files.check_sums import CHECK_SUMS, DamageError, read_sealed
+from vibroimpact.files.check_sums import DamageError, recorded_digest
 from vibroimpact.files.damaged_part import check_hdf5
-from vibroimpact.files.hdf5 import read_array, short_reason
-from vibroimpact.results.folder import SUMMARY
+from vibroimpact.files.hdf5 import members, read_array, short_reason
+from vibroimpact.files.toml_reading import parse_toml
 from vibroimpact.studies.drop_variables import DOUBTS, LIMIT, SIGNAL
 from vibroimpact.studies.plan import SAMPLE
 from vibroimpact.studies.population import LABELS
@@ -237,15 +236,17 @@ def read_study(directory: str | PathLike[str]) -> Study:
         command = f"vibroimpact sweep {shlex.quote(str(folder / STUDY))} -o {shlex.quote(str(folder))} --resume"
         raise InputError(f"{folder}: the study is not done; if nothing is at work on it, go on with: {command}")
     with _reported_damage(path):
-        check_hdf5(path, _check_sum(path.parent))
+        check_hdf5(path, recorded_digest(path))
     with _reported_damage(path), h5py.File(path, "r") as file:
-        table = tomllib.loads(str(file.attrs["study"]))
+        variables = members(file)
+        table = parse_toml(str(file.attrs["study"]))
         over = swept_keys(table)
         is_grid = _design(table) == "grid"
         coordinates = {key: _coordinate(file[key]) for key in over}
         dimensions = {key: len(coordinates[key]) for key in over} if is_grid else {SAMPLE: len(file[SAMPLE])}
         labels = {one: _label(file[one]) for one in LABELS if one in file and table["sweep"].get("classes")}
-        names = [one for one in file if not file[one].is_scale and one not in (*over, *labels, FAILED_REASON)]
+        names = [one for one in variables if not variables[one].is_scale and one not in (*over, *labels, FAILED_REASON)]
+        _check_variables({one: variables[one] for one in names}, tuple(dimensions.values()))
         meanings = {one: (str(file[one].attrs["units"]), str(file[one].attrs["long_name"])) for one in [*over, *labels, *names]}
         reasons = [reason.decode() for reason in read_array(file[FAILED_REASON])]
         failures = dict(zip(read_array(file[FAILED_POINT]).tolist(), reasons, strict=True))
@@ -254,21 +255,19 @@ def read_study(directory: str | PathLike[str]) -> Study:
         return Study(path, name, table, version, dimensions, coordinates, meanings, shapes, failures, labels)
 
 
-def _check_sum(folder: Path) -> str | None:
-    """Return the checksum of the dataset; None for an earlier version, which wrote none.
+def _check_variables(variables: dict[str, h5py.Dataset], points: tuple[int, ...]) -> None:
+    """Check that the results of a study are numbers, each with a place for every drop.
 
     Raises
     ------
-    InputError
-        If the summary that holds it is damaged.
+    DamageError
+        If one is not.
     """
-    try:
-        return dict(read_sealed(folder / SUMMARY)[CHECK_SUMS])[DATASET] if (folder / SUMMARY).is_file() else None
-    except KeyError:
-        return None
-    except (OSError, ValueError, TypeError) as error:
-        words = "delete it, and the dataset is read without being checked"
-        raise InputError(f"{folder / SUMMARY}: the file is damaged: {short_reason(error)}; {words}") from None
+    for name, data in variables.items():
+        if data.dtype.kind not in "fiub":
+            raise DamageError(f"{name} is no variable of real numbers")
+        if name != FAILED_POINT and data.shape[: len(points)] != points:
+            raise DamageError(f"{name} is of the shape {data.shape}, which does not begin with {points}")
 
 
 @contextmanager
@@ -299,4 +298,8 @@ def _label(data: h5py.Dataset) -> NDArray[Any]:
 def _coordinate(data: h5py.Dataset) -> NDArray[Any]:
     """Return the values of a coordinate, numbers or strings."""
     values = read_array(data)
+    if values.ndim != 1 or not len(values) or values.dtype.kind not in "fiubO":
+        raise DamageError(f"{data.name.lstrip('/')} is no row of numbers or texts")
+    if values.dtype != object and not np.isfinite(values).all():
+        raise DamageError(f"{data.name.lstrip('/')} has values that are not finite")
     return np.array([text.decode() for text in values], dtype=object) if values.dtype == object else np.asarray(values)

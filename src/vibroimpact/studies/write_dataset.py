@@ -17,7 +17,7 @@ from vibroimpact._version import __version__
 from vibroimpact.cases.limit import limits
 from vibroimpact.dynamics.outcome import OUTCOMES, Outcome
 from vibroimpact.files.atomic_write import atomic_file, write_file
-from vibroimpact.files.check_sums import CHECK_SUMS, file_digest, read_sealed, sealed
+from vibroimpact.files.check_sums import CHECK_SUMS, file_digest, sealed
 from vibroimpact.files.hdf5 import CHECKED, chunk_shape, new_array, new_hdf5
 from vibroimpact.results.folder import SUMMARY
 from vibroimpact.studies.chunk_file import chunk_layout, read_chunk
@@ -44,6 +44,7 @@ def write_dataset(
     table: Mapping[str, Any],
     meanings: Meanings,
     rates: Mapping[str, float],
+    summary: Mapping[str, Any],
 ) -> None:
     """Write `study.nc` from the chunks of a study, one chunk in memory at a time.
 
@@ -65,6 +66,8 @@ def write_dataset(
         Unit and meaning of the swept keys and of the variables in the chunks.
     rates : mapping of str to float
         Sampling rate of each sensor [Hz].
+    summary : mapping
+        Content of `summary.json`, which gets the checksum of the dataset.
 
     Raises
     ------
@@ -94,8 +97,8 @@ def write_dataset(
                     _write_rows(data[variable], (), tuple(plan.dimensions.values()), chunk.first, values)
                 failures |= {chunk.first + place: reason for place, reason in result.failures.items()}
             _write_failures(file, failures)
-        summary = {**read_sealed(folder / SUMMARY), CHECK_SUMS: {DATASET: file_digest(working)}}
-        write_file(folder / SUMMARY, sealed(summary).encode())  # before the dataset appears, so that it always has a checksum
+        content = {**summary, CHECK_SUMS: {DATASET: file_digest(working)}}
+        write_file(folder / SUMMARY, sealed(content).encode())  # before the dataset appears, so that it always has a checksum
 
 
 def as_text(value: Any) -> Any:

@@ -20,6 +20,7 @@ from vibroimpact.bodies.rigid import rigid_sphere
 from vibroimpact.cases.elastic.modes import BodyModes, compute_modes, contact_place
 from vibroimpact.cases.elastic.residuals import residual_keys, with_residuals
 from vibroimpact.cases.fields.local import MeasuredImpact
+from vibroimpact.cases.limits.plate_waves import PLATE_THEORY_INERTIA
 from vibroimpact.cases.pair import contact_pair, is_free_sphere
 from vibroimpact.cases.rigid import PLATE_FALLS, contact_laws_of, elastic_names, touch_speed
 from vibroimpact.contact.law import CompliantLaw
@@ -99,7 +100,7 @@ def coupling_of(case: CaseTable, progress: Callable[[float], None] | None = None
         if treatment != "superposed":  # which reproduces multibody programs: contact at a node, without corrections
             modes["plate"], beyond = _basis_at_face(bodies["plate"])
             if beyond:
-                facts["plate_theory_inertia_m_s2_N"] = beyond
+                facts[PLATE_THEORY_INERTIA] = beyond
         carried = _compliance(modes["plate"])
         facts["plate_modal_compliance_m_N"] = carried
         if treatment != "superposed":

@@ -10,6 +10,9 @@ from vibroimpact.cases.conditions import Conditions
 from vibroimpact.cases.limit import Limit, percent_less
 from vibroimpact.dynamics.truncation import time_of_contact
 
+PLATE_THEORY_INERTIA = "plate_theory_inertia_m_s2_N"
+"""The fact of the elastic bodies with the inertia that plate theory neglects."""
+
 
 def plate_theory_error(facts: Mapping[str, Any], impacts: Mapping[str, Any]) -> float:
     r"""Return the estimated part by which the first largest force is too large, as plate elements have no thickness waves.
@@ -35,7 +38,7 @@ def plate_theory_error(facts: Mapping[str, Any], impacts: Mapping[str, Any]) -> 
     >>> plate_theory_error({}, {"impact": [1]})
     nan
     """
-    inertia = facts.get("plate_theory_inertia_m_s2_N")
+    inertia = facts.get(PLATE_THEORY_INERTIA)
     if inertia is None or not len(impacts["impact"]):
         return math.nan
     force, depth = (float(impacts[name][0]) for name in ("max_force_N", "max_indentation_m"))

@@ -17,9 +17,11 @@ from vibroimpact.charts.plotly import plotly_chart
 from vibroimpact.errors import InputError
 from vibroimpact.files.atomic_write import write_into
 from vibroimpact.files.check_sums import CHECK_SUMS, check_file, file_digest, read_sealed, sealed
+from vibroimpact.files.json_reading import read_json_table
 from vibroimpact.files.recover import recover
-from vibroimpact.paper.report.outline import PARTS, ReportPart, find_parts, render_part
+from vibroimpact.paper.report.outline import PARTS, VALUE_COLUMNS, ReportPart, find_parts, render_part
 from vibroimpact.paper.report.page import report_html, report_text
+from vibroimpact.paper.report_section import Verdict
 from vibroimpact.paper.runs import Runs
 from vibroimpact.report.page import replace_report_files
 from vibroimpact.results.csv_files import write_csv
@@ -155,12 +157,25 @@ def read_parts(folder: Path) -> dict[str, dict[str, Any]]:
         if file.is_file():
             try:
                 table = read_sealed(file)
-                rows = [{**row, "verdict": str(row["verdict"])} for row in table["rows"]]
+                rows = [_row(row) for row in table["rows"]]
                 texts = {"title": str(table["title"]), "text": str(table["text"])}
                 found[name] = {**texts, "rows": rows, CHECK_SUMS: dict(table.get(CHECK_SUMS, {}))}
             except (OSError, ValueError, KeyError, TypeError):
                 raise InputError(f"{file}: the file is damaged; {_repair_hint(folder, name)}") from None
     return found
+
+
+def _row(row: Any) -> dict[str, Any]:
+    """Return a row of `values.csv` as it is stored.
+
+    Raises
+    ------
+    KeyError, TypeError
+        If it has not the columns that it must have.
+    """
+    if not isinstance(row, dict) or row.keys() != set(VALUE_COLUMNS):
+        raise KeyError("its columns are not those of values.csv")
+    return {**row, "verdict": Verdict(row["verdict"]).value}
 
 
 def reproduced_values(parts: Mapping[str, Mapping[str, Any]]) -> list[dict[str, Any]]:
@@ -209,8 +224,8 @@ def _repair_hint(folder: Path, *names: str) -> str:
 def is_reproduction(folder: Path) -> bool:
     """Return whether a folder is that of a reproduction."""
     try:
-        return bool(json.loads((folder / SUMMARY).read_text(encoding="utf-8")).get("reproduction"))
-    except (OSError, ValueError, AttributeError):
+        return bool(read_json_table(folder / SUMMARY).get("reproduction"))
+    except InputError:
         return False
 
 

@@ -142,6 +142,12 @@ def render_part(part: ReportPart, runs: Runs) -> RenderedPart:
     return RenderedPart(title, "\n".join(texts), [_values_row(part.name, row) for row in (section.rows if section else ())], chart)
 
 
+VALUE_COLUMNS = (
+    "part", "name", "what", "place", "read", "unit", "relation", "printed", "by", "computed", "difference", "allowed", "verdict", "why",
+)  # fmt: skip
+"""The columns of `values.csv`."""
+
+
 def _values_row(part: str, row: ComparedValue) -> dict[str, Any]:
     """Return a compared value as a row of `values.csv`, in full precision."""
     value = row.printed

@@ -11,7 +11,9 @@ import h5py
 import numpy as np
 
 from vibroimpact.errors import InputError
-from vibroimpact.files.hdf5 import read_array
+from vibroimpact.files.check_sums import DamageError, recorded_digest
+from vibroimpact.files.damaged_part import check_hdf5
+from vibroimpact.files.hdf5 import members, read_array
 from vibroimpact.files.reading import FileKind, beginning, with_path
 from vibroimpact.signals.reading.equal_steps import rate_of
 from vibroimpact.signals.reading.si_units import in_si
@@ -40,6 +42,7 @@ def netcdf_records(path: Path) -> Iterator[Record]:
     if mark.startswith(b"CDF"):
         raise InputError(f"{path}: this is a NetCDF file of the classic format; convert it to NetCDF-4: nccopy -k nc4 {path.name} new.nc")
     try:
+        check_hdf5(path, recorded_digest(path))
         with h5py.File(path, "r") as file:
             found = list(_signals(file))
             if not found:
@@ -48,13 +51,15 @@ def netcdf_records(path: Path) -> Iterator[Record]:
                 yield from _records(data, rate, start)
     except InputError as error:
         raise with_path(path, error) from None
+    except DamageError as error:
+        raise with_path(path, InputError(str(error))) from None
     except Exception as error:  # of many types, by what is damaged
         raise InputError(f"{path}: the NetCDF file can't be read ({' '.join(str(error).split())[:100] or type(error).__name__})") from None
 
 
 def _signals(file: h5py.File) -> Iterator[tuple[h5py.Dataset, float, float]]:
     """Yield the variables with a time as their last dimension, with rate [Hz] and first time [s]."""
-    group = file.get("sensors", file)
+    group = members(file).get("sensors", file)
     names: list[str] = []
     group.visit(names.append)  # returning None goes on
     for name in names:
