@@ -25,7 +25,7 @@ WAITING = 300.0
 """Seconds after which an input that computes nothing is taken to wait for ever; the machine may be busy."""
 
 LONGEST = 500
-"""Characters of a line of a message."""
+"""Characters of a message: of all its lines."""
 
 LINES = 12
 """Of a message: there may be one for each fault, but not a screen of them."""
@@ -113,7 +113,7 @@ def _outcome(function: Callable[[Any], object], given: Any) -> Outcome:
 def _judged(message: str) -> Outcome:
     """Hold a message to what a terminal and a reader can take."""
     lines = message.split("\n")
-    if not message.strip() or len(lines) > LINES or any(len(line) > LONGEST or not line.isprintable() for line in lines):
+    if not message.strip() or len(lines) > LINES or len(message) > LONGEST or not all(line.isprintable() for line in lines):
         return Outcome("message", message[:2000])
     return Outcome("refused", message)
 

@@ -4,73 +4,13 @@ from __future__ import annotations
 
 import copy
 import random
-import re
-import tomllib
 from collections.abc import Callable, Iterator
-from functools import cache
-from importlib.resources import files
-from pathlib import Path
 from typing import Any
 
 import tomli_w
 
-from studies import RANDOM, study_table
+from seeds import ELASTIC, Table, seeds, study_seeds
 from support import plain_case
-
-Table = dict[str, Any]
-
-_ROOT = Path(__file__).parents[1]
-
-_ELASTIC: Table = {
-    "sphere": {"radius": "25 mm", "material": "steel", "model": "elastic", "modes": 5, "damping": {"loss_factor": 0.01}},
-    "plate": {
-        "size": ["520 mm", "420 mm", "8 mm"],
-        "material": "steel",
-        "model": "elastic",
-        "modes": 12,
-        "supports": [
-            {"type": "patch", "position": [0.2, 0.15], "radius": "20 mm"},
-            {"type": "spring", "position": [-0.2, 0.1], "stiffness": "1 MN/m"},
-            {"type": "edge", "edge": "x-min", "condition": "clamped"},
-        ],
-        "damping": {"frequencies": [100.0, 1000.0], "ratios": [0.01, 0.02]},
-        "mesh": {"element_size": "40 mm"},
-    },
-    "sensors": [
-        {"name": "a1", "position": ["100 mm", "50 mm"], "rate": "50 kHz"},
-        {"name": "a2", "position": [0, 0], "accelerometer": {"resonance": "20 kHz", "range": 500.0, "noise": 0.1}},
-    ],
-}
-
-_STUDIES: tuple[Any, ...] = (
-    None,
-    RANDOM,
-    {"design": "zip", "over": {"drop.height": [0.5, 1.0], "contact.restitution": [0.5, 0.6]}},
-    {"over": {"plate.size.thickness": [0.01, 0.02]}},
-    {"over": {"drop.position.x": {"from": 0, "to": "1 cm", "number": 3}, "run.duration": ["1 s", "2 s"]}},
-    {"design": "sobol", "samples": 8, "seed": 3, "over": {"drop.speed": {"distribution": "uniform", "from": 1, "to": 5}}},
-    {"design": "saltelli", "samples": 4, "over": RANDOM["over"], "keep": ["peaks"]},
-    {"over": {"contact.law": ["hertz", "tsuji"], "sphere.material": ["steel", "glass"]}},
-)
-
-
-@cache
-def seeds() -> tuple[Table, ...]:
-    """Return the cases that the program ships and its documents show, and one of vibrating bodies."""
-    shipped = [file.read_text() for file in files("vibroimpact").joinpath("cases/library/paper").iterdir() if file.name.endswith(".toml")]
-    pages = [page.read_text(encoding="utf-8") for page in sorted([_ROOT / "README.md", *(_ROOT / "docs").glob("*.md")])]
-    shown = [block for page in pages for block in re.findall(r"```toml\n(.*?)```", page, flags=re.S)]
-    return (*(tomllib.loads(text) for text in (*sorted(shipped), *shown)), plain_case(**_ELASTIC))
-
-
-@cache
-def study_seeds() -> tuple[Table, ...]:
-    """Return studies of rigid drops, which run in no time."""
-    return tuple(
-        study_table(sweep, run={"impacts": 2}, **({"drop": {"speed": 2.0}} if sweep and "drop.speed" in sweep["over"] else {}))
-        for sweep in _STUDIES
-    )
-
 
 TEXTS = (
     "", " ", "x" * 300, "y" * 20_000, "\x1b[31mred", "\x1b]0;title\x07", "a\nb", "a\r\nb", "a\x00b", "[red]b[/red]",
@@ -147,7 +87,7 @@ def elastic_cases(count: int, seed: int) -> Iterator[Table]:
     """Yield hostile cases of vibrating bodies, whose modes are quick to compute: most by their numbers, which are accepted most easily."""
     choose = random.Random(seed)
     for _ in range(count):
-        table = plain_case(**copy.deepcopy(_ELASTIC))
+        table = plain_case(**copy.deepcopy(ELASTIC))
         for _ in range(choose.choice((1, 1, 2, 3))):
             choose.choice((_scale, _scale, _scale, *_CHANGES))(table, choose)
         yield table

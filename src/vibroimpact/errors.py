@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from difflib import get_close_matches
-from itertools import islice
+from itertools import accumulate, islice
 
 from vibroimpact.shown import shortened, visible
 
@@ -12,11 +12,18 @@ _LONGEST_WORD = 100
 _LARGEST_COUNT = 200  # faults that are formatted; a hundred thousand would take long
 
 
-LONGEST_LINE = 480
-"""Largest length of a line of a message."""
+LONGEST_MESSAGE = 490
+"""Largest length of a message: that of all its lines."""
+
+LONGEST_LINE = 450
+"""Largest length of a line of a message; what is left is for the number of further faults."""
 
 MOST_LINES = 10
 """Largest number of faults in a message, one line each; another line gives the number of further faults."""
+
+_LONGEST_LIST = 220  # characters of the names that a message lists; those of the longest section of a case
+_LONGEST_NAME = 60
+_MOST_NEAR = 3  # names that come first where not all are listed
 
 
 class VibroimpactError(Exception):
@@ -29,8 +36,11 @@ class VibroimpactError(Exception):
 
     Attributes
     ----------
+    faults : tuple of str
+        All faults, but of a great many only the first ones.
     lines : tuple of str
-        One line per fault: printable, of at most `LONGEST_LINE` characters; at most `MOST_LINES` lines, and one that counts the rest.
+        One line per fault: printable, of at most `LONGEST_LINE` characters; at most `MOST_LINES` lines, and one that counts the rest;
+        together at most `LONGEST_MESSAGE` characters.
 
     Examples
     --------
@@ -43,8 +53,13 @@ class VibroimpactError(Exception):
     """
 
     def __init__(self, *faults: str) -> None:
-        self.lines = lines_of(faults)
+        self.faults = faults[: _LARGEST_COUNT + 1]
         super().__init__("\n".join(self.lines))
+
+    @property
+    def lines(self) -> tuple[str, ...]:
+        """The lines of the message."""
+        return lines_of(self.faults)
 
     def __str__(self) -> str:
         return "\n".join(self.lines)
@@ -85,7 +100,7 @@ class InputError(VibroimpactError, ValueError):
         plate: this section is missing
         """
         error = cls("")
-        error.lines = lines_of(faults)
+        error.faults = tuple(islice(faults, _LARGEST_COUNT + 1))
         error.args = ("\n".join(error.lines),)
         error.message = "; ".join(error.lines)
         return error
@@ -113,15 +128,63 @@ def lines_of(faults: Iterable[str]) -> tuple[str, ...]:
     'and more than 190 other faults'
     """
     first = iter(faults)
-    found = list(dict.fromkeys(shortened(visible(fault), LONGEST_LINE) for fault in islice(first, _LARGEST_COUNT)))
-    rest, all_seen = len(found) - MOST_LINES, next(first, None) is None
-    if all_seen and rest <= 1:  # a line that counts one fault would be as long as the fault
-        return tuple(found)
-    return (*found[:MOST_LINES], f"and {'' if all_seen else 'more than '}{rest} other faults")
+    found = tuple(dict.fromkeys(shortened(visible(fault), LONGEST_LINE) for fault in islice(first, _LARGEST_COUNT)))
+    all_seen = next(first, None) is None
+    few = len(found) <= MOST_LINES + 1  # a line that counts one fault would be as long as the fault
+    if all_seen and few and len("\n".join(found)) <= LONGEST_MESSAGE:
+        return found
+    room = LONGEST_MESSAGE - len("and more than 200 other faults")
+    fitting = sum(end <= room for end in accumulate(len(line) + 1 for line in found[:MOST_LINES]))
+    rest = len(found) - fitting
+    return (*found[:fitting], f"and {'' if all_seen else 'more than '}{rest} other fault{'s' if rest > 1 else ''}")
+
+
+def listed(names: Iterable[str], near: str = "", command: str = "") -> str:
+    """Return names for a message, separated by commas: all of them, or if that would be long those closest to a word, and more.
+
+    Parameters
+    ----------
+    names : iterable of str
+        The names.
+    near : str, optional
+        What was given in place of one of them.
+    command : str, optional
+        The arguments of the command that lists them all, such as "laws".
+
+    Examples
+    --------
+    >>> listed(["radius", "material"])
+    'radius, material'
+    >>> text = listed([f"a-long-name-{number}" for number in range(50)], "a-long-name_47", "laws")
+    >>> text[:18], text[-53:]
+    ('a-long-name-47, a-', 'and 36 others, which "vibroimpact laws" lists in full')
+    """
+    ordered = [shortened(visible(name), _LONGEST_NAME) for name in names]
+    text = ", ".join(ordered)
+    if len(text) <= _LONGEST_LIST:
+        return text
+    first = get_close_matches(near[:_LONGEST_WORD], ordered, n=_MOST_NEAR)
+    ordered = [*first, *(name for name in ordered if name not in first)]
+    fitting = sum(end <= _LONGEST_LIST for end in accumulate(len(name) + 2 for name in ordered))
+    where = f', which "vibroimpact {command}" lists in full' if command else ""
+    rest = len(ordered) - fitting
+    return f"{', '.join(ordered[:fitting])} and {rest} other{'s' if rest > 1 else ''}{where}"
+
+
+def choices(names: Iterable[str], given: str, command: str = "") -> str:
+    """Return the names that are allowed in place of one that was given, as `listed` does, and which of them was probably meant.
+
+    Examples
+    --------
+    >>> choices(["hertz", "tsuji"], "herz")
+    'hertz, tsuji. Did you mean "hertz"?'
+    """
+    known = list(names)
+    return f"{listed(known, given, command)}.{did_you_mean(given, known)}"
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
-    """Return " Did you mean ...?" for the known word closest to `word`, or "".
+    """Return " Did you mean ...?" for the known word closest to `word`, or "" if there is none, or it is the word itself.
 
     Examples
     --------
@@ -131,4 +194,4 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     ''
     """
     close = get_close_matches(word[:_LONGEST_WORD], list(known), n=1, cutoff=0.6)
-    return f' Did you mean "{close[0]}"?' if close else ""
+    return f' Did you mean "{close[0]}"?' if close and close[0] != word else ""

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from types import ModuleType
 from typing import TypeVar
 
-from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.errors import InputError, choices
 from vibroimpact.shown import shown
 
 Found = TypeVar("Found")
@@ -26,7 +26,7 @@ def modules_in(package: str) -> list[ModuleType]:
     return [importlib.import_module(f"{package}.{name}") for name in names]
 
 
-def find_named(kind: str, name: str, known: Mapping[str, Found]) -> Found:
+def find_named(kind: str, name: str, known: Mapping[str, Found], command: str = "") -> Found:
     """Return the entry of a registry with a given name.
 
     Parameters
@@ -37,6 +37,8 @@ def find_named(kind: str, name: str, known: Mapping[str, Found]) -> Found:
         The name.
     known : mapping
         The registry: entries by name.
+    command : str, optional
+        The arguments of the command that lists them all, for the message.
 
     Raises
     ------
@@ -51,5 +53,5 @@ def find_named(kind: str, name: str, known: Mapping[str, Found]) -> Found:
     vibroimpact.errors.InputError: there is no law "herz"; there are hertz. Did you mean "hertz"?
     """
     if name not in known:
-        raise InputError(f"there is no {kind} {shown(name)}; there are {', '.join(known)}.{did_you_mean(name, known)}")
+        raise InputError(f"there is no {kind} {shown(name)}; there are {choices(known, name, command)}")
     return known[name]

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import reprlib
 import unicodedata
+from datetime import date
+from itertools import islice
 from typing import Any
 
 
@@ -43,12 +45,14 @@ def shortened(text: str, most: int) -> str:
 
 
 def shown(value: Any, most: int = 60) -> str:
-    r"""Return a value for a message: a text in quotes, other values as their representation, of limited length.
+    r"""Return a value for a message, as a case file has it: a text in quotes, true, a list, a table; of limited length.
 
     Examples
     --------
     >>> shown("25 kg"), shown([1, 2.5]), shown([0] * 1000)
     ('"25 kg"', '[1, 2.5]', '[0, 0, 0, 0, 0, 0, ...]')
+    >>> shown(True), shown(["a"]), shown({"law": "hertz"}), shown({})
+    ('true', '["a"]', '{ law = "hertz" }', '{}')
     >>> print(shown("a\nb"))
     "a\nb"
     """
@@ -58,7 +62,7 @@ def shown(value: Any, most: int = 60) -> str:
 
 
 class _Short(reprlib.Repr):
-    """Representation of limited depth and length: a value from Python may be arbitrarily large."""
+    """Representation of limited depth and length, as TOML has it: a value from Python may be arbitrarily large."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -66,6 +70,26 @@ class _Short(reprlib.Repr):
 
     def repr_int(self, x: int, level: int) -> str:
         return repr(x) if x.bit_length() < 400 else f"a whole number of {int(x.bit_length() * 0.30103)} digits"
+
+    def repr_bool(self, x: bool, level: int) -> str:
+        return str(x).lower()
+
+    def repr_str(self, x: str, level: int) -> str:
+        return f'"{shortened(x[: 10 * self.maxstring], self.maxstring)}"'
+
+    def repr_dict(self, x: dict[Any, Any], level: int) -> str:
+        if not x or level <= 0:
+            return "{ ... }" if x else "{}"
+        entries = [
+            f"{shortened(str(key), self.maxstring)} = {self.repr1(value, level - 1)}" for key, value in islice(x.items(), self.maxdict)
+        ]
+        return f"{{ {', '.join(entries)}{', ...' if len(x) > self.maxdict else ''} }}"
+
+    def repr_date(self, x: date, level: int) -> str:
+        return x.isoformat()
+
+    repr_datetime = repr_date
+    repr_time = repr_date
 
 
 _short = _Short()

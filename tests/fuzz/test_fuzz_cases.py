@@ -10,6 +10,9 @@ import pytest
 import vibroimpact as vi
 from attack import failures, number, seed
 from mutations import case_files
+from seeds import write_files
+from vibroimpact.calibration.section import check_target
+from vibroimpact.cases.build import check_drop
 from vibroimpact.cases.reader import load_table, prefix_errors
 from vibroimpact.cases.rigid import deforms
 from vibroimpact.report.console import TerminalConsole
@@ -26,18 +29,23 @@ def shown(renderable: object) -> None:
 
 
 def check(data: bytes, folder: Path) -> vi.Case:
-    """Do what `vibroimpact check` does with a file."""
+    """Do what `vibroimpact check` does with a file, and where it has a calibration, read that too."""
     file = folder / "case.toml"
     file.write_bytes(data)
+    write_files(folder)
     table = prefix_errors(file, lambda: load_table(file))
+    if "calibrate" in table:
+        vi.load_calibration(file)
     if "sweep" not in table:
         case = vi.load_case(file)
-    else:
-        study = prefix_errors(file, lambda: vi.read_sweep(table))
-        shown(explain_sweep(study))
-        case = study.case
-    shown(case_explained(case))
-    return case
+        prefix_errors(file, lambda: check_drop(case))
+        prefix_errors(file, lambda: check_target(case.calibrate))
+        shown(prefix_errors(file, lambda: case_explained(case)))
+        return case
+    study = prefix_errors(file, lambda: vi.read_sweep(table))
+    shown(explain_sweep(study))
+    shown(prefix_errors(file, lambda: case_explained(study.case, study.axes)))
+    return study.case
 
 
 @pytest.mark.parametrize("few", [60, pytest.param(240, marks=pytest.mark.slow)])

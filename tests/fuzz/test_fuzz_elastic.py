@@ -9,7 +9,8 @@ import pytest
 
 import vibroimpact as vi
 from attack import attack, number, seed
-from mutations import Table, elastic_cases
+from mutations import elastic_cases
+from seeds import Table
 from vibroimpact.cases.costs import describe_costs
 
 

@@ -6,7 +6,8 @@ from test_fuzz_cases import shown
 
 import vibroimpact as vi
 from attack import failures, number, seed
-from mutations import Table, studies
+from mutations import studies
+from seeds import Table
 from vibroimpact.runs.case_explained import case_explained
 from vibroimpact.studies.compute_points import compute_points
 from vibroimpact.studies.explain_sweep import explain_sweep

@@ -76,7 +76,7 @@ FAULTS = [
     ({"run__impacts": 2.5}, "run.impacts: 2.5 is not allowed"),
     ({"run__duration": "5 m"}, 'run.duration: "5 m" is a length'),
     ({"run__tolerance": 0.1}, "run.tolerance: 0.1 is not allowed"),
-    ({"sphere__model": "soft"}, "sphere.model: \"soft\" is not allowed; it must be 'rigid' or 'elastic'"),
+    ({"sphere__model": "soft"}, 'sphere.model: "soft" is not allowed; it must be "rigid" or "elastic"'),
     ({"schema_version": 2}, "schema_version: 2 is not allowed; it must be 1"),
     ({"sphere": 3}, "sphere: 3 is not a table"),
     ({"sensors": {"name": "a1"}}, "sensors: this is one table, and it must be a list of tables; write [[sensors]] above each"),

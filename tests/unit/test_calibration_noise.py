@@ -133,10 +133,13 @@ def test_a_reading_that_two_impacts_share_counts_once(times: int) -> None:
     assert np.all(np.array([np.corrcoef(values[:, row], values[:, row + 1])[0, 1] for row in range(4)]) < -0.3)
 
 
-def test_bootstrap_and_first_order_agree_where_both_hold() -> None:
-    seen = heights(np.random.default_rng(1), known=True)
+@pytest.mark.parametrize("known", [True, False])
+def test_bootstrap_and_first_order_agree_where_both_hold(known: bool) -> None:
+    """First order is a closed form; of noise whose size is estimated it has the quantiles of Student's distribution."""
+    seen = heights(np.random.default_rng(1), known=known)
     first, drawn = (calibrate(drop(), seen, bootstrap=draws) for draws in (0, 4000))
     assert (first.bootstrap, drawn.bootstrap) == (0, 4000)
+    assert first.fit.freedom == (np.inf if known else 2)
     np.testing.assert_allclose(np.diff(drawn.intervals), np.diff(first.intervals), rtol=0.08)
     np.testing.assert_allclose(drawn.intervals.mean(axis=1), first.intervals.mean(axis=1), rtol=1e-3)
     np.testing.assert_allclose(drawn.fit.half_widths(0.95), first.fit.half_widths(0.95), rtol=0.08)

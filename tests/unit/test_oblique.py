@@ -367,8 +367,8 @@ FAULTS: list[tuple[dict[str, Any], str]] = [
         {"contact": {"law": "newton", "restitution": 0.5, "friction": {"law": "mdr", "coefficient": 0.2}}},
         "contact.friction.law: newton gives no normal force, which mdr follows; take another contact law, or friction by the impulse",
     ),
-    (with_friction(law="mindlinn"), 'contact.friction.law: there is no friction law "mindlinn"; there are none, coulomb'),
-    (with_friction(coefficient=0.2), 'contact.friction: it needs law = "...", one of none, coulomb, mdr'),
+    (with_friction(law="mindlinn"), 'contact.friction.law: there is no friction law "mindlinn"; there are "none", "coulomb"'),
+    (with_friction(coefficient=0.2), 'contact.friction: it needs law = "...", one of "none", "coulomb", "mdr"'),
     (with_friction(law="mdr"), "contact.friction.coefficient: this key is missing; mdr needs coefficient of friction mu"),
     (with_friction(law="coulomb", coefficient=-0.1), "contact.friction.coefficient: -0.1 is not allowed; it must be at least 0"),
     (

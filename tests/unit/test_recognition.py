@@ -22,10 +22,12 @@ from vibroimpact.cli import main
 from vibroimpact.files.check_sums import read_sealed, sealed
 from vibroimpact.recognition.bound import bound_doubts
 from vibroimpact.recognition.charts import recognition_charts
-from vibroimpact.recognition.classifiers import all_classifiers, fit_tuned, probabilities
+from vibroimpact.recognition.classifiers import Classifier, all_classifiers, fit_tuned, probabilities
+from vibroimpact.recognition.cross_validation import cross_validate
 from vibroimpact.recognition.folds import split_signals
 from vibroimpact.recognition.fraction import Rates, draw_rates, estimate_fraction, try_streams
 from vibroimpact.recognition.input_faults import check_signals, separation
+from vibroimpact.recognition.jobs import silent
 from vibroimpact.recognition.labelled_signals import LabelledSignals
 from vibroimpact.recognition.recogniser import graph_of, run_graph
 from vibroimpact.recognition.reliability import reliability
@@ -250,6 +252,30 @@ def test_no_group_is_trained_on_and_tested_on() -> None:
         assert not set(groups[split.train]) & set(groups[split.test])
         assert len(np.unique(classes[split.test])) == 2
     assert any(set(groups[one.train]) & set(groups[one.test]) for one in split_signals(classes, None, 5, 0))
+
+
+def test_groups_are_kept_apart_where_parameters_are_chosen_too() -> None:
+    """The value of each signal is its number, by which a classifier that learns nothing tells what it was trained and tried on."""
+    from sklearn.dummy import DummyClassifier
+
+    groups = np.repeat(np.arange(20), 7)
+    apart = []
+
+    class Watcher(DummyClassifier):
+        def fit(self, values: np.ndarray, classes: np.ndarray) -> Any:
+            self.trained = set(groups[values[:, 0]])
+            return super().fit(values, classes)
+
+        def predict(self, values: np.ndarray) -> np.ndarray:
+            apart.append(not self.trained & set(groups[values[:, 0]]))
+            return super().predict(values)
+
+    watched = Classifier("watcher", "classifier", "numbers", lambda parameters, seed, parts: Watcher(), ({"a": 1}, {"a": 2}))
+    tables = {"numbers": np.arange(len(groups))[:, None]}
+    settings: Any = {"what": "", "workers": 1, "progress": silent}
+    cross_validate([watched], tables, groups % 2, groups, 5, [0], **settings)
+    assert len(apart) == 5 * 3 * 2  # of each training part three inner ones, with both parameters
+    assert all(apart)
 
 
 def test_scores_are_those_of_scikit_learn() -> None:

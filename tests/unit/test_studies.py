@@ -53,8 +53,8 @@ def test_a_truncated_lognormal_stays_inside() -> None:
     ("make", "words"),
     [
         (lambda: Normal(-1.0, 1.0, 3, lognormal=True), "mean: -1 is not allowed"),
-        (lambda: Normal(1.0, 0.1, 3, at_least=5.0), "at_least: 0 % of the distribution lies from 5 to inf"),
-        (lambda: Normal(1.0, 0.1, 3, at_most=-5.0), "at_most: 0 % of the distribution lies from -inf to -5"),
+        (lambda: Normal(1.0, 0.1, 3, at_least=5.0), "at_least: 0 % of the distribution is at least 5"),
+        (lambda: Normal(1.0, 0.1, 3, at_most=-5.0), "at_most: 0 % of the distribution is at most -5"),
     ],
 )
 def test_impossible_distributions_are_refused(make: object, words: str) -> None:

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 import vibroimpact as vi
 from vibroimpact.cli import main
+from vibroimpact.cli.shared import pair_in
 from vibroimpact.cli.unit_table import in_unit_systems, number_text
 from vibroimpact.units.reading import dimension_of, parse_quantity, unit_text
 
@@ -127,6 +128,11 @@ def test_quantities_are_read() -> None:
 def test_the_command(arguments: tuple[str, ...], words: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     status, printed = outcome(monkeypatch, capsys, *arguments)
     assert (status, words in printed) == (0, True), printed
+
+
+def test_an_option_takes_a_bare_number_in_si() -> None:
+    """There are no quotes in a shell, so that a number can't be written otherwise."""
+    assert pair_in("--band", "100, 5 kHz", "Hz", "two frequencies", "100 Hz, 5 kHz") == (100.0, 5000.0)
 
 
 @pytest.mark.parametrize(

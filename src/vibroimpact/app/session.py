@@ -15,7 +15,7 @@ from vibroimpact.app.offer import offer
 from vibroimpact.app.state import MODES, State, Tell, state_of
 from vibroimpact.cases.reader import load_table, parse_case, shipped_cases
 from vibroimpact.charts.pack import pack
-from vibroimpact.errors import ComputationError, InputError, did_you_mean
+from vibroimpact.errors import ComputationError, InputError, choices
 from vibroimpact.files.hdf5 import short_reason
 from vibroimpact.files.plain_names import identifier, plain_names
 from vibroimpact.results.csv_files import signal_csv
@@ -188,7 +188,7 @@ def _opened(message: Message) -> dict[str, Any]:
     """Return the table of a shipped case, or of a text."""
     source = message.content.get("source")
     if source is not None and source not in (known := shipped_cases()):  # a source is never the path of a file
-        raise InputError(f"there is no shipped case {shown(source)}; there are {', '.join(known)}.{did_you_mean(source, known)}")
+        raise InputError(f"there is no shipped case {shown(source)}; there are {choices(known, source, 'cases')}")
     table = parse_case(message.content["text"]) if source is None else load_table(source)
     table, left_out = without_other_work(table)
     return {"case": json.loads(json.dumps(table, default=str)), "left_out": left_out}

@@ -108,7 +108,7 @@ def read_calibration(table: Mapping[str, Any]) -> ToCalibrate:
         try:
             return ToCalibrate(read_case(whole), started is contact)
         except InputError as error:
-            raise InputError.of_several(_where(line, own, model is not None) for line in error.lines) from None
+            raise InputError.of_several(_where(fault, own, model is not None) for fault in error.faults) from None
     return ToCalibrate(read_case(whole), True)
 
 
@@ -252,8 +252,8 @@ def _with_start(contact: dict[str, Any], parameter: Any) -> dict[str, Any]:
     except InputError:
         return contact  # reported when the case is read
     law = find_contact_law(section.law)
-    if parameter not in {item.name for item in fields(law)}:
-        parameter = None  # an unknown parameter is reported later
+    if not isinstance(parameter, str) or parameter not in {item.name for item in fields(law)}:
+        parameter = None  # one that is not known, or is no name, is reported later
     for item in fields(law):
         start = item.metadata["example"]
         if item.name in contact or start is None or (parameter is not None and item.name != parameter):

@@ -6,7 +6,8 @@ import math
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.errors import InputError, choices
+from vibroimpact.shown import shown
 
 
 class MatchableQuantity(NamedTuple):
@@ -55,7 +56,7 @@ def check_weights(weights: Mapping[str, float]) -> None:
     known = {**MATCHABLE, **ALONG_PLATE}
     for name, weight in weights.items():
         if name not in known:
-            raise InputError(f'"{name}" can\'t be matched; there are {", ".join(known)}.{did_you_mean(name, known)}', "match")
+            raise InputError(f"{shown(name)} can't be matched; there are {choices(known, name)}", "match")
         if not 0.0 < weight < math.inf:
             raise InputError(f"{weight:g} is not allowed as a weight; it must be greater than 0", f"match.{name}")
     for alike in (REBOUNDS, DIRECTIONS):

@@ -12,7 +12,7 @@ from vibroimpact.cases.fields.contact import ContactSection, law_schema, read_co
 from vibroimpact.cases.fields.json_schema import JsonSchema
 from vibroimpact.cases.fields.quantities import Quantity
 from vibroimpact.cases.fields.section import Section, read_table
-from vibroimpact.cases.fields.size_limits import Name, at_most
+from vibroimpact.cases.fields.size_limits import FileName, Name, at_most
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.files.reading import FileKind, beginning, with_path
 from vibroimpact.ranges import Range
@@ -85,7 +85,7 @@ class ImpactTarget(Section):
 class FileTarget(Section):
     """A file: impacts, rebound heights, a record of position, force or the sphere's acceleration, or one in which bounces are heard."""
 
-    file: str = Field(
+    file: FileName = Field(
         description="a CSV file whose header names its columns with their units, a universal file (UFF 58) with a record, or a WAV or "
         "NetCDF file with a record of bounces"
     )
@@ -109,7 +109,7 @@ def _read_target(value: Any) -> Any:
     if isinstance(value, (ContactSection, Section)):
         return value
     if isinstance(value, str):
-        return FileTarget(file=value)
+        return read_table(FileTarget, {"file": value})
     if not isinstance(value, dict):
         raise InputError(f"{shown(value)} is not allowed; it must be a table with law, {', '.join(_KEYS)}, or the name of a file")
     if "law" in value:
@@ -131,10 +131,10 @@ def _read_match(value: Any) -> Any:
         value = {value: 1.0}
     if not isinstance(value, dict):
         raise InputError(f"{shown(value)} is not allowed; it must be one of {', '.join(MATCHABLE)}, or a table of them with weights")
-    try:
-        weights = {str(name): float(weight) for name, weight in value.items()}
-    except (TypeError, ValueError):
-        raise InputError("the weights must be numbers, such as { separation_speed = 1, max_force = 0.5 }") from None
+    wrong = next((weight for weight in value.values() if isinstance(weight, bool) or not isinstance(weight, (int, float))), None)
+    if wrong is not None:
+        raise InputError(f"{shown(wrong)} is not allowed; the weights must be numbers, such as {{ separation_speed = 1, max_force = 0.5 }}")
+    weights = {str(name): float(weight) for name, weight in value.items()}
     try:
         check_weights(weights)
     except InputError as error:

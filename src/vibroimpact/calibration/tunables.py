@@ -12,7 +12,7 @@ from vibroimpact.calibration.matching import Tunable
 from vibroimpact.calibration.single_impacts import batched_law, single_impacts
 from vibroimpact.contact.law import ContactLaw, unit_of
 from vibroimpact.dynamics.problem import Problem
-from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.errors import InputError, choices
 from vibroimpact.ranges import Range
 
 _MODAL_START = 0.02
@@ -45,7 +45,7 @@ def law_parameter(problem: Problem, name: str | None = None) -> Tunable:
         raise InputError(f"{first.name} has no loss parameter; name another law, or one of {', '.join(known)}", "parameter")
     chosen = name or str(first.free_parameter)
     if chosen not in known:
-        raise InputError(f'{first.name} has no parameter "{chosen}"; it has {", ".join(known)}.{did_you_mean(chosen, known)}', "parameter")
+        raise InputError(f'{first.name} has no parameter "{chosen}"; it has {choices(known, chosen)}', "parameter")
     told = known[chosen].metadata
     given = np.array([float(getattr(law, chosen)) for law in laws])
     start = next((value for value in (given[0], told["example"]) if value), 1.0)

@@ -8,6 +8,8 @@ from dataclasses import fields
 from typing import Any, get_args, get_origin
 
 from vibroimpact.cases.fields.air import AirTable
+from vibroimpact.cases.fields.contact import law_of
+from vibroimpact.cases.fields.friction import check_friction_law
 from vibroimpact.cases.fields.liquid import LiquidTable
 from vibroimpact.cases.fields.local import LocalSection
 from vibroimpact.cases.fields.material import InlineMaterial, material_table
@@ -17,7 +19,7 @@ from vibroimpact.cases.schema import SECTIONS
 from vibroimpact.cases.sensor_keys import holds_sensor_keys, named_sensor, sensor_keys, split_key
 from vibroimpact.contact.law import unit_of
 from vibroimpact.contact.registry import find_contact_law, friction_laws
-from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.errors import InputError, choices, did_you_mean
 from vibroimpact.materials import find_material
 from vibroimpact.ranges import Range
 from vibroimpact.shown import shown
@@ -74,8 +76,39 @@ def find_quantity(table: Mapping[str, Any], key: str) -> Quantity | None:
     body, _, rest = key.partition(".")
     if body in ("sphere", "plate") and rest.partition(".")[0] in _OPEN:
         return None
+    if body == "contact":
+        _check_law_is_named(table, "contact.law")
+        if rest.startswith("friction."):
+            _check_law_is_named(table, "contact.friction.law")
     words = f'unknown key; it must be a key of [sphere], [plate], [drop], [contact], [run] or of a sensor, such as "{_like(key, known)}"'
     raise InputError(f"{words}.{did_you_mean(key, known)}")
+
+
+def _check_law_is_named(table: Mapping[str, Any], key: str) -> None:
+    """Check that there is a law at a key of a case: the other keys of its table depend on it."""
+    inside: Any = table
+    for part in key.split("."):
+        inside = inside.get(part) if isinstance(inside, dict) else None
+    if inside is None:
+        raise InputError(f"the case has no {key}, on which the keys of its table depend; give it the name of a law")
+
+
+def check_laws(table: Mapping[str, Any]) -> None:
+    """Check the names of the contact law and the friction law of a case, on which its keys depend; they may be missing.
+
+    Raises
+    ------
+    InputError
+        If there is none with such a name.
+    """
+    contact = table.get("contact", {})
+    try:
+        if contact != {} and not (isinstance(contact, dict) and "law" not in contact):
+            law_of(contact)
+        if isinstance(contact, dict) and "friction" in contact:
+            check_friction_law(contact["friction"])
+    except InputError as error:
+        raise InputError(error.message, f"contact.{error.key}".rstrip(".")) from None
 
 
 def _like(key: str, known: Mapping[str, object]) -> str:
@@ -144,7 +177,7 @@ def with_values(table: Mapping[str, Any], values: Mapping[str, Any], done: str =
                 raise InputError(f"{shown(inside)} does not have the right number of values; it takes {', '.join(names)}", ".".join(way))
             inside[names.index(last)] = value
         elif isinstance(inside, list) and names:
-            raise InputError(f"there is no {last}; it takes {', '.join(names)}.{did_you_mean(last, names)}", ".".join(way))
+            raise InputError(f"there is no {last}; it takes {choices(names, last)}", ".".join(way))
         elif isinstance(inside, dict):
             inside[last] = value
         elif names:
@@ -179,7 +212,7 @@ def _keys(table: Mapping[str, Any]) -> Iterator[tuple[str, Quantity | None]]:
         for item in fields(find_contact_law(contact["law"])):
             yield f"contact.{item.name}", Quantity(unit_of(item, exponent), item.metadata["meaning"], item.metadata["range"])
         friction = contact.get("friction")
-        if isinstance(friction, dict) and friction.get("law") in friction_laws():
+        if isinstance(friction, dict) and isinstance(friction.get("law"), str) and friction["law"] in friction_laws():
             yield "contact.friction.law", None
             for item in fields(friction_laws()[friction["law"]]):
                 metadata = item.metadata

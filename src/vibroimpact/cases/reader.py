@@ -11,31 +11,17 @@ from os import PathLike
 from pathlib import Path
 from typing import Any, TypeVar
 
-from pydantic import BaseModel, ValidationError
+from pydantic import ValidationError
 
-from vibroimpact.calibration.section import CalibrateSection, SpeedsTable
 from vibroimpact.cases.build import check_case
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.fields.fault_messages import fault_messages
-from vibroimpact.cases.fields.instruments import (
-    AccelerometerTable,
-    AmplifierTable,
-    ConverterTable,
-    ForceTable,
-    GeophoneTable,
-    MicrophoneTable,
-    StrainGaugeTable,
-)
 from vibroimpact.cases.fields.item_labels import path_in_words
-from vibroimpact.cases.fields.material import InlineMaterial
-from vibroimpact.cases.fields.motion import MotionTable
 from vibroimpact.cases.fields.size_limits import MOST_BYTES, check_bounds, check_text
 from vibroimpact.cases.keys import with_values
-from vibroimpact.cases.schema import SECTIONS, SensorSection
-from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.errors import InputError, choices
 from vibroimpact.files.reading import FileKind, read_text
 from vibroimpact.shown import shortened, shown
-from vibroimpact.studies.section import SweepSection
 
 Read = TypeVar("Read")
 
@@ -43,28 +29,6 @@ GROUPS = ("paper", "signals")
 """Groups of shipped cases: of the paper, and of data sets; a name is "GROUP:NAME"."""
 
 _CASE = FileKind('a case is a TOML file, or a shipped one such as "paper:type1-theory"', MOST_BYTES, "a case is a page of text")
-
-_SECTIONS: dict[tuple[str, ...], type[BaseModel]] = {
-    (): Case,
-    **{(name,): section for name, section in SECTIONS.items()},
-    ("calibrate",): CalibrateSection,
-    ("calibrate", "speeds"): SpeedsTable,
-    ("sensors",): SensorSection,
-    ("sweep",): SweepSection,
-    ("sensors", "accelerometer"): AccelerometerTable,
-    ("sensors", "amplifier"): AmplifierTable,
-    ("sensors", "converter"): ConverterTable,
-    ("sensors", "force"): ForceTable,
-    ("sensors", "geophone"): GeophoneTable,
-    ("sensors", "microphone"): MicrophoneTable,
-    ("sensors", "strain_gauge"): StrainGaugeTable,
-    ("plate", "motion"): MotionTable,
-}
-
-
-def _section(where: tuple[str, ...]) -> type[BaseModel] | None:
-    """Return the section class at a key path, for the lists of known keys in messages."""
-    return _SECTIONS.get(tuple(part for part in where if not part.isdigit()), InlineMaterial if where[-1:] == ("material",) else None)
 
 
 def load_case(source: str | PathLike[str], changes: Mapping[str, Any] | None = None) -> Case:
@@ -105,7 +69,7 @@ def _read_to_run(table: dict[str, Any]) -> Case:
 
 
 def _with_hint(error: InputError, hint: str) -> InputError:
-    return InputError.of_several([*error.lines[:-1], f"{error.lines[-1]}; {hint}"])
+    return InputError.of_several([*error.faults[:-1], f"{error.faults[-1]}; {hint}"])
 
 
 def load_table(source: str | PathLike[str], changes: Mapping[str, Any] | None = None) -> dict[str, Any]:
@@ -184,7 +148,7 @@ def prefix_errors(source: str | PathLike[str], read: Callable[[], Read]) -> Read
         return read()
     except InputError as error:
         place = shortened(str(source), 160)
-        raise InputError.of_several(f"{place}: {line}" for line in error.lines) from None
+        raise InputError.of_several(f"{place}: {fault}" for fault in error.faults) from None
 
 
 def read_case(table: Mapping[str, Any]) -> Case:
@@ -214,7 +178,7 @@ def _case_of(table: Mapping[str, Any]) -> Case:
         case = Case.model_validate(dict(table))
         check_case(case)
     except ValidationError as error:
-        faults = fault_messages(error, _section)
+        faults = fault_messages(error, Case, of_case=True)
         raise InputError.of_several(
             f"{shortened(path_in_words(path, table), 160)}: {message}" if path else message for path, message in faults
         ) from None
@@ -257,7 +221,7 @@ def _resolve_paths(table: dict[str, Any], folder: Path) -> dict[str, Any]:
 def _resolve_sweep_paths(inside: Any, folder: Path) -> None:
     """Make the file paths of a [sweep] section absolute, in place, at any depth."""
     for value in inside.values() if isinstance(inside, dict) else ():
-        if isinstance(value, dict) and isinstance(value.get("file"), str):
+        if isinstance(value, dict) and isinstance(value.get("file"), str) and value["file"].strip():
             value["file"] = str((folder / value["file"]).absolute())
         _resolve_sweep_paths(value, folder)
 
@@ -273,5 +237,5 @@ def _names() -> list[str]:
 def _shipped(name: str) -> str:
     """Return the text of a shipped case."""
     if name not in (known := _names()):
-        raise InputError(f"there is no shipped case {shown(name)}; there are {', '.join(known)}.{did_you_mean(name, known)}")
+        raise InputError(f"there is no shipped case {shown(name)}; there are {choices(known, name, 'cases')}")
     return files("vibroimpact").joinpath("cases/library", *f"{name}.toml".split(":")).read_text(encoding="utf-8")

@@ -108,6 +108,7 @@ def _rigid_below(case: CaseTable) -> Body:
     return rigid_plate(case.plate.size[2] if case.plate.size else 0.0)
 
 
+@derived
 def touch_speed(case: CaseTable) -> float:
     """Return the approach speed of the first impact [m/s]."""
     motion = normal_motion_of(case)

@@ -202,6 +202,9 @@ def _one_of(names: Collection[str]) -> BeforeValidator:
     return BeforeValidator(read)
 
 
+_Part = Annotated[float, Quantity("", "part of a direction")]
+
+
 class SensorSection(Section):
     """A sensor at a point of the plate, or a microphone in the air."""
 
@@ -216,7 +219,9 @@ class SensorSection(Section):
     quantity: Literal["acceleration", "velocity", "displacement", "voltage", "strain", "pressure", "force"] | None = Field(
         None, description="measured quantity: acceleration by default, or the output of the instrument"
     )
-    direction: Literal["x", "y", "z"] | tuple[float, float, float] = Field("z", description="direction of measurement; z is upwards")
+    direction: Literal["x", "y", "z"] | tuple[_Part, _Part, _Part] = Field(
+        "z", description='direction of measurement: "x", "y", "z" (upwards), or three numbers along x, y and z'
+    )
     rate: Annotated[float, Quantity("Hz", "sampling rate", Range(above=0))] = 50e3
     filter: Annotated[Literal["sigma-delta", "butterworth", "none"], _one_of(FILTERS)] = Field(
         "sigma-delta", description="anti-alias filter"

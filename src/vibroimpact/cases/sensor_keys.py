@@ -12,7 +12,7 @@ from vibroimpact.cases.fields.item_labels import item_label
 from vibroimpact.cases.fields.quantities import Quantity, quantity_of
 from vibroimpact.cases.fields.section import Section, read_table
 from vibroimpact.cases.schema import SensorSection
-from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.errors import InputError, choices
 from vibroimpact.shown import shown
 
 _NUMBERS = {
@@ -109,7 +109,8 @@ def named_sensor(sensors: Any, name: str) -> dict[str, Any]:
     names = [entry["name"] for entry in entries]
     if name in names:
         return entries[names.index(name)]
-    words = f"there are {', '.join(names)}.{did_you_mean(name, names)}" if names else "the case has none with a name"
+    names = [known for known in names if known]
+    words = f"there are {choices(names, name)}" if names else "the case has none with a name"
     raise InputError(f"there is no sensor called {shown(name)}; {words}")
 
 

@@ -16,7 +16,7 @@ from PIL import Image
 from vibroimpact.charts.chart import Chart
 from vibroimpact.charts.matplotlib import matplotlib_figure
 from vibroimpact.charts.print_style import print_style
-from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.errors import InputError, choices
 from vibroimpact.shown import shown
 
 _DPI = 200
@@ -88,7 +88,7 @@ def check_formats(formats: Sequence[str]) -> None:
     """
     for name in formats:
         if name not in FORMATS:
-            known = f"there are {', '.join(FORMATS)}.{did_you_mean(name, FORMATS)}"
+            known = f"there are {choices(FORMATS, name)}"
             raise InputError(f"there are no figures of the format {shown(name)}; {known}")
     if not formats:
         raise InputError(f"name a format of the figures: {', '.join(FORMATS)}")

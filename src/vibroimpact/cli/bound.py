@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from vibroimpact.cli.completion import complete_case
-from vibroimpact.cli.shared import Force, Json, app, console, exit_on_interrupt, show_folder, stem
+from vibroimpact.cli.shared import Force, Json, app, console, exit_on_interrupt, quantity_in, show_folder, stem
 from vibroimpact.errors import InputError
 
 
@@ -41,14 +41,10 @@ def bound(
     from vibroimpact.results.folder import check_free
     from vibroimpact.studies.study import read_study
     from vibroimpact.studies.sweep import load_sweep
-    from vibroimpact.units.reading import to_si
 
     target = Path(f"{stem(population)}-bound") if output is None else output
     check_free(target, force=force)
-    try:
-        band = float(bandwidth) if bandwidth.replace(".", "", 1).isdecimal() else to_si(bandwidth, "Hz")
-    except InputError as error:
-        raise InputError(error.message, "--bandwidth") from None
+    band = quantity_in("--bandwidth", bandwidth, "Hz")
     if not 10.0 <= band <= 1e7:
         raise InputError(f"{bandwidth} is not allowed; it must be 10 Hz or more, and at most 10 MHz", "--bandwidth")
     if not -60.0 <= signal_to_noise <= 200.0:

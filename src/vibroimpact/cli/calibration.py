@@ -8,7 +8,20 @@ from typing import Annotated
 import typer
 
 from vibroimpact.cli.completion import RECORDS, complete_case_or_record
-from vibroimpact.cli.shared import Changes, Figures, Force, Json, app, console, exit_on_interrupt, note, settings_of, show_folder, stem
+from vibroimpact.cli.shared import (
+    Changes,
+    Figures,
+    Force,
+    Json,
+    app,
+    console,
+    exit_on_interrupt,
+    note,
+    quantity_in,
+    settings_of,
+    show_folder,
+    stem,
+)
 from vibroimpact.errors import InputError
 
 
@@ -105,9 +118,9 @@ def _listen(
     from vibroimpact.signals.one_record import one_record
 
     with exit_on_interrupt():
-        lasts = 0.0 if contact is None else _quantity("--contact", contact, "s")
-        acceleration = STANDARD_GRAVITY if gravity is None else _quantity("--gravity", gravity, "m/s^2")
-        fallen = None if height is None else _quantity("--height", height, "m")
+        lasts = 0.0 if contact is None else quantity_in("--contact", contact, "s")
+        acceleration = STANDARD_GRAVITY if gravity is None else quantity_in("--gravity", gravity, "m/s^2")
+        fallen = None if height is None else quantity_in("--height", height, "m")
         record = one_record(file, channel)
         try:
             found = rebounds_of(find_bounces(record, lasts), gravity=acceleration, height=fallen)
@@ -115,17 +128,3 @@ def _listen(
             raise with_path(file, error) from None
         folder = save_rebounds(found, target, force=force, figures=("png",) if figures else ())
     show_folder(folder, lambda: bounce_document(found), lambda: bounce_summary(found), as_json=as_json)
-
-
-def _quantity(option: str, words: str, unit: str) -> float:
-    """Return the value of an option in SI; a bare number is in it already."""
-    from vibroimpact.units.reading import to_si
-
-    try:
-        return to_si(float(words), unit)
-    except ValueError:
-        pass
-    try:
-        return to_si(words, unit)
-    except InputError as error:
-        raise InputError(f"{option}: {error.message}") from None

@@ -17,6 +17,7 @@ from vibroimpact.cli.shared import (
     console,
     exit_on_interrupt,
     pair_in,
+    quantity_in,
     settings_of,
     show_folder,
     stem,
@@ -65,12 +66,11 @@ def correlate(
     from vibroimpact.report.progress import patient_progress
     from vibroimpact.results.folder import check_free
     from vibroimpact.signals.read_records import read_records
-    from vibroimpact.units.reading import to_si
 
     found = load_case(case, settings_of(changes))
     target = Path(f"{stem(case)}-correlated") if output is None else output
     check_free(target, force=force)
-    length = None if window is None else to_si(window, "s")
+    length = None if window is None else quantity_in("--window", window, "s")
     ends = None if band is None else pair_in("--band", band, "Hz", "a lower and an upper frequency", "100 Hz, 5 kHz")
     heard = [record for path in records for record in read_records(path)]
     push = None if hammer is None else _force_among(heard, hammer)

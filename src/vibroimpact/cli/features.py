@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from vibroimpact.cli.completion import complete_features
-from vibroimpact.cli.shared import Json, app, console, exit_on_interrupt, names_in, say, show
+from vibroimpact.cli.shared import Json, app, console, exit_on_interrupt, names_in, quantity_in, say, show
 from vibroimpact.errors import InputError
 
 if TYPE_CHECKING:
@@ -63,7 +63,6 @@ def features(
     from vibroimpact.files.recover import recover
     from vibroimpact.report.progress import counting_progress
     from vibroimpact.signals.record_table import record_table
-    from vibroimpact.units.reading import to_si
 
     if packets and window is not None:
         raise InputError("a row is a packet with --packets, and a window with --window; give one of them")
@@ -72,7 +71,8 @@ def features(
     names = None if only is None else names_in(only)
     if names == []:
         raise InputError("--only names no feature; --list lists them")
-    silence, length = to_si(dead_time, "s"), None if window is None else to_si(window, "s")
+    silence = quantity_in("--dead-time", dead_time, "s")
+    length = None if window is None else quantity_in("--window", window, "s")
     records = _records(paths, threshold, silence, length, packets=packets)
     screen = console(err=as_json)
     with exit_on_interrupt(), counting_progress("signals", screen) as count:

@@ -17,6 +17,7 @@ from vibroimpact.cli.shared import (
     console,
     exit_on_interrupt,
     pair_in,
+    quantity_in,
     settings_of,
     show_folder,
     stem,
@@ -64,13 +65,12 @@ def identify(
     from vibroimpact.report.progress import patient_progress
     from vibroimpact.results.folder import check_free
     from vibroimpact.signals.read_records import read_records
-    from vibroimpact.units.reading import to_si
 
     found = load_case(case, settings_of(changes))
     target = Path(f"{stem(case)}-identified") if output is None else output
     check_free(target, force=force)
     where = None if place is None else pair_in("--place", place, "m", "x and y", "60 mm, 40 mm")
-    length = to_si(window, "s")
+    length = quantity_in("--window", window, "s")
     heard = [record for path in records for record in read_records(path)]
     with exit_on_interrupt():
         with patient_progress("identifying", console(err=as_json)) as progress:

@@ -159,13 +159,28 @@ def pair_in(option: str, text: str, unit: str, what: str, example: str) -> tuple
     >>> pair_in("--place", "60 mm, 40 mm", "m", "x and y", "60 mm, 40 mm")
     (0.06, 0.04)
     """
-    from vibroimpact.units.reading import to_si
-
     parts = names_in(text)
     if len(parts) != 2 or text.count(",") != 1:
         raise InputError(f'{option} "{text}": give {what}, separated by a comma, such as "{example}"')
-    first, second = (to_si(part, unit) for part in parts)
+    first, second = (quantity_in(option, part, unit) for part in parts)
     return first, second
+
+
+def quantity_in(option: str, text: str, unit: str) -> float:
+    """Return the value of an option in SI; a bare number, which has no quotes in a shell, is in SI already.
+
+    Examples
+    --------
+    >>> quantity_in("--window", "0.04", "s"), quantity_in("--window", "40 ms", "s")
+    (0.04, 0.04)
+    """
+    from vibroimpact.units.reading import number_and_unit, to_si
+
+    parts = number_and_unit(text)
+    try:
+        return to_si(text if parts is None or parts[1] else parts[0], unit)
+    except InputError as error:
+        raise InputError(error.message, option) from None
 
 
 def note(text: str) -> None:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from vibroimpact.cli.completion import complete_case
-from vibroimpact.cli.shared import Json, app, console, fail, interrupt_flag, note, say, show, stem
+from vibroimpact.cli.shared import Json, app, console, fail, interrupt_flag, note, quantity_in, say, show, stem
 from vibroimpact.errors import InputError
 
 if TYPE_CHECKING:
@@ -131,12 +131,8 @@ def _run_sweep(
     from vibroimpact.studies.study_folder import has_study
     from vibroimpact.studies.sweep import load_sweep
     from vibroimpact.studies.unit_slips import sweep_slips
-    from vibroimpact.units.reading import to_si
 
-    try:
-        size = float(memory) if memory.isdecimal() else to_si(memory, "byte")
-    except InputError as error:
-        raise InputError(error.message, "--memory") from None
+    size = quantity_in("--memory", memory, "byte")
     if size < 1e6:
         raise InputError(f"{memory} is too little; it must be 1 MB or more", "--memory")
     found, screen = load_sweep(study, samples), console(err=as_json)

@@ -11,7 +11,7 @@ import numpy as np
 
 from vibroimpact.contact.docstring import with_parameters
 from vibroimpact.contact.pair import ContactPair
-from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.errors import InputError, choices
 from vibroimpact.ranges import Range
 
 
@@ -144,7 +144,7 @@ class Parameters:
         known = {item.name: item for item in fields(cls)}
         for key in parameters:
             if key not in known:
-                raise InputError(f'unknown key "{key}"; {cls.name} takes {", ".join(known)}.{did_you_mean(key, known)}', key)
+                raise InputError(f'unknown key "{key}"; {cls.name} takes {choices(known, key)}', key)
         given = dict(parameters)
         for key, item in known.items():
             if key not in given and item.metadata["from_pair"]:

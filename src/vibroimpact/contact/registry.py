@@ -100,7 +100,7 @@ def find_contact_law(name: str) -> type[ContactLaw]:
     """
     if not isinstance(name, str):
         raise InputError(f"a contact law is found by its name, a text, not {name!r}")
-    return find_named("contact law", name, contact_laws())
+    return find_named("contact law", name, contact_laws(), "laws")
 
 
 def find_friction_law(name: str) -> type[FrictionLaw]:
@@ -118,4 +118,4 @@ def find_friction_law(name: str) -> type[FrictionLaw]:
     """
     if not isinstance(name, str):
         raise InputError(f"a friction law is found by its name, a text, not {name!r}")
-    return find_named("friction law", name, friction_laws())
+    return find_named("friction law", name, friction_laws(), "laws")

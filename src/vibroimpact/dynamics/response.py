@@ -37,7 +37,7 @@ from vibroimpact.dynamics.shaken.ride import RideSegment
 from vibroimpact.dynamics.shaken.steady import steady_modes
 from vibroimpact.dynamics.status import Ended, status_of
 from vibroimpact.dynamics.truncation import truncation_estimates
-from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.errors import InputError, choices
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
@@ -336,7 +336,7 @@ class Response:
         known = self.history_columns
         for name in columns or ():
             if name not in known:
-                raise InputError(f"a history has no column {name!r}; it has {', '.join(known)}.{did_you_mean(name, known)}")
+                raise InputError(f"a history has no column {name!r}; it has {choices(known, name)}")
         return known if columns is None else columns
 
     def _history(self, number: int, times: Floats, columns: Collection[str]) -> dict[str, Floats]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from markupsafe import Markup
 
 from vibroimpact.charts.notebook import plotly_figure
-from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.errors import InputError, choices
 from vibroimpact.report.html_table import html_table
 from vibroimpact.results.result import Result
 from vibroimpact.runs.captions import sensor_caption
@@ -59,7 +59,7 @@ def plot_result(result: Result, name: str = "position") -> go.Figure:
     charts = {chart.name: chart for chart in (setup_chart(result), *run_charts(result))}
     if name not in charts:
         known = [*(chart for chart in charts if not chart.startswith("sensor_")), *sensors]
-        raise InputError(f"there is no chart {shown(name)} of this run; there are {', '.join(known)}.{did_you_mean(str(name), known)}")
+        raise InputError(f"there is no chart {shown(name)} of this run; there are {choices(known, str(name))}")
     return plotly_figure(charts[name])
 
 

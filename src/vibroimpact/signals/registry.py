@@ -55,7 +55,7 @@ def find_feature(name: str) -> Feature:
     >>> find_feature("kurtosis").unit
     '1'
     """
-    return find_named("feature", name, features())
+    return find_named("feature", name, features(), "features --list")
 
 
 def _loaded(point: EntryPoint) -> Family:

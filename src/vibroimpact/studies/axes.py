@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError
+from vibroimpact.ranges import Range
 
 Values = NDArray[Any]
 """Array of floats or integers, or of objects if values are names or tables."""
@@ -153,7 +154,8 @@ class Normal:
             raise InputError(f"{self.mean:g} is not allowed; the mean of a lognormal distribution must be greater than 0", "mean")
         low, high = self._bounds()
         if not high - low > 1e-9:
-            words = f"{100 * max(high - low, 0.0):.2g} % of the distribution lies from {self.at_least:g} to {self.at_most:g}"
+            ends = Range(at_least=self.at_least, at_most=self.at_most).words
+            words = f"{100 * max(high - low, 0.0):.2g} % of the distribution is {ends}"
             raise InputError(f"{words}; it must be truncated less", "at_least" if math.isfinite(self.at_least) else "at_most")
 
     def _normal_parameters(self) -> tuple[float, float]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -11,7 +11,7 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.cases.fields.quantities import Quantity
 from vibroimpact.errors import InputError, did_you_mean
-from vibroimpact.studies.axes import Axis, Values
+from vibroimpact.studies.axes import Axis, Listed, Values
 
 Each = Literal["plate", "rock", "fall"]
 """For what of a population a value is drawn."""
@@ -128,8 +128,15 @@ def check_scaled(design: str, groups: Mapping[str, Mapping[str, Axis]], quantiti
     for where, key, axis in _scaled(groups):
         try:
             _check(design, key, axis, following, quantities)
+            _check_numbers(axis.of, [axes[axis.of] for axes in groups.values() if axis.of in axes])
         except InputError as error:
             raise InputError(error.message, f'{where}."{key}"{"." if error.key else ""}{error.key}') from None
+
+
+def _check_numbers(key: str, axes: Iterable[Axis]) -> None:
+    """Check that a key that another one follows has numbers as values, from which the other's are computed."""
+    if any(isinstance(axis, Listed) and axis.levels().dtype == object for axis in axes):
+        raise InputError(f"{key} has values that are not numbers, so that nothing can follow it", "of")
 
 
 def _scaled(groups: Mapping[str, Mapping[str, Any]]) -> Iterator[tuple[str, str, Scaled]]:

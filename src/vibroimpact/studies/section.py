@@ -10,7 +10,7 @@ from pydantic import BeforeValidator, Field, WithJsonSchema
 
 from vibroimpact.cases.fields.quantities import Quantity, read_quantity
 from vibroimpact.cases.fields.section import Section, read_table
-from vibroimpact.cases.fields.size_limits import Name
+from vibroimpact.cases.fields.size_limits import FileName, Name
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.measurements.table_file import TableFile, name_and_unit, read_table_file
 from vibroimpact.ranges import Range
@@ -53,8 +53,8 @@ class SweepSection(Section):
         "grid", description="design, the choice of the points: " + "; ".join(f"{one.name}: {one.meaning}" for one in designs().values())
     )
     over: dict[str, Any] = Field(
-        description='by dotted keys of the case, such as "sphere.radius": a list, a range { from, to, number, scale }, a distribution '
-        '{ distribution = "normal", "lognormal" or "uniform", ... }, a column of a file { file, column, weights }, '
+        description='the values of dotted keys of the case, such as "sphere.radius": a list, a range { from, to, number, scale }, '
+        'a distribution { distribution = "normal", "lognormal" or "uniform", ... }, a column of a file { file, column, weights }, '
         "or a dependence on another key { value, of, at, exponent, factor }"
     )
     samples: Annotated[int, Field(ge=1, le=MOST_DROPS, strict=True)] | None = Field(None, description="number of sampled points")
@@ -102,7 +102,7 @@ class NormalTable(Section):
 class ColumnTable(Section):
     """The values in a column of a CSV file, and their weights in another."""
 
-    file: str
+    file: FileName
     column: str
     weights: str | None = None
 
@@ -160,7 +160,7 @@ def read_axis(value: Any, quantity: Quantity | None) -> Axis:
         table = read_table(_DISTRIBUTIONS[kind], value)
         return _normal(table, quantity) if isinstance(table, NormalTable) else _spaced(table, quantity, is_random=True)
     if "from" not in value and "to" not in value:
-        raise InputError(f"{', '.join(value) or 'an empty table'} has no values; it must be {_ASKED}")
+        raise InputError(f"{shown(value)} has no values; it must be {_ASKED}")
     return _spaced(read_table(RangeTable, value), quantity, is_random=False)
 
 
@@ -184,10 +184,18 @@ def read_scaled(value: Mapping[str, Any], quantity: Quantity | None, followed: Q
     table = read_table(ScaledTable, value)
     one, at = _number(table.value, quantity, quantity.allowed, "value"), _number(table.at, followed, Range(above=0), "at")
     try:
-        factor = read_axis(table.factor, Quantity("", "factor", Range(above=0)))
+        factor = _factor(table.factor)
     except InputError as error:
         raise InputError(error.message, f"factor.{error.key}".rstrip(".")) from None
     return Scaled(one, at, table.of, table.exponent, factor, table.each)
+
+
+def _factor(value: Any) -> Axis:
+    """Return the axis of a factor, whose list has numbers alone."""
+    quantity = Quantity("", "factor", Range(above=0))
+    if isinstance(value, list):
+        value = [_number(item, quantity, quantity.allowed) for item in value]
+    return read_axis(value, quantity)
 
 
 def _read_item(item: Any, quantity: Quantity) -> Any:

@@ -16,17 +16,18 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.cases.case import Case
+from vibroimpact.cases.fields.known_keys import keys_of
 from vibroimpact.cases.fields.quantities import Quantity
 from vibroimpact.cases.fields.section import read_table
 from vibroimpact.cases.fields.size_limits import MOST_ITEMS, check_bounds, check_count
-from vibroimpact.cases.keys import find_quantity, holds_keys, with_values
+from vibroimpact.cases.keys import check_laws, find_quantity, holds_keys, with_values
 from vibroimpact.cases.reader import load_table, prefix_errors
 from vibroimpact.cases.rigid import deforms, impact_limit
 from vibroimpact.dynamics.columns import ALL_IMPACT_COLUMNS, IMPACT_COLUMNS, meanings
-from vibroimpact.errors import InputError
+from vibroimpact.errors import InputError, listed
 from vibroimpact.files.reading import input_file_digest
 from vibroimpact.meshes.text_files import MESH
-from vibroimpact.shown import shortened, shown, visible
+from vibroimpact.shown import shortened, shown
 from vibroimpact.studies.axes import Axis, Listed, Values
 from vibroimpact.studies.design import Asked, find_design
 from vibroimpact.studies.drop_variables import OUTCOME, PEAKS, SENSOR_PEAK, SIGNAL, SIGNAL_START
@@ -242,7 +243,8 @@ def read_sweep(table: Mapping[str, Any]) -> Sweep:
             "sweep",
         )
     if not isinstance(table["sweep"], dict):
-        raise InputError(f"{shown(table['sweep'])} is not a table", "sweep")
+        raise InputError(f"{shown(table['sweep'])} is not a table; it takes {listed(keys_of(SweepSection))}", "sweep")
+    check_laws(base)
     try:
         section = read_table(SweepSection, table["sweep"])
         design = find_design(section.design)
@@ -294,13 +296,23 @@ def _read_over(base: Mapping[str, Any], table: Mapping[str, Any]) -> tuple[dict[
         try:
             quantities[key] = find_quantity(base, key)
             if isinstance(value, Mapping) and "of" in value:
-                axes[key] = read_scaled(value, quantities[key], find_quantity(base, str(value["of"])))
+                axes[key] = read_scaled(value, quantities[key], _followed(base, value["of"]))
             else:
                 axes[key] = read_axis(value, quantities[key])
             _check_names(axes[key])
         except InputError as error:
             raise InputError(error.message, f'over."{key}".{error.key}'.rstrip(".")) from None
     return over, quantities, axes
+
+
+def _followed(base: Mapping[str, Any], key: Any) -> Quantity | None:
+    """Return the quantity of the key that another one follows."""
+    if not isinstance(key, str):
+        raise InputError(f'{shown(key)} is not a text; it is the key that is followed, such as "sphere.radius"', "of")
+    try:
+        return find_quantity(base, key)
+    except InputError as error:
+        raise InputError(error.message, "of") from None
 
 
 def _read_population(base: Mapping[str, Any], section: SweepSection) -> tuple[SweepSection, dict[str, Quantity | None], Population]:
@@ -385,7 +397,12 @@ def _check_points(sweep: Sweep) -> None:
             try:
                 check_swept_sensors(sweep.table, columns, sweep.case_at({**first, key: value}))
             except InputError as error:
-                raise InputError.of_several(f"at {key} = {shortened(visible(str(value)), 60)}: {line}" for line in error.lines) from None
+                raise InputError.of_several(f"at {key} = {_level(value)}: {fault}" for fault in error.faults) from None
+
+
+def _level(value: Any) -> str:
+    """Return a value of a swept key for a message."""
+    return f"{value:g}" if isinstance(value, float) else shown(value)
 
 
 def _different(values: Values) -> list[Any]:

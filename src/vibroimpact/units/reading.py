@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 
 _QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*((?:1/)?[^\d\s.+-].*)?")
 
+_COMMA = re.compile(r"\s*[+-]?\d+,\d")
+_LONGEST = 80  # characters of a quantity
+
 _KIND = {
     "m": "length",
     "kg": "mass",
@@ -42,6 +45,9 @@ _KIND = {
     "V s/m": "voltage over velocity",
     "V s^2/m": "voltage over acceleration",
     "byte": "memory size",
+    "rad": "angle",
+    "rad/s": "angular velocity",
+    "Pa*s": "viscosity",
     "": "plain number",
 }
 _EXAMPLE = {
@@ -65,7 +71,12 @@ _EXAMPLE = {
     "V s/m": "27.6 V s/m",
     "V s^2/m": "100 mV/g",
     "byte": "500 MB",
+    "rad": "30 deg",
+    "rad/s": "100 rad/s",
+    "Pa*s": "1 mPa*s",
 }
+_WITHOUT_DIMENSION = ("rad", "byte", "")
+"""Units that have no dimension by which they are told from each other."""
 
 _PREFIXES = {"G": 1e9, "M": 1e6, "k": 1e3, "c": 1e-2, "m": 1e-3, "u": 1e-6, "µ": 1e-6, "μ": 1e-6, "n": 1e-9}
 _PREFIXED = ("m", "s", "m/s", "m/s^2", "Pa", "Hz", "N", "N/m", "V")
@@ -141,6 +152,20 @@ def parse_quantity(text: str) -> tuple[float, str]:
     if parts is None or not parts[1]:
         raise InputError(f'{shown(text, 80)} is not a number with a unit, such as "5.115e8 N/m^1.5"')
     return _finite(parts[0], text), parts[1]
+
+
+def number_and_unit(text: str) -> tuple[float, str] | None:
+    """Return the number and the unit of a text, "" for no unit, neither of which is checked; None if it does not begin with a number.
+
+    Examples
+    --------
+    >>> number_and_unit("25 mm"), number_and_unit("0.3"), number_and_unit("mm")
+    ((25.0, 'mm'), (0.3, ''), None)
+    """
+    match = _QUANTITY.fullmatch(text) if len(text) <= _LONGEST else None
+    if match is None or _COMMA.match(text):
+        return None
+    return float(match[1]), (match[2] or "").strip()
 
 
 def convert_units(value: float, unit: str, to: str) -> float:
@@ -234,7 +259,9 @@ def _dimension_words(unit: pint.Unit) -> str:
     registry = _registry()
     if not unit.dimensionality:
         return "a plain number"
-    kind = next((k for u, k in _KIND.items() if u and unit.dimensionality == registry.parse_units(u).dimensionality), None)
+    kind = next(
+        (k for u, k in _KIND.items() if u not in _WITHOUT_DIMENSION and unit.dimensionality == registry.parse_units(u).dimensionality), None
+    )
     dimension = unit_text(_dimension(unit).items())
     if kind is None:
         return f"of the dimension {dimension}"
@@ -250,30 +277,30 @@ def _known_unit(text: str) -> pint.Unit:
 
 
 def _parse(text: str, unit: str) -> float:
-    parts = _split(text)
+    parts = _split(text, plain=not unit)
     if parts is None:
         raise InputError(f"{shown(text, 80)} is not {_wanted(unit)}")
     number, given = parts
     if not unit:
         if given:
-            raise InputError(
-                f"{shown(text, 80)} has a unit, but a plain number is wanted: write {number / 100 if given == '%' else number:g}"
-            )
+            digits = f"{_finite(number / 100.0 if given == '%' else number, text):.15g}"
+            raise InputError(f"{shown(text, 80)} has a unit, but a plain number is wanted: write {digits}")
         return number
     if not given:
-        raise InputError(f'{shown(text, 80)} has no unit: write {number:g} (it is then in {unit}) or "{number:g} {unit}"')
+        digits = f"{_finite(number, text):.15g}"
+        raise InputError(f'{shown(text, 80)} has no unit: write {digits} (it is then in {unit}) or "{digits} {unit}"')
     return number * _factor(given, unit, text)
 
 
-def _split(text: str) -> tuple[float, str] | None:
-    """Return number and unit of a text, "" for no unit; None if it does not begin with a number."""
-    match = _QUANTITY.fullmatch(text) if len(text) <= 80 else None
-    if match is None:
-        return None
-    unit = (match[2] or "").strip()
-    if re.match(r",\d", unit):
-        raise InputError(f"{shown(text, 80)} has a comma in its number; write a point: {text.replace(',', '.', 1)}")
-    return float(match[1]), unit
+def _split(text: str, *, plain: bool = False) -> tuple[float, str] | None:
+    """Return number and unit of a text, "" for no unit; None if it does not begin with a number. `plain`: whether no unit is wanted."""
+    parts = number_and_unit(text)
+    if parts is None and len(text) <= _LONGEST and _COMMA.match(text):
+        pointed = text.replace(",", ".", 1).strip()
+        with_point = number_and_unit(pointed)
+        remedy = f"{with_point[0]:.15g}" if plain and with_point is not None else f'"{pointed}"'
+        raise InputError(f"{shown(text, 80)} has a comma in its number; write a point: {remedy}")
+    return parts
 
 
 def _parse_unit(text: str) -> pint.Unit:
@@ -309,7 +336,9 @@ def _converted(given: str, unit: str, text: str) -> float:
         have, want = registry.Quantity(1.0, _parse_unit(spelled)), registry.parse_units(unit)
         return float(have.to(want).magnitude)
     except pint.DimensionalityError:
-        kind = next((k for u, k in _KIND.items() if u and have.check(registry.parse_units(u).dimensionality)), None)
+        dimensional = (name for name in _KIND if name not in _WITHOUT_DIMENSION)
+        kind = next((_KIND[name] for name in dimensional if have.check(registry.parse_units(name).dimensionality)), None)
+        kind = kind if have.dimensionality else "number without a dimension"
         is_a = f"is {_article(kind)} {kind}" if kind else "is another kind of quantity"
         raise InputError(f"{shown(text, 80)} {is_a}; expected {_wanted(unit)}") from None
     except Exception as error:  # pint raises many kinds for a unit that it can't read

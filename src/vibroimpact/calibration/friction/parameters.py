@@ -21,7 +21,7 @@ from vibroimpact.contact.friction.law import FrictionLaw
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.dynamics.oblique.statement import Oblique
 from vibroimpact.dynamics.problem import Problem
-from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.errors import InputError, choices
 from vibroimpact.ranges import Range
 
 _FAR = 1e4  # times the size of a value: that of a contact that sticks, or is stiff
@@ -111,7 +111,7 @@ def friction_parameters(problem: Problem, names: Sequence[str]) -> FrictionParam
     known = [f"{FRICTION}{item.name}" for item in fields(law)]
     for name in names:
         if name not in known:
-            words = f'{law.name} has no parameter "{name.removeprefix(FRICTION)}"; there are {", ".join(known)}.{did_you_mean(name, known)}'
+            words = f'{law.name} has no parameter "{name.removeprefix(FRICTION)}"; there are {choices(known, name)}'
             raise InputError(words if name.startswith(FRICTION) else f"{name} is not fitted together with friction", "parameter")
     if len(set(names)) < len(names):
         raise InputError("a parameter is named twice", "parameter")

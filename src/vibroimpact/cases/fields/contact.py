@@ -13,7 +13,7 @@ from vibroimpact.cases.fields.section import read_table
 from vibroimpact.cases.fields.size_limits import MOST_OF_A_LIST, check_count
 from vibroimpact.contact.law import ContactLaw, unit_of
 from vibroimpact.contact.registry import contact_laws, find_contact_law
-from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.errors import InputError, choices, listed
 from vibroimpact.shown import shown
 
 
@@ -40,9 +40,7 @@ def read_contact(value: Any) -> ContactSection:
     """
     if isinstance(value, ContactSection):
         return value
-    if not isinstance(value, dict) or not isinstance(value.get("law"), str):
-        raise InputError(f'it needs law = "...", one of {", ".join(contact_laws())}')
-    law = find_contact_law(value["law"])
+    law = law_of(value)
     known = {item.name: item for item in fields(law)}
     # the SI unit of a stiffness depends on the exponent of the law
     exponent = value.get("exponent", known["exponent"].default if "exponent" in known else 1.0)
@@ -51,9 +49,8 @@ def read_contact(value: Any) -> ContactSection:
         if key in ("law", "friction") or key in LocalSection.model_fields:
             continue
         if key not in known:
-            others = ", ".join([*LocalSection.model_fields, "friction"])
-            hint = did_you_mean(key, [*known, *LocalSection.model_fields])
-            raise InputError(f"unknown key {shown(key)}; {law.name} takes {', '.join(known)}, and every law {others}.{hint}", key)
+            every = [*known, *LocalSection.model_fields, "friction"]
+            raise InputError(f"unknown key {shown(key)}; {law.name} takes {choices(every, key, 'schema')}", key)
         unit, allowed = unit_of(known[key], exponent), known[key].metadata["range"]
         try:
             if isinstance(given, list):
@@ -68,6 +65,27 @@ def read_contact(value: Any) -> ContactSection:
     local = {key: value[key] for key in LocalSection.model_fields if key in value}
     friction = read_friction(value["friction"]) if "friction" in value else None
     return ContactSection(law.name, parameters, read_table(LocalSection, local), friction)
+
+
+def law_of(value: Any) -> type[ContactLaw]:
+    """Return the law of a [contact] section that is not validated yet.
+
+    Raises
+    ------
+    InputError
+        If it is no table, or names no law.
+    """
+    known_laws = listed(contact_laws(), command="laws")
+    if not isinstance(value, dict):
+        raise InputError(f"{shown(value)} is not a table with the name of a law and its parameters; there are {known_laws}")
+    if "law" not in value:
+        raise InputError(f'it needs law = "...", one of {known_laws}')
+    if not isinstance(value["law"], str):
+        raise InputError(f"{shown(value['law'])} is not the name of a law; there are {known_laws}", "law")
+    try:
+        return find_contact_law(value["law"])
+    except InputError as error:
+        raise InputError(error.message, "law") from None
 
 
 def contact_schema() -> dict[str, Any]:

@@ -11,6 +11,7 @@ from pydantic import BeforeValidator, Field, model_validator
 from vibroimpact.cases.fields.json_schema import JsonSchema
 from vibroimpact.cases.fields.quantities import Quantity
 from vibroimpact.cases.fields.section import Section, check_alternatives, read_table
+from vibroimpact.cases.fields.size_limits import FileName
 from vibroimpact.errors import InputError
 from vibroimpact.files.reading import input_file_digest, with_path
 from vibroimpact.meshes.text_files import MESH
@@ -37,7 +38,9 @@ def _one_unit(value: Any) -> Any:
 class BroughtMeshTable(Section):
     """A mesh, or a geometry, from a file."""
 
-    file: str = Field(description="Nastran (.bdf, .dat), Abaqus (.inp), Gmsh (.msh), or with the extra mesh STEP (.step) and BREP (.brep)")
+    file: FileName = Field(
+        description="Nastran (.bdf, .dat), Abaqus (.inp), Gmsh (.msh), or with the extra mesh STEP (.step) and BREP (.brep)"
+    )
     unit: Annotated[float, Quantity("m", "unit of its coordinates", Range(above=0)), BeforeValidator(_one_unit)] = 1.0
     element_size: _Size | None = None
     contact: str | None = Field(None, description="a named set, whose centre is the contact point")
@@ -111,9 +114,7 @@ def _mesh_field(kind: type[Section]) -> Any:
         if isinstance(value, Section) or value is None:
             return value
         if isinstance(value, str):
-            if not value.strip():
-                raise InputError("the name of the file is empty")
-            return BroughtMeshTable(file=value)
+            return read_table(BroughtMeshTable, {"file": value})
         if isinstance(value, dict):
             return read_table(BroughtMeshTable if "file" in value else kind, value)
         raise InputError(f"{shown(value)} is neither the name of a file nor a table")

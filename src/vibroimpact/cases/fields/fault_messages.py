@@ -2,83 +2,191 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
-from vibroimpact.errors import did_you_mean
+from vibroimpact.cases.fields.json_schema import JsonSchema
+from vibroimpact.cases.fields.known_keys import field_at, keys_of, parts_of, section_at
+from vibroimpact.cases.fields.quantities import Quantity
+from vibroimpact.errors import choices, did_you_mean, listed
 from vibroimpact.shown import shown
 
-SectionAt = Callable[[tuple[str, ...]], type[BaseModel] | None]
-"""Returns the section class at a key path of a case; None if there is none."""
+_NO_SUCH_TYPE = ("string_type", "tuple_type", "list_type", "literal_error", "bool_type")
+"""Errors of an alternative that takes another type of value."""
+
+_WHOLE = ("int_type", "int_parsing", "int_parsing_size", "int_from_float", "greater_than_equal", "less_than_equal", "multiple_of")
+"""Errors of whole numbers."""
+
+_BOUNDS = ("ge", "le", "multiple_of")
+"""Bounds of whole numbers, as pydantic calls them."""
 
 
-def fault_messages(error: ValidationError, section_at: SectionAt) -> Iterator[tuple[str, str]]:
-    """Yield the dotted key path and the message of each validation error."""
-    faults = error.errors()
-    for fault in faults:
-        where = tuple(str(part) for part in fault["loc"] if not _is_branch(str(part)))
-        if _of_a_text(fault["loc"]) and fault["type"] == "string_type" and isinstance(fault["input"], (list, tuple)):
-            continue  # the field may also be a list, and the error of that alternative is reported
-        path = ".".join(where)
-        kind, context = fault["type"], fault.get("ctx", {})
-        cause, given = context.get("error"), shown(fault["input"])
-        if kind == "extra_forbidden":
-            section = section_at(where[:-1])
-            known = list(section.model_fields) if section else []
-            above = ".".join(part for part in where[:-1] if not part.isdigit())
-            place = "a case" if not above else f"[[{above}]]" if where[-2].isdigit() else f"[{above}]"
-            yield path, f"unknown key {shown(where[-1])}; {place} takes {', '.join(known)}.{did_you_mean(where[-1], known)}"
-        elif kind == "missing" and _is_misspelt(fault["loc"], [one["loc"] for one in faults if one["type"] == "extra_forbidden"]):
+class InvalidTable(ValueError):
+    """The validation errors of a table in another one, raised while that is validated, and the section that the table should be."""
+
+    def __init__(self, section: type[BaseModel], error: ValidationError) -> None:
+        super().__init__(str(error))
+        self.section, self.error = section, error
+
+
+def fault_messages(error: ValidationError, section: type[BaseModel], *, of_case: bool = False) -> Iterator[tuple[str, str]]:
+    """Yield the dotted key path and the message of each validation error of a section, or of a whole case."""
+    faults = [_Fault(fault, section, of_case=of_case) for fault in error.errors()]
+    misspelt = [(fault.path[:-1], fault.path[-1]) for fault in faults if fault.kind == "extra_forbidden"]
+    for fault in _by_value(faults):
+        if fault.kind == "missing" and any(above == fault.path[:-1] and did_you_mean(key, [fault.path[-1]]) for above, key in misspelt):
             continue  # the unknown key is reported, with the one that was meant
-        elif kind == "missing" and where[-1].isdigit():
-            yield ".".join(where[:-1]), f"there are too few values; it takes {_about(where[:-1], section_at).removeprefix(': ')}"
-        elif kind == "missing":
-            yield path, f"this {'section' if len(where) == 1 else 'key'} is missing{_about(where, section_at)}"
-        elif kind == "value_error" and isinstance(cause, ValidationError):
-            yield from ((f"{path}.{inner}" if path else inner, message) for inner, message in fault_messages(cause, section_at))
-        elif kind == "value_error":
+        yield from fault.messages()
+
+
+class _Fault:
+    """A validation error: where it is, its kind, and the value that is wrong."""
+
+    def __init__(self, fault: Any, section: type[BaseModel], *, of_case: bool) -> None:
+        self.loc = tuple(str(part) for part in fault["loc"])
+        self.path = tuple(part for part in self.loc if not _is_branch(part))
+        self.kind: str = fault["type"]
+        self.value: Any = fault["input"]
+        self.context: dict[str, Any] = fault.get("ctx", {})
+        self.section, self.of_case = section, of_case
+
+    @property
+    def branch(self) -> int:
+        """Number of the part of the location that names an alternative of a union; that of the parts if there is none."""
+        return next((number for number, part in enumerate(self.loc) if _is_branch(part)), len(self.loc))
+
+    @property
+    def about(self) -> str:
+        """What the field takes, in its own words; "" if it has none."""
+        field = field_at(self.section, self.path)
+        if field is None:
+            return ""
+        if field.description:
+            return field.description
+        return next((_words(part) for part in parts_of(field) if isinstance(part, (Quantity, JsonSchema))), "")
+
+    @property
+    def wanted(self) -> str:
+        """What the value must be."""
+        if self.kind == "literal_error":
+            return str(self.context["expected"]).replace("'", '"')
+        if self.kind == "string_type":
+            return "a text in quotes"
+        if self.kind in ("bool_type", "bool_parsing"):
+            return "true or false"
+        if self.kind in ("tuple_type", "list_type"):
+            return f"a list: {self.about}" if self.about else "a list"
+        if self.kind in _WHOLE:
+            field = field_at(self.section, self.path)
+            return _whole_number(parts_of(field) if field is not None else ())
+        return self.about or "a value of another type"
+
+    def messages(self) -> Iterator[tuple[str, str]]:
+        """Yield the key path and the message; several of a table in the table."""
+        path, cause = ".".join(self.path), self.context.get("error")
+        if isinstance(cause, InvalidTable):
+            yield from ((f"{path}.{key}" if path else key, text) for key, text in fault_messages(cause.error, cause.section))
+        elif self.kind == "value_error":
             key = getattr(cause, "key", "")
             yield ".".join(part for part in (path, key) if part), getattr(cause, "message", str(cause))
-        elif kind == "literal_error":
-            yield path, f"{given} is not allowed; it must be {context['expected']}"
-        elif kind == "string_type":
-            yield path, f"{given} is not a text; put it in quotes"
-        elif kind == "string_too_short":
-            yield path, f"the text is empty{_about(where, section_at)}"
-        elif kind == "bool_type":
-            yield path, f"{given} is not allowed; it must be true or false"
-        elif kind in ("model_type", "dict_type"):
-            said = given.lower() if isinstance(fault["input"], bool) else given  # as TOML spells it
-            section = section_at(where)
-            yield path, f"{said} is not a table" + (f"; it takes {', '.join(section.model_fields)}" if section else "")
-        elif kind in ("tuple_type", "list_type") and isinstance(fault["input"], Mapping):
-            yield path, f"this is one table, and it must be a list of tables; write [[{path}]] above each"
-        elif kind in ("tuple_type", "too_long", "too_short"):
-            about = _about(where, section_at).removeprefix(": ")
-            yield path, f"{given} does not have the right number of values" + (f"; it takes {about}" if about else "")
+        elif self.kind == "missing" and self.path[-1].isdigit():
+            yield ".".join(self.path[:-1]), f"there are too few values{_takes(self.about)}"
         else:
-            yield path, f"{given} is not allowed; {fault['msg'].replace('Input should', 'it must')}"
+            yield path, self._message()
+
+    def _message(self) -> str:
+        given = shown(self.value)
+        if self.kind == "extra_forbidden":
+            return self._unknown_key()
+        if self.kind == "missing":
+            what = "section" if self.of_case and len(self.path) == 1 else "key"
+            return f"this {what} is missing{_which_is(self.about)}"
+        if self.kind == "string_too_short":
+            return f"the text is empty{_which_is(self.about)}"
+        if self.kind in ("model_type", "model_attributes_type", "dict_type"):
+            inside = section_at(self.section, self.path)
+            return f"{given} is not a table{_takes(listed(keys_of(inside)) if inside is not None else self.about)}"
+        if self.kind in ("tuple_type", "list_type") and section_at(self.section, self.path):
+            is_one = "this is one table, and it must be" if isinstance(self.value, dict) else f"{given} is not allowed; it must be"
+            return f"{is_one} a list of tables; write [[{'.'.join(self.path)}]] above each"
+        if self.kind in ("tuple_type", "list_type"):
+            return f"{given} is not a list{_takes(self.about)}"
+        if self.kind in ("too_long", "too_short"):
+            return f"{given} does not have the right number of values{_takes(self.about)}"
+        if self.kind == "no_alternative":
+            return f"{given} is not allowed; it takes {self.context['expected']}"
+        if self.kind == "string_type" and isinstance(self.value, (bool, int, float)):
+            return f"{given} is not a text; put it in quotes"
+        hint = did_you_mean(self.value, re.findall(r'"([^"]*)"', self.wanted)) if isinstance(self.value, str) else ""
+        return f"{given} is not allowed; it must be {self.wanted}{'.' if hint else ''}{hint}"
+
+    def _unknown_key(self) -> str:
+        above, key = self.path[:-1], self.path[-1]
+        section = section_at(self.section, above)
+        known = keys_of(section) if section is not None else []
+        name = ".".join(part for part in above if not part.isdigit())
+        place = "a case" if self.of_case else "it"
+        if name and self.of_case:
+            place = f"[[{name}]]" if above[-1].isdigit() else f"[{name}]"
+        return f"unknown key {shown(key)}; {place} takes {choices(known, key, 'schema')}"
 
 
-def _is_misspelt(missing: tuple[int | str, ...], unknown: list[tuple[int | str, ...]]) -> bool:
-    """Return whether one of the unknown keys is close to a missing one of the same table."""
-    return any(one[:-1] == missing[:-1] and did_you_mean(str(one[-1]), [str(missing[-1])]) for one in unknown)
+def _by_value(faults: Sequence[_Fault]) -> Iterator[_Fault]:
+    """Yield the faults, of a value with several alternatives only those of the one that was meant, or one in place of all."""
+    done = set()
+    for fault in faults:
+        if fault.branch == len(fault.loc):
+            yield fault
+            continue
+        place = fault.loc[: fault.branch]
+        if place in done:
+            continue
+        done.add(place)
+        yield from _meant([one for one in faults if one.branch == fault.branch and one.loc[: fault.branch] == place])
 
 
-def _of_a_text(loc: tuple[int | str, ...]) -> bool:
-    """Return whether the last part of a location is the string alternative of a union, plain or with a validator."""
-    return bool(loc) and (loc[-1] == "str" or str(loc[-1]).endswith(", str]"))
+def _meant(faults: Sequence[_Fault]) -> Sequence[_Fault]:
+    """Return the faults of the alternative that suits the type of the value; if none does, one that names all."""
+    inside = [fault for fault in faults if len(fault.loc) > fault.branch + 1]
+    if inside:
+        return inside
+    of_value = [fault for fault in faults if fault.kind not in _NO_SUCH_TYPE]
+    if of_value:
+        return of_value[:1]
+    first = faults[0]
+    if len(faults) > 1:
+        wanted = first.about or ", or ".join(dict.fromkeys(fault.wanted for fault in faults))
+        first.kind, first.context = "no_alternative", {"expected": wanted}
+    return [first]
 
 
 def _is_branch(part: str) -> bool:
-    """Return whether a part of a location is the label that pydantic gives to an alternative of a union."""
-    return part.startswith(("literal[", "constrained-", "function-", "tuple[", "nullable"))
+    """Return whether a part of a location is the label that pydantic gives to an alternative of a union, or to the key of a table."""
+    return part.startswith(("literal[", "constrained-", "function-", "tuple[", "nullable")) or part == "[key]"
 
 
-def _about(where: tuple[str, ...], section_at: SectionAt) -> str:
-    """Return ": " and the description of a field; "" if it has none."""
-    section = section_at(where[:-1])
-    field = section.model_fields.get(where[-1]) if section else None
-    text = (field.description or "") if field else ""
-    return f": {text}" if text else ""
+def _which_is(about: str) -> str:
+    return f": {about}" if about else ""
+
+
+def _takes(about: str) -> str:
+    return f"; it takes {about}" if about else ""
+
+
+def _words(annotation: Quantity | JsonSchema) -> str:
+    if isinstance(annotation, JsonSchema):
+        return annotation.description
+    return f"{annotation.meaning} [{annotation.unit}]" if annotation.unit else annotation.meaning
+
+
+def _whole_number(parts: Iterable[Any]) -> str:
+    """Return the whole numbers that a field takes, in words, from the parts of its annotation."""
+    bounds = {bound: value for part in parts for bound in _BOUNDS if (value := getattr(part, bound, None)) is not None}
+    least, most, multiple = (bounds.get(bound) for bound in _BOUNDS)
+    kind = "a whole number" if multiple is None else f"a multiple of {multiple}"
+    if least is None or most is None:
+        return kind if least is None else f"{kind}, at least {least}"
+    return f"{kind} from {least} to {most}"

@@ -8,7 +8,7 @@ from typing import Any
 
 from vibroimpact.cases.fields.quantities import quantity_schema, read_quantity
 from vibroimpact.contact.registry import find_friction_law, friction_laws
-from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.errors import InputError, choices, did_you_mean
 from vibroimpact.shown import shown
 
 NO_FRICTION = "none"
@@ -30,12 +30,7 @@ def read_friction(value: Any) -> FrictionTable | None:
     InputError
         If the law or a parameter is unknown, or a value can't be read or lies outside its range.
     """
-    names = [NO_FRICTION, *friction_laws()]
-    if not isinstance(value, dict) or not isinstance(value.get("law"), str):
-        raise InputError(f'it needs law = "...", one of {", ".join(names)}', "friction")
-    if value["law"] not in names:
-        words = f"there is no friction law {shown(value['law'])}; there are {', '.join(names)}.{did_you_mean(value['law'], names)}"
-        raise InputError(words, "friction.law")
+    check_friction_law(value)
     # "none" may have what others take: so a law can be switched off, or swept
     laws = list(friction_laws().values()) if value["law"] == NO_FRICTION else [find_friction_law(value["law"])]
     known = {item.name: item for law in laws for item in fields(law)}
@@ -44,14 +39,33 @@ def read_friction(value: Any) -> FrictionTable | None:
         if key == "law":
             continue
         if key not in known:
-            raise InputError(
-                f"unknown key {shown(key)}; {value['law']} takes {', '.join(known)}.{did_you_mean(key, known)}", f"friction.{key}"
-            )
+            raise InputError(f"unknown key {shown(key)}; {value['law']} takes {choices(known, key)}", f"friction.{key}")
         try:
             parameters[key] = read_quantity(given, known[key].metadata["unit"], known[key].metadata["range"])
         except InputError as error:
             raise InputError(error.message, f"friction.{key}") from None
     return None if value["law"] == NO_FRICTION else FrictionTable(value["law"], parameters)
+
+
+def check_friction_law(value: Any) -> None:
+    """Check that a [contact.friction] table names a friction law.
+
+    Raises
+    ------
+    InputError
+        If it is no table, or names none.
+    """
+    names = [NO_FRICTION, *friction_laws()]
+    known_laws = ", ".join(f'"{name}"' for name in names)  # "there are none" would be misread
+    if not isinstance(value, dict):
+        raise InputError(f"{shown(value)} is not a table with the name of a friction law; there are {known_laws}", "friction")
+    if "law" not in value:
+        raise InputError(f'it needs law = "...", one of {known_laws}', "friction")
+    if not isinstance(value["law"], str):
+        raise InputError(f"{shown(value['law'])} is not the name of a friction law; there are {known_laws}", "friction.law")
+    if value["law"] not in names:
+        words = f"there is no friction law {shown(value['law'])}; there are {known_laws}.{did_you_mean(value['law'], names)}"
+        raise InputError(words, "friction.law")
 
 
 def friction_schema() -> dict[str, Any]:

@@ -9,7 +9,7 @@ from pydantic import BeforeValidator
 
 from vibroimpact.cases.fields.json_schema import JsonSchema
 from vibroimpact.cases.fields.quantities import Quantity
-from vibroimpact.cases.fields.section import Section
+from vibroimpact.cases.fields.section import Section, read_inner_table
 from vibroimpact.cases.fields.size_limits import Name
 from vibroimpact.errors import InputError
 from vibroimpact.materials import RIGID, Material, find_material
@@ -36,7 +36,7 @@ def _read_material(value: Any) -> Material:
     if isinstance(value, str):
         return find_material(value)
     if isinstance(value, dict):
-        return Material(**InlineMaterial.model_validate(value).model_dump())
+        return Material(**read_inner_table(InlineMaterial, value).model_dump())
     raise InputError(f"{shown(value)} is neither the name of a material nor a table with density, youngs_modulus and poissons_ratio")
 
 

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import Field, model_validator
+from pydantic import Field, StrictBool, model_validator
 
 from vibroimpact.cases.fields.quantities import Quantity
 from vibroimpact.cases.fields.section import Section
+from vibroimpact.cases.fields.size_limits import FileName
 from vibroimpact.errors import InputError
 from vibroimpact.ranges import Range
 
@@ -18,8 +19,10 @@ class MotionTable(Section):
     amplitude: Annotated[float, Quantity("m", "amplitude of the motion", Range(at_least=0))] | None = None
     frequency: Annotated[float, Quantity("Hz", "frequency of the motion", Range(above=0))] | None = None
     phase: Annotated[float, Quantity("rad", "phase at the start; at 0 the plate passes its mean position, upwards")] = 0.0
-    file: str | None = Field(None, description="CSV file of the motion over time: time, and displacement or acceleration, with their units")
-    repeat: bool = Field(False, description="whether the file has one period of the motion, which repeats")
+    file: FileName | None = Field(
+        None, description="CSV file of the motion over time: time, and displacement or acceleration, with their units"
+    )
+    repeat: StrictBool = Field(False, description="whether the file has one period of the motion, which repeats")
     direction: tuple[Annotated[float, Quantity("", "x")], Annotated[float, Quantity("", "y")], Annotated[float, Quantity("", "z")]] = Field(
         (0.0, 0.0, 1.0), description="direction of the motion along x, y and the normal z, of any length but 0"
     )

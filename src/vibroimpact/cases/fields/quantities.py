@@ -12,7 +12,7 @@ from pydantic_core import CoreSchema, core_schema
 from vibroimpact.errors import InputError
 from vibroimpact.ranges import Range
 from vibroimpact.shown import shown
-from vibroimpact.units.reading import to_si
+from vibroimpact.units.reading import number_and_unit, to_si
 
 SMALLEST, LARGEST = 1e-50, 1e50
 """Range of the magnitude of a nonzero quantity in SI, within which squares and products neither overflow nor underflow."""
@@ -31,12 +31,29 @@ def read_quantity(value: Any, unit: str, allowed: Range) -> float:
     >>> read_quantity("25 mm", "m", Range(above=0))
     0.025
     """
-    number = to_si(value, unit)
+    try:
+        number = to_si(value, unit)
+    except InputError:
+        _check_remedy(value, unit, allowed)
+        raise
+    _check(number, value, unit, allowed)
+    return number
+
+
+def _check_remedy(value: Any, unit: str, allowed: Range) -> None:
+    """Check the number of a text that lacks its unit, or has one where none belongs: only one in range is worth to be written otherwise."""
+    parts = number_and_unit(value) if isinstance(value, str) else None
+    if parts is not None and not (unit and parts[1]):
+        number = parts[0] / 100.0 if parts[1] == "%" else parts[0]
+        _check(number, value, unit, allowed)
+
+
+def _check(number: float, value: Any, unit: str, allowed: Range) -> None:
+    """Check that a number can be computed with, and is in its range."""
     if number and not SMALLEST <= abs(number) <= LARGEST:
         limits = f"from {SMALLEST:g} to {LARGEST:g} {unit}".rstrip()
         raise InputError(f"{shown(value)} is beyond what can be computed; a magnitude that is not 0 lies {limits}")
-    allowed.check(number, unit, f'"{value}"' if isinstance(value, str) else str(value))
-    return number
+    allowed.check(number, unit, shown(value, 80))
 
 
 @dataclass(frozen=True)

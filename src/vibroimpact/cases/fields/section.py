@@ -8,8 +8,9 @@ from typing import Any, Self, TypeVar
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from vibroimpact.cases.fields.fault_messages import fault_messages
-from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.cases.fields.fault_messages import InvalidTable, fault_messages
+from vibroimpact.cases.fields.known_keys import keys_of
+from vibroimpact.errors import InputError, choices
 from vibroimpact.shown import shown
 
 Value = TypeVar("Value")
@@ -63,7 +64,21 @@ def derived(function: Callable[[Of], Value]) -> Callable[[Of], Value]:
 Table = TypeVar("Table", bound=Section)
 
 
-def read_table(kind: type[Table], value: Mapping[str, Any], **inner: type[Section]) -> Table:
+def read_inner_table(kind: type[Table], value: Mapping[str, Any]) -> Table:
+    """Return a validated table of the given kind, while the section that it is in is validated, which reports all its faults.
+
+    Raises
+    ------
+    InvalidTable
+        With all its faults.
+    """
+    try:
+        return kind.model_validate(value)
+    except ValidationError as error:
+        raise InvalidTable(kind, error) from None
+
+
+def read_table(kind: type[Table], value: Mapping[str, Any]) -> Table:
     """Return a validated table of the given kind, for fields that accept several kinds of tables.
 
     Parameters
@@ -72,23 +87,21 @@ def read_table(kind: type[Table], value: Mapping[str, Any], **inner: type[Sectio
         The kind of table.
     value : mapping
         The table.
-    **inner : type of Section
-        Kinds of the tables in it by their keys, whose keys messages list.
 
     Raises
     ------
     InputError
         For the first invalid key; the message for an unknown key lists the keys of this kind.
     """
-    known = [info.alias or name for name, info in kind.model_fields.items() if name != "type"]
+    known = keys_of(kind)
     for key in value:
-        if key not in known and key not in kind.model_fields:
-            raise InputError(f"unknown key {shown(key)}; it takes {', '.join(known)}.{did_you_mean(key, known)}", key)
+        if key not in known and key != "type":
+            raise InputError(f"unknown key {shown(key)}; it takes {choices(known, key, 'schema')}", key)
     try:
         return kind.model_validate(dict(value))
     except ValidationError as error:
-        path, message = next(fault_messages(error, lambda where: inner.get(where[-1]) if where else kind))
-        raise InputError(message.replace("this section is missing", "this key is missing"), path) from None
+        path, message = next(fault_messages(error, kind))
+        raise InputError(message, path) from None
 
 
 def check_alternatives(table: Section, one: str, other: str, *, needed: bool, key: str = "") -> None:

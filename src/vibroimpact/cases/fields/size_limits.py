@@ -129,6 +129,16 @@ Name = Annotated[str, AfterValidator(check_name)]
 """Type of a name that is shown in tables, pages and figures."""
 
 
+def _check_file_name(name: str) -> str:
+    if not name.strip():
+        raise InputError("the name of the file is empty")
+    return name
+
+
+FileName = Annotated[str, AfterValidator(_check_file_name)]
+"""Type of the name of a file."""
+
+
 def at_most(number: int, what: str) -> BeforeValidator:
     """Return a validator that rejects a list of more than `number` items before the items themselves are validated."""
 

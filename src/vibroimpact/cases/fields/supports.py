@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, get_args
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from vibroimpact.cases.fields.json_schema import JsonSchema
-from vibroimpact.cases.fields.material import InlineMaterial, MaterialField, material_table
+from vibroimpact.cases.fields.material import MaterialField, material_table
 from vibroimpact.cases.fields.quantities import Quantity
 from vibroimpact.cases.fields.section import Section, check_alternatives, read_table
 from vibroimpact.cases.fields.size_limits import MOST_ITEMS, Name, check_count
-from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.errors import InputError, choices, did_you_mean
 from vibroimpact.materials import RIGID, Material
 from vibroimpact.ranges import Range
 from vibroimpact.shown import shown
@@ -232,8 +232,8 @@ def _read_support(value: Any) -> SupportTable:
         if value in WORDS:
             raise InputError(f"{shown(value)} stands alone, without a list: supports = {shown(value)}")
         fault = f"there is no support of type {shown(name)}" if name is not None else "a support is a table with a type"
-        raise InputError(f"{fault}; there are {', '.join(_TABLES)}.{did_you_mean(str(name), _TABLES)}")
-    return read_table(_TABLES[name], value, material=InlineMaterial)
+        raise InputError(f"{fault}; there are {choices(_TABLES, str(name))}")
+    return read_table(_TABLES[name], value)
 
 
 def _json_schema() -> dict[str, Any]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from markupsafe import Markup
 
 from vibroimpact.charts.notebook import plotly_figure
-from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.errors import InputError, choices
 from vibroimpact.report.html_table import html_table
 from vibroimpact.shown import shown, visible
 from vibroimpact.studies.report.axes import study_axes
@@ -56,7 +56,7 @@ def plot_study(study: Study, name: str = "") -> go.Figure:
     if not charts:
         raise InputError("this study has no charts, as no result varies")
     if name and name not in charts:
-        raise InputError(f"there is no chart {shown(name)} of this study; there are {', '.join(charts)}.{did_you_mean(str(name), charts)}")
+        raise InputError(f"there is no chart {shown(name)} of this study; there are {choices(charts, str(name))}")
     return plotly_figure(charts[name or next(iter(charts))])
 
 
