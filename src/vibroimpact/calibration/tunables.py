@@ -16,6 +16,10 @@ from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.ranges import Range
 
 _MODAL_START = 0.02
+_FAR = 1e6
+"""Ratio of a given value to the example of its parameter above which the search begins at the example: so far off, contacts may take a
+second each, or fail.
+"""
 
 
 def law_parameter(problem: Problem, name: str | None = None) -> Tunable:
@@ -48,7 +52,7 @@ def law_parameter(problem: Problem, name: str | None = None) -> Tunable:
         raise InputError(f'{first.name} has no parameter "{chosen}"; it has {", ".join(known)}.{did_you_mean(chosen, known)}', "parameter")
     told = known[chosen].metadata
     given = np.array([float(getattr(law, chosen)) for law in laws])
-    start = next((value for value in (given[0], told["example"]) if value), 1.0)
+    start = _start(float(given[0]), told["example"])
 
     def respond(speeds: Floats, values: Floats, which: Indices) -> dict[str, Floats]:
         law = batched_law(laws, int(which.max()) + 1)
@@ -116,3 +120,11 @@ def _law(laws: tuple[ContactLaw, ...], impact: int) -> ContactLaw:
 
 def _at(values: Floats, impact: int) -> float:
     return float(values[min(impact, len(values) - 1)])
+
+
+def _start(given: float, example: float | None) -> float:
+    """Return the value at which a search begins: the given one, unless it is zero or out of proportion."""
+    if not example:
+        return given or 1.0
+    near = 1.0 / _FAR <= abs(given / example) <= _FAR
+    return given if near else float(example)
