@@ -17,7 +17,7 @@ from vibroimpact.arrays import Floats, Indices
 Respond = Callable[[Floats, Floats], dict[str, Floats]]
 """Takes approach speeds [m/s] (m,) and values (m,); returns quantities of the impacts."""
 
-MANY = 5000
+MANY = 20_000
 """Impacts from which on they are interpolated."""
 
 _AGREES = 1e-10

@@ -70,7 +70,7 @@ def standard_deviations(noise: Noise) -> Floats:
 
 
 def whitened(noise: Noise, columns: Floats) -> Floats:
-    r"""Return columns (n, k), multiplied by the inverse of a root of the covariance of the noise, so that its values are independent; in another order.
+    r"""Return columns (n, k) times the inverse of a root of the covariance of their noise, which is then independent; in another order.
 
     The covariance :math:`N N^T` is ordered into a narrow band, in which its Cholesky factor stays.
 
