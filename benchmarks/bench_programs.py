@@ -94,6 +94,9 @@ class Row(NamedTuple):
     error: float
 
 
+_GROWTH, _NEXT = "## Growth", "**Next:**"
+
+
 def coefficients(law: vi.ContactLaw) -> tuple[float, float]:
     """Return K [N/m^1.5] and c [N s/m^1.25] of Tsuji's law, whose force is K x^1.5 + c x^0.25 v."""
     return float(law.forces(1.0, 0.0, 1.0)[0]), float(law.forces(1.0, 1.0, 1.0)[1])
@@ -298,7 +301,10 @@ def main() -> None:
         off=many[0].milliseconds / floor,
     )
     if len(sys.argv) > 1:
-        Path(sys.argv[1]).write_text(page, encoding="utf-8")
+        target = Path(sys.argv[1])
+        before = target.read_text(encoding="utf-8") if target.exists() else ""
+        growth = before[before.find(_GROWTH) : before.find(_NEXT)] if _GROWTH in before else ""  # of bench_growth.py, and written by hand
+        target.write_text(page.replace(_NEXT, growth + _NEXT), encoding="utf-8")
     else:
         print(page)
 

@@ -67,6 +67,27 @@ def mutated_text(text: str, choose: random.Random) -> bytes:
     return data
 
 
+def damaged_bytes(data: bytes, choose: random.Random) -> bytes:
+    """Return a binary file with bytes changed, lost, doubled or cut off."""
+    changed = bytearray(data)
+    for _ in range(choose.choice((1, 1, 2, 8))):
+        at = choose.randrange(len(changed) + 1)
+        early = min(at, choose.randrange(200))  # where headers are
+        number = choose.choice((1, 2, 4, 100))
+        kind = choose.randrange(5)
+        if kind == 0:
+            changed[early : early + number] = choose.randbytes(number)
+        elif kind == 1:
+            changed[at : at + number] = b""
+        elif kind == 2:
+            changed[early:early] = changed[early : early + number]
+        elif kind == 3:
+            changed[early : early + number] = choose.choice((b"\0", b"\xff", b"\x7f", b"\n", b"-1\n")) * number
+        else:
+            del changed[at:]
+    return bytes(changed)
+
+
 def case_files(count: int, seed: int) -> Iterator[bytes]:
     """Yield hostile case files: two of three by their tables, the others by their text."""
     choose = random.Random(seed)

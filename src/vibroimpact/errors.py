@@ -65,6 +65,10 @@ class VibroimpactError(Exception):
         return "\n".join(self.lines)
 
 
+class ChartWarning(UserWarning):
+    """A chart could not be drawn; everything else was written."""
+
+
 class InputError(VibroimpactError, ValueError):
     """An invalid case, argument or file; the message states the location, the fault, and what is allowed.
 

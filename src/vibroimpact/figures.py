@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import ExitStack
 from functools import partial
 from os import PathLike
 from pathlib import Path
@@ -10,6 +11,7 @@ from pathlib import Path
 from vibroimpact.charts.figures_folder import FIGURES
 from vibroimpact.charts.files import check_formats, save_charts
 from vibroimpact.errors import InputError
+from vibroimpact.files.new_folders import made_folder
 from vibroimpact.files.recover import recover
 from vibroimpact.report.page import replace_report_files
 from vibroimpact.results.folder import read_result
@@ -65,12 +67,13 @@ def save_figures(
         replace_report_files(folder, partial(_write_below, write))
         return folder / FIGURES
     target = Path(output)
-    try:
-        target.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"{target}: the folder can't be made: {error.strerror}") from None
-    recover(target)
-    replace_report_files(target, write)
+    with ExitStack() as stack:
+        try:
+            stack.enter_context(made_folder(target))
+        except OSError as error:
+            raise InputError(f"{target}: the folder can't be made: {error.strerror}") from None
+        recover(target)
+        replace_report_files(target, write)
     return target
 
 

@@ -13,6 +13,7 @@ from scipy.stats import binom
 import vibroimpact as vi
 from support import one_in, plain_case
 from vibroimpact.calibration.force_record import impacts_in_force
+from vibroimpact.calibration.noise import standard_deviations
 from vibroimpact.calibration.observations import Observations
 
 TIMES = 120
@@ -75,7 +76,7 @@ def test_the_interval_covers_the_truth(response: vi.Response, force: Callable[[F
     """At least as often as a binomial distribution of 95 % allows once in a thousand times; and it is no wider than twice the scatter."""
     exact, found = float(response.impacts["separation_speed_m_s"][0]), [measured(response, force, drift, seed) for seed in range(TIMES)]
     off = np.array([seen.wanted["separation_speed"][0] - exact for seen in found])
-    stated = np.array([np.linalg.norm(seen.noise["separation_speed"][0]) for seen in found])
+    stated = np.array([standard_deviations(seen.noise["separation_speed"])[0] for seen in found])
     assert np.count_nonzero(np.abs(off) <= 1.96 * stated) >= binom.ppf(1e-3, TIMES, 0.95)
     assert stated.mean() < 2.0 * np.sqrt(np.mean(off**2))
     forces = np.array([seen.wanted["max_force"][0] for seen in found]) / float(response.impacts["max_force_N"][0])

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import json
+import signal
 import socket
 import subprocess
 import sys
+import time
 from collections.abc import Iterator
 from contextlib import ExitStack, closing
 from http.client import HTTPConnection
@@ -15,6 +17,7 @@ import pytest
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import connect
 
+from live_page import ELASTIC
 from serving import Server
 from vibroimpact.app.address import fragment_of
 from vibroimpact.app.messages import LONGEST
@@ -157,3 +160,25 @@ def test_it_is_bound_to_this_machine(server: Server) -> None:
         with socket.socket(family, socket.SOCK_STREAM) as other:
             other.settimeout(2.0)
             assert other.connect_ex(address) != 0
+
+
+def test_ctrl_c_ends_it_whoever_does_not_read_and_whatever_it_computes() -> None:
+    """A client that never reads a script, and a window whose modes take a minute: neither holds the server."""
+    plate = {**ELASTIC["plate"], "modes": 60, "mesh": {"element_size": "5 mm"}}
+    with Server() as server, ExitStack() as clients:
+        deaf = clients.enter_context(socket.socket())
+        deaf.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+        deaf.connect(("127.0.0.1", server.port))
+        deaf.sendall(f"GET /scripts/plotly.js HTTP/1.1\r\nHost: 127.0.0.1:{server.port}\r\n\r\n".encode())
+        address = f"ws://127.0.0.1:{server.port}/live"
+        window = clients.enter_context(connect(address, origin=f"http://127.0.0.1:{server.port}", max_size=None))
+        window.send(json.dumps({"type": "case", "number": 1, "case": {**ELASTIC, "plate": plate}, "detail": "full"}))
+        time.sleep(1.0)  # so that it computes, or has begun to
+        server.stopped = True
+        server.process.send_signal(signal.SIGINT)
+        try:
+            wrote = server.process.communicate(timeout=20)[1]  # about a second; a guard against a hang
+        finally:
+            server.process.kill()
+        assert server.process.returncode == 130
+        assert "Traceback" not in wrote

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+import vibroimpact as vi
 from vibroimpact.files import atomic_write
 from vibroimpact.files.atomic_write import atomic_file, atomic_folder, exchange, write_file, write_into
 from vibroimpact.files.recover import recover
@@ -195,3 +196,29 @@ def test_a_long_name_and_the_rights_of_the_user_are_kept(tmp_path: Path) -> None
         os.umask(before)
     assert (tmp_path / name).stat().st_mode & 0o777 == 0o750
     assert (tmp_path / "file").stat().st_mode & 0o777 == 0o640
+
+
+def test_no_folder_is_left_where_nothing_could_be_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of a run, its figures and its export, and of a folder that was there already."""
+    folder = vi.save_result(vi.simulate(vi.load_case("paper:type1-theory")), tmp_path / "drop")
+    (tmp_path / "mine").mkdir()
+    response = vi.simulate(vi.load_case("paper:type1-theory"))
+
+    def full(*_: object, **__: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(Path, "write_bytes", full)
+    monkeypatch.setattr(Path, "write_text", full)
+    monkeypatch.setattr(Path, "open", full)
+    writes = [
+        lambda place: vi.save_figures(folder, ["png"], place),
+        lambda place: vi.save_result(response, place),
+        lambda place: vi.export_result(folder, "csv", place),
+    ]
+    for number, write in enumerate(writes):
+        with pytest.raises((OSError, vi.InputError), match="No space left on device"):
+            write(tmp_path / f"{number}" / "a" / "b")
+    with pytest.raises((OSError, vi.InputError), match="No space left on device"):
+        vi.save_figures(folder, ["png"], tmp_path / "mine")
+    assert sorted(one.name for one in tmp_path.iterdir()) == ["drop", "mine"]
+    assert list((tmp_path / "mine").iterdir()) == []

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import os
+import threading
 from collections.abc import Awaitable, Callable
 from importlib.resources import files
+from types import FrameType
 from typing import Any
 
 import uvicorn
@@ -26,6 +29,9 @@ HOST = "127.0.0.1"
 
 MOST_WINDOWS = 12
 """Largest number of windows at a time."""
+
+_LONGEST_END = 1.0
+"""Time from a signal that ends the server until the process ends, if connections are open or a case is being computed [s]."""
 
 _NAMES = ("127.0.0.1", "localhost", "[::1]")
 _FILES = {
@@ -170,8 +176,19 @@ def _text(package: str, file: str) -> str:
     return files(package).joinpath(file).read_text(encoding="utf-8")
 
 
+class _Server(uvicorn.Server):
+    """A server that ends soon after a signal, whatever is computed in its threads and whoever does not read what it sends."""
+
+    def handle_exit(self, sig: int, frame: FrameType | None) -> None:
+        """Close the connections; end the process if that takes longer than `_LONGEST_END`."""
+        super().handle_exit(sig, frame)
+        end = threading.Timer(_LONGEST_END, os._exit, (128 + sig,))  # no thread that computes can be ended otherwise
+        end.daemon = True
+        end.start()
+
+
 def serve(sockets: list[Any], port: int, started: Callable[[], None]) -> None:
-    """Serve the live page on open sockets until interrupted.
+    """Serve the live page on open sockets until interrupted: then it ends within two seconds.
 
     Parameters
     ----------
@@ -185,7 +202,7 @@ def serve(sockets: list[Any], port: int, started: Callable[[], None]) -> None:
     config = uvicorn.Config(
         application(port), log_level="warning", ws_max_size=LONGEST, ws_per_message_deflate=False, lifespan="off", access_log=False
     )
-    server = uvicorn.Server(config)
+    server = _Server(config)
 
     async def run() -> None:
         task: Awaitable[None] = asyncio.ensure_future(server.serve(sockets))

@@ -12,6 +12,7 @@ from vibroimpact.app.draft import draft_of, drafted
 from vibroimpact.app.limits import check_bounds, check_table
 from vibroimpact.app.messages import Detail
 from vibroimpact.cases.reader import read_case
+from vibroimpact.charts.made import drawn, made_charts
 from vibroimpact.charts.plotly import plotly_chart
 from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.results.result import Result, result_of
@@ -74,13 +75,14 @@ def _document(result: Result, table: dict[str, Any], detail: Detail, looked_at: 
     impacts, (unit, ledger) = impact_table(result), ledger_table(result)
     makers = chart_makers(result)
     names = [name for name in makers if name != "deflection"]  # the plate in motion takes the place of its maps
+    seen = {name: makers[name] for name in names if looked_at is None or name in looked_at}
     return {
         "name": result.name,
         "status": result.status,
         "doubts": result.doubts if detail == "full" else [],
         "impacts": {"headers": impacts.headers, "rows": [*impacts.head, *impacts.tail], "left_out": impacts.left_out},
         "ledger": {"unit": unit, "rows": [[row.title, row.energy, row.part] for row in ledger]},
-        "charts": [plotly_chart(makers[name]()) for name in names if looked_at is None or name in looked_at],
+        "charts": [drawn(chart, plotly_chart) for chart in made_charts(seen)],
         "names": names,
         "scene": scene_of(result) if result.deflection is not None else rigid_scene(result),
         "case": result.case,

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from vibroimpact.bounds.bound import BANDWIDTHS, SIGNAL_TO_NOISE, Bound
 from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
+from vibroimpact.charts.made import made_charts
 from vibroimpact.charts.marks import Bars, Map, Points
 from vibroimpact.charts.palette import series
 
@@ -32,7 +35,8 @@ def bound_charts(bound: Bound) -> list[Chart]:
     >>> [chart.name for chart in bound_charts(vi.bound_of(vi.load_sweep("signals:coal-gangue", samples=256)))]
     ['errors', 'impacts', 'sensors']
     """
-    return [_errors(bound), _impacts(bound), _sensors(bound)]
+    makers = {"errors": _errors, "impacts": _impacts, "sensors": _sensors}
+    return made_charts({name: partial(make, bound) for name, make in makers.items()})
 
 
 def _errors(bound: Bound) -> Chart:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.sparse import diags_array
 
 from vibroimpact.calibration.flights import Flights, VacuumFlights
+from vibroimpact.calibration.noise import of_the_impact_before, scaled
 from vibroimpact.calibration.observations import Observations
 from vibroimpact.signals.bounces.find import Bounces
 
@@ -45,9 +47,10 @@ def impacts_in_bounces(bounces: Bounces, *, gravity: float, first_speed: float, 
     """
     flown = (flights or VacuumFlights(gravity)).end_speeds(bounces.flight)
     number = len(bounces.flight)
-    lasts = np.diff(np.eye(number + 1), axis=0) * bounces.deviation  # of the flights, by each touch
-    after = flown.start_slope[:, None] * lasts
-    before = np.vstack([np.zeros(number + 1), (flown.end_slope[:, None] * lasts)[:-1]])
+    readings = [-bounces.deviation[:-1], bounces.deviation[1:]]
+    durations = diags_array(readings, offsets=[0, 1], shape=(number, number + 1))  # of the flights, by each touch
+    after = scaled(flown.start_slope, durations)
+    before = of_the_impact_before(scaled(flown.end_slope, durations))
     speeds = np.append(first_speed, flown.end[:-1])
     labels = tuple(f"impact {one + 1}, {at:.6g} s" for one, at in enumerate(bounces.time[:-1]))
     restitution = flown.start / speeds

@@ -116,6 +116,7 @@ def calibrate(
     given = tuned.given[np.minimum(rows, len(tuned.given) - 1)]
     as_given = {} if np.isnan(given).any() else tuned.respond(found.seen.speeds, given, rows)
     missed = bool(as_given) and any(not np.allclose(as_given[name], found.seen.wanted[name], rtol=_MET, atol=0.0) for name in weights)
+    computed = all(np.isfinite(as_given[name][0]) for name in weights) if as_given else False
     outcomes = tuned.respond(found.seen.speeds, found.values, rows)
     overlaid = overlays(tuned, found.seen, found.values, outcomes)
     tell(1.0)
@@ -131,7 +132,7 @@ def calibrate(
         outcomes=outcomes,
         given=given,
         as_given=as_given,
-        others=other_parameters(stated, tuned, found.seen, weights) if missed else {},
+        others=other_parameters(stated, tuned, found.seen, weights) if missed and computed else {},
         fit=found.fit,
         curve=found.curve,
         impacts=chain,

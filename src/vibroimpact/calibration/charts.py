@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from vibroimpact.calibration.calibration import Calibration
@@ -11,6 +13,7 @@ from vibroimpact.calibration.friction.charts import friction_charts
 from vibroimpact.calibration.record_chart import record_chart
 from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
+from vibroimpact.charts.made import made_charts
 from vibroimpact.charts.marks import Band, Level, Line, Mark, Points
 from vibroimpact.charts.palette import series
 
@@ -42,12 +45,12 @@ def calibration_charts(found: Calibration | FrictionCalibration) -> list[Chart]:
     """
     if isinstance(found, FrictionCalibration):
         return friction_charts(found)
-    charts = [_parameter_chart(found)]
+    makers = {"parameter": partial(_parameter_chart, found)}
     if found.overlays:
-        charts.append(record_chart(found.overlays))
+        makers["record"] = partial(record_chart, found.overlays)
     if differences(found) and len(found.impacts[1]) > 1:
-        charts.append(_differences_chart(found))
-    return charts
+        makers["differences"] = partial(_differences_chart, found)
+    return made_charts(makers)
 
 
 def parameter_words(found: Calibration) -> str:

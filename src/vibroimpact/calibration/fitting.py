@@ -7,9 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.polynomial import polynomial
+from scipy.sparse import vstack
 
 from vibroimpact.arrays import Floats
 from vibroimpact.calibration.matching import Tunable, derivatives, residual_scale
+from vibroimpact.calibration.noise import Noise, no_noise, scaled, standard_deviations, whitened
 from vibroimpact.calibration.observations import Observations
 from vibroimpact.calibration.speed_function import SpeedFunction
 from vibroimpact.errors import ComputationError, InputError
@@ -78,14 +80,19 @@ def check_degree(speeds: Floats, degree: int) -> None:
 
 
 def distinct(speeds: Floats) -> int:
-    """Return the number of speeds that differ by more than 1 % of the largest.
+    """Return how many of the speeds lie more than 1 % of the largest apart.
 
     Examples
     --------
-    >>> distinct(np.array([1.0, 1.001, 2.0]))
-    2
+    >>> distinct(np.array([1.0, 1.001, 2.0])), distinct(np.linspace(1.0, 2.0, 1000))
+    (2, 50)
     """
-    return 1 + int(np.count_nonzero(np.diff(np.sort(speeds)) > 0.01 * speeds.max()))
+    ordered, step = np.sort(speeds), 0.01 * speeds.max()
+    number, place = 0, 0
+    while place < len(ordered):
+        number += 1
+        place = int(np.searchsorted(ordered, ordered[place] + step, side="right"))
+    return number
 
 
 def fit_values(speeds: Floats, values: Floats, degree: int) -> Fit:
@@ -147,21 +154,19 @@ def fit_observations(tunable: Tunable, observations: Observations, weights: Mapp
             targets.append(observations.wanted[name] - found.outcomes[name] + by_value * at)
             # noise of the approach speed also changes the value of the polynomial
             along = found.by_speed[name] + by_value * polynomial.polyval(speeds, polynomial.polyder(coefficients))
-            noise = observations.noise[name] - along[:, None] * observations.speed_noise
+            noise = observations.noise[name] - scaled(along, observations.speed_noise)
             noises.append(noise / (1.0 if known else np.sqrt(weight)))
         if not any(np.any(row) for row in rows):
             raise InputError(f"{tunable.name} has no influence on the measured quantities, which can't determine it", "parameter")
-        # whiten by the Cholesky factor of the noise covariance, so that readings shared by two impacts count once
-        noise = np.concatenate(noises)
-        root = np.linalg.cholesky(noise @ noise.T)
-        whitened = [np.linalg.solve(root, part) for part in (np.concatenate(rows), np.concatenate(targets))]
-        coefficients, covariance = _least_squares(whitened[0], whitened[1])
+        # whitened, so that readings shared by two impacts count once
+        independent = whitened(vstack(noises), np.column_stack([np.concatenate(rows), np.concatenate(targets)]))
+        coefficients, covariance = _least_squares(independent[:, :-1], independent[:, -1])
         before, at = at, tunable.allowed.clip(powers @ coefficients)
         if np.all(np.abs(at - before) <= _WITHIN * np.abs(at).max()):
             break
     else:
         raise ComputationError(f"the fit of {tunable.name} does not settle; take a lower degree, or look at the measurements")
-    left = whitened[1] - whitened[0] @ coefficients
+    left = independent[:, -1] - independent[:, :-1] @ coefficients
     freedom = len(left) - degree - 1
     scatter = float(np.sqrt((left @ left) / freedom)) if freedom else np.nan
     if known and not (freedom and misfits(scatter, freedom)):
@@ -176,18 +181,19 @@ def misfits(scatter: float, freedom: int) -> bool:
     return bool(scatter**2 * freedom > chi2.ppf(0.999, freedom))
 
 
-def value_noise(tunable: Tunable, observations: Observations, weights: Mapping[str, float], values: Floats) -> Floats:
-    """Return the first-order contribution of each noise source to the value that matches each impact, (n, m)."""
+def value_deviations(tunable: Tunable, observations: Observations, weights: Mapping[str, float], values: Floats) -> Floats:
+    """Return the first-order standard deviation of the value that matches each impact, (n,)."""
     found = derivatives(tunable, observations.speeds, np.where(np.isfinite(values), values, tunable.start), observations.which)
-    above, below = np.zeros((len(values), observations.speed_noise.shape[1])), np.zeros((len(values), 1))
+    above: Noise = no_noise(*observations.speed_noise.shape)
+    below = np.zeros(len(values))
     for name, weight in weights.items():
         scale = residual_scale(name, observations.speeds, observations.wanted[name])
-        by_value = (found.by_value[name] / scale)[:, None]
-        noise = observations.noise[name] - found.by_speed[name][:, None] * observations.speed_noise
-        above += weight * by_value * noise / scale[:, None]
+        by_value = found.by_value[name] / scale
+        noise = observations.noise[name] - scaled(found.by_speed[name], observations.speed_noise)
+        above = above + scaled(weight * by_value / scale, noise)
         below += weight * by_value**2
     with np.errstate(divide="ignore", invalid="ignore"):
-        return np.asarray(above / below)
+        return np.asarray(standard_deviations(above) / below)
 
 
 def _powers(speeds: Floats, degree: int) -> Floats:

@@ -10,6 +10,7 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.calibration.flights import EndSpeeds, Flights, VacuumFlights
 from vibroimpact.calibration.force_pulses import Pulse, evaluate_pulses, find_pulses
+from vibroimpact.calibration.noise import of_the_impact_before, own_noise, scaled
 from vibroimpact.calibration.observations import Observations, Record
 from vibroimpact.calibration.record_noise import sample_label
 from vibroimpact.errors import InputError
@@ -98,13 +99,10 @@ def impacts_in_force(
                 f"the impact at {at(runs[row][0])}: from {before:.4g} m/s the sphere would leave at {after:.4g} m/s; the force, "
                 "the mass or the drop can't be right"
             )
-    nothing = np.zeros((number, number))
-    noises = {
-        "separation_speed": np.hstack([np.diag(deviation), nothing]),
-        "max_force": np.hstack([nothing, np.diag([pulse.largest_deviation for pulse in pulses])]),
-    }
-    back = (flown.end_slope / flown.start_slope)[: number - 1, None]  # an error of the duration of a flight changes both of its speeds
-    before_noise = np.vstack([np.zeros(2 * number), back * noises["separation_speed"][:-1]])
+    noises = own_noise({"separation_speed": deviation, "max_force": np.array([pulse.largest_deviation for pulse in pulses])})
+    back = np.zeros(number)
+    back[:-1] = (flown.end_slope / flown.start_slope)[: number - 1]  # an error of the duration of a flight changes both of its speeds
+    before_noise = of_the_impact_before(scaled(back, noises["separation_speed"]))
     wanted = {"separation_speed": separation, "max_force": np.array([pulse.largest for pulse in pulses])}
     labels = tuple(f"impact {row + 1}, {at(begin)}" for row, (begin, _) in enumerate(runs))
     record = Record("force", tuple(pulse.samples for pulse in pulses))

@@ -13,7 +13,7 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.calibration.calibrated_drops import impact_count, limited_to
-from vibroimpact.calibration.fitting import Fit, distinct, fit_observations, fit_values, value_noise
+from vibroimpact.calibration.fitting import Fit, distinct, fit_observations, fit_values, value_deviations
 from vibroimpact.calibration.matchable import MATCHABLE
 from vibroimpact.calibration.matching import Tunable, match
 from vibroimpact.calibration.observations import Observations, with_noise_scale
@@ -138,7 +138,7 @@ def match_measurement(
         if np.isnan(value)
     ]
     sized = seen if seen.deviations_known else with_noise_scale(seen, fit.scatter, weights)
-    deviations = np.linalg.norm(value_noise(tuned, sized, weights, values), axis=1)
+    deviations = value_deviations(tuned, sized, weights, values)
     half, draws = fit.quantile(confidence) * deviations, 0
     intervals = np.stack([values - half, values + half], axis=1) if np.isfinite(half).all() else None
     if intervals is not None:

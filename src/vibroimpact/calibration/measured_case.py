@@ -10,6 +10,7 @@ from vibroimpact.arrays import Floats
 from vibroimpact.calibration.evaluate_measurement import Measurement, speed_at_touch
 from vibroimpact.calibration.flights import Flights, VacuumFlights, vacuum_height
 from vibroimpact.calibration.matchable import MATCHABLE
+from vibroimpact.calibration.noise import scaled, standard_deviations
 from vibroimpact.calibration.observations import Observations, from_heights, from_table
 from vibroimpact.calibration.restitution_limit import RestitutionLimit, measured_restitutions, restitution_limit
 from vibroimpact.calibration.section import ImpactTarget, RestitutionTarget
@@ -104,9 +105,9 @@ def _limit(seen: Observations, case: Case) -> RestitutionLimit:
     if seen.deviations_known:
         name = "separation_speed" if "separation_speed" in seen.wanted else "rebound_height"
         left = values * seen.speeds
-        by_reading = 1.0 if name == "separation_speed" else case.drop.gravity / np.maximum(left, 1e-300)[:, None]
-        noise = by_reading * seen.noise[name] / seen.speeds[:, None] - (values / seen.speeds)[:, None] * seen.speed_noise
-        deviations = np.linalg.norm(noise, axis=1)
+        by_reading = np.ones(len(left)) if name == "separation_speed" else case.drop.gravity / np.maximum(left, 1e-300)
+        noise = scaled(by_reading / seen.speeds, seen.noise[name]) - scaled(values / seen.speeds, seen.speed_noise)
+        deviations = standard_deviations(noise)
     return restitution_limit(seen.speeds, values, deviations)
 
 

@@ -16,6 +16,7 @@ from vibroimpact.calibration.flights import Flights, VacuumFlights, vacuum_heigh
 from vibroimpact.calibration.force_record import impacts_in_force
 from vibroimpact.calibration.matchable import MATCHABLE
 from vibroimpact.calibration.measured_case import check_restitutions, heights_measurement
+from vibroimpact.calibration.noise import scaled
 from vibroimpact.calibration.observations import Observations, from_table
 from vibroimpact.calibration.position_record import impacts_in_position
 from vibroimpact.calibration.section import FileTarget
@@ -174,7 +175,7 @@ def _rows_measurement(case: Case, table: TableFile) -> Measurement:
         seen = from_table(speeds, wanted, deviations, labels)
         if "rebound_height" in wanted and gravity > 0.0 and np.all(wanted["rebound_height"] > radius):
             rises, scales = vacuum_height(flights or VacuumFlights(gravity), wanted["rebound_height"] - radius)
-            noise = {**seen.noise, "rebound_height": scales[:, None] * seen.noise["rebound_height"]}
+            noise = {**seen.noise, "rebound_height": scaled(scales, seen.noise["rebound_height"])}
             seen = replace(seen, wanted={**wanted, "rebound_height": radius + rises}, noise=noise)
         if "restitution" in columns:
             check_restitutions(seen, case)

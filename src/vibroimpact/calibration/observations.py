@@ -10,6 +10,7 @@ import numpy as np
 
 from vibroimpact.arrays import Floats, Indices
 from vibroimpact.calibration.flights import Flights, VacuumFlights, vacuum_height
+from vibroimpact.calibration.noise import Noise, as_noise, no_noise, of_the_impact_before, own_noise, scaled
 
 
 class Record(NamedTuple):
@@ -36,7 +37,7 @@ class Observations:
     wanted : mapping of str to array, shape (n,)
         Target values by the names of `MATCHABLE`, in SI units.
     speed_noise : array, shape (n, m)
-        Contribution of each noise source to the approach speeds [m/s].
+        Contribution of each noise source to the approach speeds [m/s]; kept as a sparse array, as is `noise`.
     noise : mapping of str to array, shape (n, m)
         Contribution of each source to the target values. Empty: the values are exact.
     deviations_known : bool
@@ -67,8 +68,8 @@ class Observations:
 
     speeds: Floats
     wanted: Mapping[str, Floats]
-    speed_noise: Floats = field(default_factory=lambda: np.zeros((0, 0)))
-    noise: Mapping[str, Floats] = field(default_factory=dict)
+    speed_noise: Noise = field(default_factory=lambda: no_noise(0, 0))
+    noise: Mapping[str, Noise] = field(default_factory=dict)
     deviations_known: bool = False
     labels: tuple[str, ...] = ()
     of_the_drop: bool = True
@@ -77,6 +78,10 @@ class Observations:
     flights: Flights | None = None
     record: Record | None = None
     notes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "speed_noise", as_noise(self.speed_noise))
+        object.__setattr__(self, "noise", {name: as_noise(values) for name, values in self.noise.items()})
 
     @property
     def measured(self) -> bool:
@@ -132,12 +137,12 @@ def from_heights(
     flying = flights or VacuumFlights(gravity)
     falls, slopes = flying.speed_after_fall(heights - radius)
     rises, scales = vacuum_height(flying, heights - radius)
-    noise = np.diag(np.ones(len(heights)) if deviation is None else deviation)
-    before = np.vstack([np.zeros(len(heights)), slopes[:-1, None] * noise[:-1]])
+    readings = own_noise({"rebound_height": np.ones(len(heights)) if deviation is None else deviation})["rebound_height"]
+    before = of_the_impact_before(scaled(slopes, readings))
     names = labels or tuple(f"impact {number + 1}" for number in range(len(heights)))
     speeds, known = np.append(first_speed, falls[:-1]), deviation is not None
-    wanted, noises = {"rebound_height": radius + rises}, {"rebound_height": scales[:, None] * noise}
-    return Observations(speeds, wanted, before, noises, known, names, flights=flights)
+    wanted, noise = {"rebound_height": radius + rises}, {"rebound_height": scaled(scales, readings)}
+    return Observations(speeds, wanted, before, noise, known, names, flights=flights)
 
 
 def with_noise_scale(seen: Observations, scatter: float, weights: Mapping[str, float]) -> Observations:
@@ -169,11 +174,7 @@ def from_table(
     of_the_drop : bool, default False
         Whether they are the successive impacts of the drop.
     """
-    number, several = len(speeds), len(wanted)
-    noise = {}
-    for place, (name, values) in enumerate(wanted.items()):
-        size = np.abs(values) if deviations is None else deviations[name]  # of unknown magnitude: the same relative noise for all
-        block = np.zeros((number, number * several))
-        block[:, place * number : (place + 1) * number] = np.diag(size)
-        noise[name] = block
-    return Observations(speeds, wanted, np.zeros((number, number * several)), noise, deviations is not None, labels, of_the_drop)
+    # of unknown magnitude: the same relative noise for all
+    sizes = {name: np.abs(values) if deviations is None else deviations[name] for name, values in wanted.items()}
+    exact = no_noise(len(speeds), len(speeds) * len(wanted))
+    return Observations(speeds, wanted, exact, own_noise(sizes), deviations is not None, labels, of_the_drop)

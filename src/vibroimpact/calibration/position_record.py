@@ -8,9 +8,11 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
+from scipy.sparse import diags_array
 
 from vibroimpact.arrays import Floats, Indices
 from vibroimpact.calibration.flights import Flights, VacuumFlights, vacuum_height
+from vibroimpact.calibration.noise import scaled
 from vibroimpact.calibration.observations import Observations, Record
 from vibroimpact.calibration.record_noise import ABOVE_NOISE, record_noise, sample_label
 from vibroimpact.contact.roots import find_root
@@ -128,14 +130,13 @@ def _between_flights(
     tops, deviations = (np.array([getattr(flight, name) for flight in known]) for name in ("top", "deviation"))
     falls, slopes = flying.speed_after_fall(tops - radius)
     rises, scales = vacuum_height(flying, tops - radius)
-    number = len(known)
-    sources, before = np.zeros((number, number + 1)), np.zeros((number, number + 1))
-    sources[:, 1:] = np.diag(scales * deviations)
-    before[1:, 1:] = np.diag(slopes * deviations)[:-1]
+    number, of_first = len(known), 0.0
     if first is not None and first.top > radius:
         speed, slope = flying.speed_after_fall(np.array(first.top - radius))
-        first_speed, before[0, 0] = float(speed), float(slope) * first.deviation
-    wanted, noise = {"rebound_height": radius + rises}, {"rebound_height": sources}
+        first_speed, of_first = float(speed), float(slope) * first.deviation
+    tops_noise = diags_array(deviations, offsets=1, shape=(number, number + 1))  # the first source is the fall before the first impact
+    before = diags_array(np.append(of_first, (slopes * deviations)[:-1]), shape=(number, number + 1))
+    wanted, noise = {"rebound_height": radius + rises}, {"rebound_height": scaled(scales, tops_noise)}
     noise_from = "the scatter of the record"
     return Observations(np.append(first_speed, falls[:-1]), wanted, before, noise, True, labels, noise_from=noise_from)
 

@@ -6,11 +6,10 @@ from vibroimpact.calibration.adams_dialog import calibrated_dialog, dialog_cells
 from vibroimpact.calibration.calibrate_case import calibrated_case
 from vibroimpact.calibration.calibration import Calibration
 from vibroimpact.calibration.charts import calibration_charts
-from vibroimpact.calibration.file_contents import calibration_table, comparison_rows, matched_rows
+from vibroimpact.calibration.file_contents import calibration_table, comparison_rows
 from vibroimpact.calibration.friction.calibrate import FrictionCalibration
 from vibroimpact.calibration.friction.tables import (
     friction_document,
-    friction_rows,
     friction_sentences,
     friction_table,
     friction_words,
@@ -41,6 +40,7 @@ def report_of(case: Case, found: Calibration | FrictionCalibration) -> Calibrati
         Result of its calibration.
     """
     if isinstance(found, FrictionCalibration):
+        document = friction_document(case, found)
         return CalibrationReport(
             law=f"friction by {found.parameters.law.name}",
             parameter=", ".join(found.names),
@@ -53,11 +53,11 @@ def report_of(case: Case, found: Calibration | FrictionCalibration) -> Calibrati
             ways="",
             charts=calibration_charts(found),
             doubts=found.doubts,
-            document=friction_document(case, found),
-            tables={"matched": friction_rows(found)},
+            document=document,
+            tables={"matched": document["matched"]},
             calibrated=calibrated_case(case, found),
         )
-    dialog = calibrated_dialog(found)
+    dialog, document = calibrated_dialog(found), calibration_table(case, found)
     return CalibrationReport(
         law=case.contact.law,
         parameter=found.parameter,
@@ -71,7 +71,7 @@ def report_of(case: Case, found: Calibration | FrictionCalibration) -> Calibrati
         ways=ways_words(found),
         charts=calibration_charts(found),
         doubts=found.doubts,
-        document=calibration_table(case, found),
-        tables={"matched": matched_rows(found), "comparison": comparison_rows(found)},
+        document=document,
+        tables={"matched": document["matched"], "comparison": comparison_rows(found)},
         calibrated=calibrated_case(case, found),
     )

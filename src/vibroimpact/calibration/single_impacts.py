@@ -19,6 +19,8 @@ from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.dynamics.tabulate import tabulate
 
 _TOLERANCE = 1e-12
+_AT_ONCE = 4000
+"""Impacts that are computed together: more take memory and no less time."""
 
 
 def single_impacts(problem: Problem, law: ContactLaw, speeds: Floats) -> dict[str, Floats]:
@@ -48,6 +50,12 @@ def single_impacts(problem: Problem, law: ContactLaw, speeds: Floats) -> dict[st
     >>> single_impacts(problem, problem.laws[0], np.array([8.826664149]))["separation_speed"].round(6).tolist()
     [6.838627]
     """
+    some = [slice(begin, begin + _AT_ONCE) for begin in range(0, len(speeds), _AT_ONCE)]
+    each = [_single_impacts(problem, law.take(rows), speeds[rows]) for rows in some]
+    return each[0] if len(each) == 1 else {name: np.concatenate([found[name] for found in each]) for name in each[0]}
+
+
+def _single_impacts(problem: Problem, law: ContactLaw, speeds: Floats) -> dict[str, Floats]:
     response = simulate(replace(_one_impact(problem, law, speeds), tolerance=_TOLERANCE))
     rise = np.maximum(response.impacts["rebound_height_m"][:, 0] - problem.sphere.contact_offset, 0.0)
     return {**_first_impacts(response, MATCHABLE), "next_speed": np.sqrt(2.0 * problem.gravity * rise)}

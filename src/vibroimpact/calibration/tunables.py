@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 
 from vibroimpact.arrays import Floats, Indices
+from vibroimpact.calibration.interpolated_impacts import MANY, InterpolatedImpacts
 from vibroimpact.calibration.matching import Tunable
 from vibroimpact.calibration.single_impacts import batched_law, single_impacts
 from vibroimpact.contact.law import ContactLaw, unit_of
@@ -16,6 +17,10 @@ from vibroimpact.errors import InputError, choices
 from vibroimpact.ranges import Range
 
 _MODAL_START = 0.02
+_FAR = 1e6
+"""Ratio of a given value to the example of its parameter above which the search begins at the example: so far off, contacts may take a
+second each, or fail.
+"""
 
 
 def law_parameter(problem: Problem, name: str | None = None) -> Tunable:
@@ -48,9 +53,16 @@ def law_parameter(problem: Problem, name: str | None = None) -> Tunable:
         raise InputError(f'{first.name} has no parameter "{chosen}"; it has {choices(known, chosen)}', "parameter")
     told = known[chosen].metadata
     given = np.array([float(getattr(law, chosen)) for law in laws])
-    start = next((value for value in (given[0], told["example"]) if value), 1.0)
+    start = _start(float(given[0]), told["example"])
+
+    def respond_of_first(speeds: Floats, values: Floats) -> dict[str, Floats]:
+        return single_impacts(problem, first.changed({chosen: values}), speeds)
+
+    of_first = InterpolatedImpacts(respond_of_first, start)
 
     def respond(speeds: Floats, values: Floats, which: Indices) -> dict[str, Floats]:
+        if not problem.vibrates and len(speeds) >= MANY and not which.any():
+            return of_first(speeds, values)
         law = batched_law(laws, int(which.max()) + 1)
         return single_impacts(problem, law.take(which).changed({chosen: values}), speeds)
 
@@ -116,3 +128,11 @@ def _law(laws: tuple[ContactLaw, ...], impact: int) -> ContactLaw:
 
 def _at(values: Floats, impact: int) -> float:
     return float(values[min(impact, len(values) - 1)])
+
+
+def _start(given: float, example: float | None) -> float:
+    """Return the value at which a search begins: the given one, unless it is zero or out of proportion."""
+    if not example:
+        return given or 1.0
+    near = 1.0 / _FAR <= abs(given / example) <= _FAR
+    return given if near else float(example)

@@ -10,6 +10,7 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.calibration.matchable import MATCHABLE, REBOUNDS
 from vibroimpact.calibration.matching import Match, Tunable, derivatives, match
+from vibroimpact.calibration.noise import standard_deviations
 from vibroimpact.calibration.observations import Observations
 from vibroimpact.calibration.restitution_limit import measured_restitutions, restitution_limit
 from vibroimpact.calibration.tunables import law_parameter
@@ -72,7 +73,7 @@ def _noise_of(tunable: Tunable, seen: Observations, name: str, row: int) -> floa
     if not seen.deviations_known:
         return 0.0
     near = derivatives(tunable, seen.speeds[[row]], tunable.allowed.clip(np.array([1e-3 * tunable.start])), seen.which[[row]])
-    return float(np.linalg.norm(seen.noise[name][row] - near.by_speed[name][0] * seen.speed_noise[row]))
+    return float(standard_deviations(seen.noise[name][[row]] - near.by_speed[name][0] * seen.speed_noise[[row]])[0])
 
 
 def other_parameters(

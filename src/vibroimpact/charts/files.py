@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from vibroimpact.charts.chart import Chart
+from vibroimpact.charts.made import warn_of_lost
 from vibroimpact.charts.matplotlib import matplotlib_figure
 from vibroimpact.charts.print_style import print_style
 from vibroimpact.errors import InputError, choices
@@ -25,7 +26,7 @@ _DPI = 200
 def save_charts(
     charts: Sequence[Chart], directory: Path, formats: Sequence[str] = ("png",), progress: Callable[[float], None] = lambda done: None
 ) -> list[Path]:
-    """Write each chart as `NAME.FORMAT` into an existing directory.
+    """Write each chart as `NAME.FORMAT` into an existing directory; one that can't be drawn is left out, with a `ChartWarning`.
 
     Parameters
     ----------
@@ -64,9 +65,14 @@ def save_charts(
     written = []
     for number, chart in enumerate(charts, start=1):
         for name in dict.fromkeys(formats):
+            try:
+                # a figure of its own, as drawing changes the layout of the next drawing
+                content = FORMATS[name](matplotlib_figure(chart))
+            except Exception as error:
+                warn_of_lost(chart.name, error)
+                continue
             written.append(directory / f"{chart.name}.{name}")
-            # a figure of its own, as drawing changes the layout of the next drawing
-            written[-1].write_bytes(FORMATS[name](matplotlib_figure(chart)))
+            written[-1].write_bytes(content)
         progress(number / len(charts))
     return written
 

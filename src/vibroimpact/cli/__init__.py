@@ -25,7 +25,7 @@ from vibroimpact.cli import reproduction as reproduction  # isort: skip
 from vibroimpact.cli import reference as reference  # isort: skip
 from vibroimpact.cli import serve as serve  # isort: skip
 from vibroimpact.cli.completion import PROGRAM, concerns_completion, whole_words
-from vibroimpact.cli.shared import app, fail, never_fail_to_print
+from vibroimpact.cli.shared import app, fail, never_fail_to_print, note_lost_charts
 from vibroimpact.errors import LONGEST_LINE, ComputationError, InputError
 from vibroimpact.shown import shortened, visible
 
@@ -35,6 +35,7 @@ __all__ = ["app", "main"]
 def main() -> None:
     """Run the command line; an error of the package becomes a message and an exit status."""
     never_fail_to_print()
+    note_lost_charts()
     _isolate_matplotlib()
     try:
         sys.exit(_run())
@@ -43,7 +44,7 @@ def main() -> None:
     except ComputationError as error:
         fail(str(error), 1)
     except MemoryError:
-        fail("there is not enough memory for this; use larger elements, or ask for less", 1)
+        fail("there is not enough memory for this; ask for less: larger elements, fewer modes, a shorter run, record or table", 1)
     except BrokenPipeError:
         # the reader closed the pipe: exit quietly, with the remaining output discarded
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from vibroimpact.cli.completion import complete_features
-from vibroimpact.cli.shared import Json, app, console, exit_on_interrupt, names_in, quantity_in, say, show
+from vibroimpact.cli.shared import Json, app, console, exit_on_interrupt, names_in, note, quantity_in, say, show
 from vibroimpact.errors import InputError
 
 if TYPE_CHECKING:
@@ -94,8 +94,13 @@ def _records(paths: list[Path], threshold: float | None, dead_time: float, windo
     from vibroimpact.signals.packets import packet_records
     from vibroimpact.signals.read_records import read_records
 
+    told: set[str] = set()
     for path in paths:
         for record in read_records(path):
+            for doubt in record.named_doubts:
+                if doubt not in told:
+                    told.add(doubt)
+                    note(f"doubt: {doubt}")
             try:
                 if packets:
                     yield from packet_records(record, threshold, dead_time)

@@ -7,6 +7,7 @@ import os
 import signal
 import sys
 import tomllib
+import warnings
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -15,7 +16,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 import typer
 
 from vibroimpact.cli.completion import complete_case, complete_change
-from vibroimpact.errors import InputError, lines_of
+from vibroimpact.errors import ChartWarning, InputError, lines_of
 from vibroimpact.shown import visible
 
 if TYPE_CHECKING:
@@ -186,6 +187,20 @@ def quantity_in(option: str, text: str, unit: str) -> float:
 def note(text: str) -> None:
     """Print a note on standard error, apart from the output of the command."""
     say(f"vibroimpact: {text}", err=True)
+
+
+def note_lost_charts() -> None:
+    """Show warnings about charts that could not be drawn as notes."""
+    show_others = warnings.showwarning
+
+    def show_warning(message: Warning | str, category: type[Warning], *where: Any, **to: Any) -> None:
+        if issubclass(category, ChartWarning):
+            note(str(message))
+        else:
+            show_others(message, category, *where, **to)
+
+    warnings.simplefilter("always", ChartWarning)
+    warnings.showwarning = show_warning
 
 
 @contextmanager

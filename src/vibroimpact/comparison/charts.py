@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 
 import numpy as np
 
 from vibroimpact.charts.axis import Axis, View
 from vibroimpact.charts.chart import Chart, Panel
+from vibroimpact.charts.made import made_charts
 from vibroimpact.charts.marks import Label, Level, Line, Mark, Points
 from vibroimpact.charts.palette import series
 from vibroimpact.comparison.comparison import Comparison
@@ -46,10 +48,12 @@ def comparison_charts(comparison: Comparison) -> list[Chart]:
     """
     roles = {name: series(number) for number, name in enumerate(comparison.results)}
     forceful = {name: one for name, one in comparison.results.items() if len(contacts_with_duration(one))}
-    charts = [_position_chart(comparison.results, roles)]
+    makers = {"position": partial(_position_chart, comparison.results, roles)}
     if forceful:
-        charts += [_force_chart(forceful, roles), _loops_chart(forceful, roles)]
-    return [*charts, _restitution_chart(comparison, roles)]
+        makers["force"] = partial(_force_chart, forceful, roles)
+        makers["force_indentation"] = partial(_loops_chart, forceful, roles)
+    makers["restitution"] = partial(_restitution_chart, comparison, roles)
+    return made_charts(makers)
 
 
 def _position_chart(results: Mapping[str, Result], roles: Mapping[str, str]) -> Chart:

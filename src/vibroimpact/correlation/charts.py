@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
+from vibroimpact.charts.made import made_charts
 from vibroimpact.charts.marks import Bars, Line, Mark, Points, Rug
 from vibroimpact.correlation.correlate import Correlation
 from vibroimpact.correlation.document import what_frac_is_of
@@ -38,8 +41,10 @@ def correlation_charts(found: Correlation) -> list[Chart]:
     >>> [chart.name for chart in vi.correlation_charts(found)]
     ['overlay', 'responses', 'frac', 'damping']
     """
-    charts = [_overlay(found), _responses(found), _frac(found)]
-    return [*charts, *([_damping(found)] if any(pair.damping_measured for pair in found.modes) else [])]
+    makers = {"overlay": _overlay, "responses": _responses, "frac": _frac}
+    if any(pair.damping_measured for pair in found.modes):
+        makers["damping"] = _damping
+    return made_charts({name: partial(make, found) for name, make in makers.items()})
 
 
 def _name(found: Correlation, number: int) -> str:

@@ -197,6 +197,8 @@ def correlate(
     untold = np.full(len(value), np.nan)
     parts = [(frequency[inside] >= low) & (frequency[inside] <= high) for low, high in octaves]
     decays = _decays(acquired, value, pieces, acting.over, used)
+    heard = [*records, *([] if force is None else [force])]
+    of_files = dict.fromkeys(doubt for record in heard for doubt in record.named_doubts)
     return Correlation(
         case=case,
         sensors=acquired.sensors,
@@ -217,7 +219,7 @@ def correlate(
         frac=frac(*both),
         octave_frac=np.stack([frac(both[0][:, part], both[1][:, part]) if part.sum() >= _FEW else untold for part in parts], axis=1),
         modes=pairs_of(problem, acquired.sensors, decays, used),
-        doubts=tuple(doubts_about(problem, acquired, delay, used, acting.over)),
+        doubts=(*of_files, *doubts_about(problem, acquired, delay, used, acting.over)),
     )
 
 

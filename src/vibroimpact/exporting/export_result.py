@@ -13,6 +13,7 @@ from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.export_format import ExportFormat, find_export_format
 from vibroimpact.exporting.load_drop import load_drop
 from vibroimpact.files.atomic_write import atomic_folder, write_file, write_into
+from vibroimpact.files.new_folders import made_folder
 from vibroimpact.files.recover import recover
 
 _MOST_NAMED = 3
@@ -116,15 +117,15 @@ def _check_free(targets: Iterable[Path], *, force: bool) -> None:
 
 def _write(contents: Mapping[str, bytes], targets: Mapping[str, Path], output: Path) -> None:
     """Write one file, a new folder, or files into an existing folder, atomically."""
-    output.parent.mkdir(parents=True, exist_ok=True)
-    if list(targets.values()) == [output]:
-        write_file(output, *contents.values())
-        return
-    if output.exists():
-        write_into(output, partial(_fill, contents))
-        return
-    with atomic_folder(output, partial(_check_free, targets.values(), force=False)) as working:
-        _fill(contents, working)
+    with made_folder(output.parent):
+        if list(targets.values()) == [output]:
+            write_file(output, *contents.values())
+            return
+        if output.exists():
+            write_into(output, partial(_fill, contents))
+            return
+        with atomic_folder(output, partial(_check_free, targets.values(), force=False)) as working:
+            _fill(contents, working)
 
 
 def _fill(contents: Mapping[str, bytes], folder: Path) -> None:

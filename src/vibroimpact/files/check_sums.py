@@ -38,8 +38,7 @@ def digest(content: Any) -> str:
 
 def sealed(table: Mapping[str, Any]) -> str:
     """Return a table as JSON text that includes its own checksum."""
-    plain = json.loads(json.dumps(table, allow_nan=False))
-    return json.dumps({**plain, SHA256: digest(plain)}, indent=2) + "\n"
+    return json.dumps({**table, SHA256: digest(table)}, indent=2, allow_nan=False) + "\n"
 
 
 def read_sealed(path: Path, kind: FileKind = JSON_TABLE) -> dict[str, Any]:

@@ -10,7 +10,7 @@ import stat
 from collections.abc import Iterator
 from contextlib import contextmanager
 from hashlib import sha256
-from io import FileIO
+from io import BufferedReader, FileIO, TextIOWrapper
 from os import PathLike
 from typing import NamedTuple
 
@@ -20,6 +20,8 @@ from vibroimpact.shown import shortened
 _BLOCK = 4_000_000
 """Bytes per read."""
 
+_UTF16 = (b"\xff\xfe", b"\xfe\xff")
+_SAVE_AS_UTF8 = "the file is not UTF-8 text but UTF-16; save it as UTF-8"
 _LONG_NAME = 200
 """Largest length of a path in messages."""
 
@@ -78,7 +80,7 @@ def beginning(path: str | PathLike[str], kind: FileKind, size: int) -> bytes:
     InputError
         As `read_bytes`.
     """
-    with _opened(path, kind) as file:
+    with opened(path, kind) as file:
         return file.read(size) or b""
 
 
@@ -105,10 +107,36 @@ def read_text_bytes(path: str | PathLike[str], kind: FileKind) -> bytes:
     for block in _blocks(path, kind):
         blocks.append(block)
         if b"\0" in block:
-            if blocks[0].startswith((b"\xff\xfe", b"\xfe\xff")):
-                raise InputError("the file is not UTF-8 text but UTF-16; save it as UTF-8")
+            if blocks[0].startswith(_UTF16):
+                raise InputError(_SAVE_AS_UTF8)
             raise InputError(f"this is not a text file; {kind.what}")
     return b"".join(blocks)
+
+
+def text_lines(path: str | PathLike[str], kind: FileKind, longest: int) -> Iterator[str]:
+    """Yield the lines of a UTF-8 file, with or without byte-order mark, in blocks; of a line `longest` + 1 characters at most.
+
+    Raises
+    ------
+    InputError
+        As `read_text`.
+    """
+    with opened(path, kind) as file:
+        buffered = BufferedReader(file, _BLOCK)
+        if buffered.peek(2).startswith(_UTF16):
+            raise InputError(_SAVE_AS_UTF8)
+        text = TextIOWrapper(buffered, encoding="utf-8-sig", newline=None)
+        left = kind.largest
+        try:
+            while line := text.readline(longest + 1):
+                left -= len(line)
+                if left < 0:  # the file may have grown since it was checked
+                    raise _too_large(kind)
+                if "\0" in line:
+                    raise InputError(f"this is not a text file; {kind.what}")
+                yield line
+        except UnicodeDecodeError:
+            raise _not_utf8(kind) from None
 
 
 def decoded(data: bytes, kind: FileKind) -> str:
@@ -122,7 +150,7 @@ def decoded(data: bytes, kind: FileKind) -> str:
     try:
         return data.decode("utf-8-sig")  # some editors put a byte-order mark first
     except UnicodeDecodeError:
-        raise InputError(f"the file is not UTF-8 text; {kind.what}") from None
+        raise _not_utf8(kind) from None
 
 
 def input_file_digest(path: str | PathLike[str], kind: FileKind) -> str:
@@ -151,7 +179,7 @@ def with_path(path: str | PathLike[str], error: InputError, key: str = "") -> In
 
 
 def _blocks(path: str | PathLike[str], kind: FileKind) -> Iterator[bytes]:
-    with _opened(path, kind) as file:
+    with opened(path, kind) as file:
         left = kind.largest
         while block := file.read(min(_BLOCK, left + 1)):
             left -= len(block)
@@ -161,8 +189,14 @@ def _blocks(path: str | PathLike[str], kind: FileKind) -> Iterator[bytes]:
 
 
 @contextmanager
-def _opened(path: str | PathLike[str], kind: FileKind) -> Iterator[FileIO]:
-    """Yield a regular file of allowed size, opened for reading; errors in the block are raised as InputError too."""
+def opened(path: str | PathLike[str], kind: FileKind) -> Iterator[FileIO]:
+    """Yield a regular file of allowed size, opened for reading; errors in the block are raised as InputError too.
+
+    Raises
+    ------
+    InputError
+        As `read_bytes`.
+    """
     try:
         _check(os.stat(path), kind)
         with open(path, "rb", opener=lambda name, _: os.open(name, _OPENING), buffering=0) as file:
@@ -184,6 +218,10 @@ def _check(found: os.stat_result, kind: FileKind) -> None:
         raise InputError(f"this is {_NO_FILES.get(stat.S_IFMT(found.st_mode), 'no regular file')}; {kind.what}")
     if found.st_size > kind.largest:
         raise _too_large(kind)
+
+
+def _not_utf8(kind: FileKind) -> InputError:
+    return InputError(f"the file is not UTF-8 text; {kind.what}")
 
 
 def _too_large(kind: FileKind) -> InputError:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
+from vibroimpact.charts.made import made_charts
 from vibroimpact.charts.marks import Band, Line, Map, Points
 from vibroimpact.identification.identify import Identification
 from vibroimpact.shown import shortened, visible
@@ -39,7 +42,10 @@ def identification_charts(found: Identification) -> list[Chart]:
     >>> [chart.name for chart in identification_charts(vi.identify(case, records, place=(0.02, 0.01)))]
     ['records', 'force']
     """
-    return [_records_chart(found), _force_chart(found), *([_place_chart(found)] if found.search.misfit.size > 1 else [])]
+    makers = {"records": _records_chart, "force": _force_chart}
+    if found.search.misfit.size > 1:
+        makers["place"] = _place_chart
+    return made_charts({name: partial(make, found) for name, make in makers.items()})
 
 
 def _records_chart(found: Identification) -> Chart:

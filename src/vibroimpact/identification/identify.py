@@ -173,7 +173,8 @@ def identify_on(plate: Plate, records: Sequence[Record], place: Place | None = N
     force = force_behind(plate, measured, sphere.problem, float(sphere.parameters[4]), float(sphere.force.facts[2]))
     estimates = _estimates(plate.case, measured, sphere, force)
     doubts = doubts_about(plate, measured, search, sphere, place is None)
-    return Identification(plate, measured, search, sphere, force, estimates, tuple(doubts))
+    of_files = dict.fromkeys(doubt for record in records for doubt in record.named_doubts)
+    return Identification(plate, measured, search, sphere, force, estimates, (*of_files, *doubts))
 
 
 def identify_force(case: CaseTable, records: Sequence[Record], place: Place, *, window: float = WINDOW) -> Force:

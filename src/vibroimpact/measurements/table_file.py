@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import re
 from array import array
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from io import StringIO
 from math import isfinite
@@ -16,7 +16,7 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError, did_you_mean
-from vibroimpact.files.reading import FileKind, beginning, decoded, read_text, read_text_bytes, with_path
+from vibroimpact.files.reading import FileKind, beginning, decoded, read_text_bytes, text_lines, with_path
 from vibroimpact.shown import shortened, shown
 from vibroimpact.units.reading import to_si
 
@@ -89,7 +89,7 @@ def read_table_file(path: str | PathLike[str], units: Mapping[str, str]) -> Tabl
     """
     file = Path(path)
     try:
-        rows = _rows(read_text(file, TABLE))
+        rows = _rows(text_lines(file, TABLE, _LONGEST))
         number, first = next(rows, (0, ""))
         if not first:
             raise InputError("the file is empty")
@@ -115,7 +115,7 @@ def read_table_file(path: str | PathLike[str], units: Mapping[str, str]) -> Tabl
     if not lines:
         raise InputError(f"{file}: there are no rows under the header")
     columns = {name: np.array(values) for name, values in zip(places, found, strict=True)}
-    return TableFile(file, columns, lines.tolist(), [number for number in empty if number < last])
+    return TableFile(file, columns, lines, [number for number in empty if number < last])
 
 
 def header_of(path: str | PathLike[str]) -> list[str]:
@@ -129,7 +129,7 @@ def header_of(path: str | PathLike[str]) -> list[str]:
     file = Path(path)
     try:
         text = decoded(beginning(file, TABLE, _LONGEST).rpartition(b"\n")[0] or read_text_bytes(file, TABLE), TABLE)
-        number, first = next(_rows(text), (0, ""))
+        number, first = next(_rows(StringIO(text, newline=None)), (0, ""))
         if not first:
             raise InputError("the file is empty")
         return _header(number, first)[0]
@@ -158,10 +158,10 @@ def strictly_increasing(table: TableFile, column: str) -> TableFile:
     return TableFile(table.path, {name: values[kept] for name, values in table.columns.items()}, lines)
 
 
-def _rows(text: str) -> Iterator[tuple[int, str]]:
+def _rows(text: Iterable[str]) -> Iterator[tuple[int, str]]:
     """Yield number and text of each line from the first non-empty one, without comments; an empty line gives ""."""
     begun = False
-    for number, whole in enumerate(StringIO(text, newline=None), 1):
+    for number, whole in enumerate(text, 1):
         if number > MOST_LINES:
             raise InputError(f"the file has more than {MOST_LINES:,} lines; keep the part with the impacts, or fewer samples a second")
         if len(whole) > _LONGEST:

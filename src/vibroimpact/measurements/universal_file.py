@@ -29,6 +29,9 @@ SPHERE_FUNCTIONS = {
 _LARGEST = 1e30
 """Bound of measured values, so that their powers do not overflow."""
 
+_BEGINNING = 4000
+"""Bytes at the beginning in which the first line of -1 stands; the rest of another file is not read."""
+
 _MARK = b"-1"
 _HERE = re.compile(rb"[ \t]*-1[ \t\r]*(?:\n|\Z)")  # at the current position: binary data does not end with a line break
 _MARKED = re.compile(rb"^" + _HERE.pattern, re.MULTILINE)
@@ -97,6 +100,8 @@ def read_universal_file(path: str | Path) -> UniversalFile:
     """
     file = Path(path)
     try:
+        if not _MARKED.search(beginning(file, UNIVERSAL, _BEGINNING)):
+            raise InputError("this is no universal file; it begins with a line of -1")
         raw = read_bytes(file, UNIVERSAL)
     except InputError as error:
         raise with_path(file, error) from None
@@ -170,7 +175,8 @@ def _function(raw: bytes, header: bytes, place: int, number: int) -> Function | 
     if not 0 < count <= len(raw):
         raise ValueError
     if header.split()[0] == b"58b":
-        given, values = _binary(raw, header, place, ordinate, count, even == 1)
+        with np.errstate(invalid="ignore"):  # of bytes that are no number, which are refused below
+            given, values = _binary(raw, header, place, ordinate, count, even == 1)
     else:
         given, values = _text(raw, place, ordinate, count, even == 1)
     time = start + step * np.arange(count, dtype=float) if given is None else given
@@ -189,7 +195,8 @@ def _binary(raw: bytes, header: bytes, place: int, ordinate: int, count: int, ev
     if even:
         return None, np.frombuffer(raw, f"{end}{values}", count, place).astype(float)
     # with double-precision values, times occur in single and in double precision, and the stated size may omit them
-    wide = raw[place + (8 + int(values[1])) * count :][:12].lstrip().startswith(_MARK)
+    after = place + (8 + int(values[1])) * count
+    wide = raw[after : after + 12].lstrip().startswith(_MARK)
     times = "f8" if wide else "f4"
     pairs = np.frombuffer(raw, [("x", f"{end}{times}"), ("y", f"{end}{values}")], count, place)
     return pairs["x"].astype(float), pairs["y"].astype(float)

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 
 import numpy as np
 
 from vibroimpact.cases.elastic.modes import BodyModes
 from vibroimpact.charts.chart import Chart, Panel
+from vibroimpact.charts.made import made_charts
 from vibroimpact.modes.plate_shapes import plate_panels
 from vibroimpact.modes.solid_shapes import solid_panels
 from vibroimpact.structures.modal_model import ModalModel
@@ -44,7 +46,7 @@ def mode_charts(modes: Mapping[str, BodyModes]) -> list[Chart]:
     >>> [(chart.name, len(chart.panels)) for chart in mode_charts(vi.compute_modes(case))]
     [('sphere_modes', 8)]
     """
-    return [_chart(name, body) for name, body in modes.items()]
+    return made_charts({f"{name}_modes": partial(_chart, name, body) for name, body in modes.items()})
 
 
 def is_plate(model: ModalModel) -> bool:

@@ -12,6 +12,7 @@ from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.elastic.modes import BodyModes
 from vibroimpact.charts.chart import Chart
+from vibroimpact.charts.made import made_scene
 from vibroimpact.modes.charts import MOST_SHAPES, is_plate
 from vibroimpact.modes.scene import mode_scene
 from vibroimpact.modes.tables import ROWS, body_facts, mode_table, rows_left_out
@@ -31,14 +32,18 @@ def modes_page(case: Case, modes: Mapping[str, BodyModes], charts: Sequence[Char
         The charts of these, as `mode_charts` returns them.
     """
     plate = next((body for body in modes.values() if is_plate(body.model)), None)
-    scene = None if plate is None else mode_scene(plate, min(MOST_SHAPES, len(plate.model.frequencies)))
+    scene: dict[str, Any] | None = None
+    lost: list[Chart] = []
+    if plate is not None:
+        scene, lost = made_scene(lambda: mode_scene(plate, min(MOST_SHAPES, len(plate.model.frequencies))))
     name = case.name or "a case"
     return render_page(
         __package__,
-        charts,
+        [*charts, *lost],
         scene,
         name=f"Modes of {name}",
         bodies=[_told(body, found) for body, found in modes.items()],
+        lost=lost,
         moving=[] if scene is None else [one["name"] for one in scene["modes"]],
         case=tomli_w.dumps(resolved_case(case)),
         version=__version__,

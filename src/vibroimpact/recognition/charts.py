@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
+from vibroimpact.charts.made import made_charts
 from vibroimpact.charts.marks import Bars, Level, Line, Map, Mark, Points
 from vibroimpact.charts.palette import series
 from vibroimpact.recognition.recognise import Recognition
@@ -36,17 +39,13 @@ def recognition_charts(found: Recognition) -> list[Chart]:
     >>> [chart.name for chart in recognition_charts(vi.recognise("falls", folds=2, seeds=1))][:2]
     ['scores', 'confusion']
     """
-    unseen = [_unseen_chart(found)] if found.unseen else []
-    fraction = [_fraction_chart(found)] if found.streams else []
-    return [
-        _scores_chart(found),
-        _confusion_chart(found),
-        *unseen,
-        _robustness_chart(found),
-        _reliability_chart(found),
-        _importance_chart(found),
-        *fraction,
-    ]
+    makers = {"scores": _scores_chart, "confusion": _confusion_chart}
+    if found.unseen:
+        makers["unseen"] = _unseen_chart
+    makers |= {"robustness": _robustness_chart, "reliability": _reliability_chart, "importance": _importance_chart}
+    if found.streams:
+        makers["fraction"] = _fraction_chart
+    return made_charts({name: partial(make, found) for name, make in makers.items()})
 
 
 def _scores_chart(found: Recognition) -> Chart:

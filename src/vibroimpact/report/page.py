@@ -17,6 +17,7 @@ from jinja2 import Environment, FunctionLoader, StrictUndefined, Template
 from markupsafe import Markup
 
 from vibroimpact.charts.chart import Chart
+from vibroimpact.charts.made import drawn
 from vibroimpact.charts.pack import pack
 from vibroimpact.charts.palette import DIVERGING, DIVERGING_ON_DARK, GRID, GROUND, INK, LOOKS, SOFT
 from vibroimpact.charts.plotly import plotly_chart
@@ -38,7 +39,7 @@ def render_page(package: str, charts: Sequence[Chart], scene: dict[str, Any] | N
     charts : sequence of Chart
         The charts.
     """
-    return render_drawn_page(package, [plotly_chart(chart) for chart in charts], scene, **values)
+    return render_drawn_page(package, [drawn(chart, plotly_chart) for chart in charts], scene, **values)
 
 
 def render_drawn_page(package: str, charts: Sequence[dict[str, Any]], scene: dict[str, Any] | None = None, **values: Any) -> str:

@@ -29,6 +29,7 @@ from vibroimpact.files.atomic_write import atomic_folder
 from vibroimpact.files.check_sums import CHECK_SUMS, DamageError, check_file, file_digest, read_sealed, sealed
 from vibroimpact.files.damaged_part import check_hdf5
 from vibroimpact.files.hdf5 import short_reason
+from vibroimpact.files.new_folders import made_folder
 from vibroimpact.files.recover import recover
 from vibroimpact.files.toml_reading import read_toml
 from vibroimpact.resolved_case import ResolvedCase
@@ -75,7 +76,7 @@ def new_folder(directory: str | PathLike[str], *, force: bool = False) -> Iterat
     check_free(target, force=force)
     with ExitStack() as stack:
         try:
-            target.parent.mkdir(parents=True, exist_ok=True)
+            stack.enter_context(made_folder(target.parent))
             working = stack.enter_context(atomic_folder(target, partial(check_free, target, force=force)))
         except OSError as error:
             raise InputError(f"{target}: the folder can't be made: {error.strerror}") from None

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from functools import partial
 
 from vibroimpact.charts.chart import Chart
+from vibroimpact.charts.made import made_charts
 from vibroimpact.results.result import Result
 from vibroimpact.runs.captions import caption
 from vibroimpact.runs.chart_data import contacts_with_duration, drawn_history
@@ -82,4 +83,4 @@ def run_charts(result: Result) -> list[Chart]:
     >>> [chart.name for chart in run_charts(vi.result_of(response))]
     ['position', 'force', 'velocity', 'acceleration', 'force_indentation', 'energy']
     """
-    return [make() for make in chart_makers(result).values()]
+    return made_charts(chart_makers(result))

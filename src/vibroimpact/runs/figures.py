@@ -7,6 +7,7 @@ from pathlib import Path
 
 from vibroimpact.charts.figures_folder import FIGURES as FIGURES
 from vibroimpact.charts.files import save_charts
+from vibroimpact.charts.made import SCENE, made_charts, warn_of_lost
 from vibroimpact.results.result import Result
 from vibroimpact.runs.animation import animate
 from vibroimpact.runs.charts import run_charts
@@ -32,7 +33,13 @@ def write_figures(
     progress : callable, optional
         Called with the fraction done.
     """
-    charts = [setup_chart(result), *run_charts(result)]
+    charts = [*made_charts({"setup": lambda: setup_chart(result)}), *run_charts(result)]
     save_charts(charts, directory, formats, progress)
-    if result.deflection is not None:
-        (directory / ANIMATION).write_bytes(animate(result))
+    if result.deflection is None:
+        return
+    try:
+        content = animate(result)
+    except Exception as error:
+        warn_of_lost(SCENE, error)
+        return
+    (directory / ANIMATION).write_bytes(content)

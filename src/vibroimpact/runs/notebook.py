@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from markupsafe import Markup
 
+from vibroimpact.charts.made import made_charts
 from vibroimpact.charts.notebook import plotly_figure
 from vibroimpact.errors import InputError, choices
 from vibroimpact.report.html_table import html_table
@@ -56,7 +57,7 @@ def plot_result(result: Result, name: str = "position") -> go.Figure:
     if name in sensors:
         sensor = sensors[name]
         return plotly_figure(sensor_chart(result, name, sensor, sensor_caption(result, sensor)))
-    charts = {chart.name: chart for chart in (setup_chart(result), *run_charts(result))}
+    charts = {chart.name: chart for chart in (*made_charts({"setup": lambda: setup_chart(result)}), *run_charts(result))}
     if name not in charts:
         known = [*(chart for chart in charts if not chart.startswith("sensor_")), *sensors]
         raise InputError(f"there is no chart {shown(name)} of this run; there are {choices(known, str(name))}")

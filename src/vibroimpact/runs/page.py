@@ -6,6 +6,7 @@ from pathlib import Path
 
 import tomli_w
 
+from vibroimpact.charts.made import made_charts, made_scene
 from vibroimpact.dynamics.energy import CLOSURE_LIMIT
 from vibroimpact.report.page import render_page
 from vibroimpact.resolved_case import ResolvedCase
@@ -43,11 +44,12 @@ def run_page(result: Result) -> str:
     unit, ledger = ledger_table(result)
     # the plate in motion takes the place of the maps of its deflection
     charts = [chart for chart in run_charts(result) if chart.name != "deflection"]
-    moving = result.deflection is not None
+    scene, lost = made_scene(lambda: scene_of(result)) if result.deflection is not None else (None, [])
+    charts += lost
     return render_page(
         __package__,
-        [setup_chart(result), *charts],
-        scene_of(result) if moving else None,
+        [*made_charts({"setup": lambda: setup_chart(result)}), *charts],
+        scene,
         name=result.name[:1].upper() + result.name[1:],
         status=result.status,
         failed=result.status.startswith("Failed"),
@@ -64,7 +66,7 @@ def run_page(result: Result) -> str:
         sentence=treatment_sentence(result),
         deformation=deformation_rows(result),
         sensors_left_out=sensors_left_out(result),
-        scene_caption=scene_caption(result) if moving else "",
+        scene_caption=scene_caption(result) if scene is not None else "",
         case=_case_text(result.case),
         doubts=result.doubts,
         provenance=result.provenance,

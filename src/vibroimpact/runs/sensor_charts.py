@@ -54,7 +54,10 @@ def sensor_chart(result: Result, chart: str, name: str, caption: str) -> Chart:
     range_words, levels = _range(result, name)
     line = Line(*drawn_signal(signal, first.start, first.stop))
     upper = Panel(plate_time(result), level, (spans_of_contact(result), line, *levels), f"{sensor.quantity.capitalize()}{range_words}")
-    return Chart(chart, f"Sensor {shortened(visible(name), 60)}", ((upper,), (_spectrum(result, name),)), caption, height=2.6)
+    rows: list[tuple[Panel, ...]] = [(upper,)]
+    if first.stop - first.start > 1:  # a slow sensor may have no sample between two touches
+        rows.append((_spectrum(result, name),))
+    return Chart(chart, f"Sensor {shortened(visible(name), 60)}", tuple(rows), caption, height=2.6)
 
 
 def _range(result: Result, name: str) -> tuple[str, tuple[Level, ...]]:

@@ -31,6 +31,8 @@ class Record:
         Time of the first sample [s].
     source : str, default ""
         The file that it was read from.
+    doubts : tuple of str, default ()
+        Warnings about the file, as sentences, such as that it is cut off.
 
     Raises
     ------
@@ -49,6 +51,7 @@ class Record:
     unit: str
     start: float = 0.0
     source: str = ""
+    doubts: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         value = real_numbers(self.value).astype(np.float64, copy=False)
@@ -61,6 +64,11 @@ class Record:
     def duration(self) -> float:
         """Number of samples over the rate [s]."""
         return len(self.value) / self.rate
+
+    @property
+    def named_doubts(self) -> tuple[str, ...]:
+        """The warnings about its file, each with the name of the file."""
+        return tuple(f"{self.source or self.name}: {doubt}" for doubt in self.doubts)
 
     @property
     def time(self) -> Floats:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from vibroimpact.calibration.bounces.rebounds import Rebounds
 from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.decimation import decimated
+from vibroimpact.charts.made import made_charts
 from vibroimpact.charts.marks import Band, Line, Mark, Points
 from vibroimpact.charts.palette import series
 
@@ -34,7 +37,8 @@ def bounce_charts(found: Rebounds) -> list[Chart]:
     >>> [chart.name for chart in vi.bounce_charts(vi.rebounds_of(heard))]
     ['record', 'restitution']
     """
-    return [_record_chart(found), _restitution_chart(found)]
+    makers = {"record": _record_chart, "restitution": _restitution_chart}
+    return made_charts({name: partial(make, found) for name, make in makers.items()})
 
 
 def _record_chart(found: Rebounds) -> Chart:

@@ -14,6 +14,7 @@ from vibroimpact.calibration.friction.intervals import bootstrap_intervals, prof
 from vibroimpact.calibration.friction.least_squares import Bounds, Minimum, Residuals, minimize
 from vibroimpact.calibration.friction.measured import ObliqueImpacts
 from vibroimpact.calibration.friction.parameters import FrictionParameters, ImpactModel, friction_parameters, impact_model
+from vibroimpact.calibration.noise import standard_deviations
 from vibroimpact.calibration.observations import Observations, with_noise_scale
 from vibroimpact.calibration.section import FRICTION
 from vibroimpact.dynamics.problem import Problem, StatesProblem
@@ -178,7 +179,7 @@ def calibrate_friction(
     seen, bounds = impacts.seen, parameters.bounds
     model, counted = impact_model(stated, parameters, impacts), dict.fromkeys(seen.wanted, 1.0) if weights is None else dict(weights)
     sizes = {
-        name: np.linalg.norm(seen.noise[name], axis=1) / (1.0 if seen.deviations_known else np.sqrt(weight))
+        name: standard_deviations(seen.noise[name]) / (1.0 if seen.deviations_known else np.sqrt(weight))
         for name, weight in counted.items()
     }
 

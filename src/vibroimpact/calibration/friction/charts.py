@@ -12,9 +12,11 @@ from vibroimpact.arrays import Floats
 from vibroimpact.calibration.friction.calibrate import FrictionCalibration
 from vibroimpact.calibration.friction.parameters import ImpactModel
 from vibroimpact.calibration.matchable import ALONG_PLATE
+from vibroimpact.calibration.noise import standard_deviations
 from vibroimpact.cases.reader import read_case
 from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
+from vibroimpact.charts.made import made_charts
 from vibroimpact.charts.marks import Line, Mark, Points
 from vibroimpact.dynamics.oblique.statement import SOLID_SPHERE
 from vibroimpact.runs.slip_map import moduli_ratio, slip_map
@@ -48,8 +50,7 @@ def friction_charts(found: FrictionCalibration) -> list[Chart]:
         `angle`: tangential restitution, rebound angle, and what else was measured, over the angle of incidence; `slip_map`, where the
         moduli of the materials are known.
     """
-    curves = _curves(found)
-    return [_angle_chart(found, curves), *_slip_charts(found, curves)]
+    return made_charts({"angle": lambda: _angle_chart(found, _curves(found)), "slip_map": lambda: _slip_chart(found, _curves(found))})
 
 
 def _angle_chart(found: FrictionCalibration, curves: list[Curve]) -> Chart:
@@ -64,7 +65,7 @@ def _angle_chart(found: FrictionCalibration, curves: list[Curve]) -> Chart:
         if name in impacts.measured:
             values, low, high = impacts.measured[name], None, None
             if name in found.weights and impacts.seen.deviations_known:
-                deviation = np.linalg.norm(impacts.seen.noise[name], axis=1)
+                deviation = standard_deviations(impacts.seen.noise[name])
                 low, high = values - deviation, values + deviation
             marks.append(Points(impacts.angle, values, "measured", "matched", impacts.seen.labels, low=low, high=high))
         panels.append(Panel(axis, Axis(f"{phrase[:1].upper()}{phrase[1:]}", unit), tuple(marks)))
@@ -75,13 +76,13 @@ def _angle_chart(found: FrictionCalibration, curves: list[Curve]) -> Chart:
     return Chart("angle", "Measured and computed over the angle of incidence", rows, caption, height=3.0)
 
 
-def _slip_charts(found: FrictionCalibration, curves: list[Curve]) -> list[Chart]:
-    """Return the dimensionless map of the impacts; none where its scale is not known."""
+def _slip_chart(found: FrictionCalibration, curves: list[Curve]) -> Chart | None:
+    """Return the dimensionless map of the impacts; None where its scale is not known."""
     law, source, model, impacts = found.parameters.with_values(found.values), found.problem.source, found.model, found.impacts
     ratio = moduli_ratio(law, None if source is None else read_case(source))
     scale, radius = float(law.coefficient) * ratio, float(found.problem.sphere.contact_offset)
     if not scale > 0.0:
-        return []
+        return None
     whole = 1.0 + 1.0 / SOLID_SPHERE  # of the change of the centre's velocity is that of the contact point
 
     def psi(one: ImpactModel, outcomes: Mapping[str, Floats], more: Floats | float = 0.0) -> tuple[Floats, Floats]:
@@ -97,11 +98,8 @@ def _slip_charts(found: FrictionCalibration, curves: list[Curve]) -> list[Chart]
     more = _measured_velocity(found, radius) - found.outcomes["separation_velocity_x"]
     marks.append(Points(*psi(model, found.outcomes, more), "measured", "matched", impacts.seen.labels))
     restitution = found.outcomes["separation_speed"] / impacts.seen.speeds
-    return [
-        slip_map(
-            marks, before, restitution, np.full(len(before), ratio), "Single impacts, measured, and computed with the fitted parameters."
-        )
-    ]
+    caption = "Single impacts, measured, and computed with the fitted parameters."
+    return slip_map(marks, before, restitution, np.full(len(before), ratio), caption)
 
 
 def _measured_velocity(found: FrictionCalibration, radius: float) -> Floats:

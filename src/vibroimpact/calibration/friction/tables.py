@@ -11,6 +11,7 @@ from vibroimpact._version import __version__
 from vibroimpact.arrays import Floats
 from vibroimpact.calibration.friction.calibrate import FrictionCalibration
 from vibroimpact.calibration.matchable import ALONG_PLATE
+from vibroimpact.calibration.noise import standard_deviations
 from vibroimpact.calibration.report import Cells, shortened
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.case import Case
@@ -147,7 +148,7 @@ def friction_rows(found: FrictionCalibration) -> list[dict[str, Any]]:
 
 
 def _deviations(found: FrictionCalibration, name: str) -> Floats:
-    return np.asarray(np.linalg.norm(found.impacts.seen.noise[name], axis=1))
+    return standard_deviations(found.impacts.seen.noise[name])
 
 
 def _interval_words(interval: Floats, ends: Floats, unit: str) -> str:

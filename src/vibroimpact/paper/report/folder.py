@@ -12,6 +12,7 @@ from typing import Any
 
 from vibroimpact._version import __version__
 from vibroimpact.charts.figures_folder import FIGURES
+from vibroimpact.charts.made import LostChart, drawn
 from vibroimpact.charts.pack import pack, unpack
 from vibroimpact.charts.plotly import plotly_chart
 from vibroimpact.errors import InputError
@@ -244,13 +245,14 @@ def _write_part(part: ReportPart, runs: Runs, folder: Path) -> None:
     def write(working: Path) -> None:
         for name in (_PARTS, FIGURES):
             (working / name).mkdir()
-        table: dict[str, Any] = {"version": __version__, "title": rendered.title, "text": rendered.text, "rows": rendered.rows}
+        version = "" if isinstance(rendered.chart, LostChart) else __version__  # so that a part whose chart is lost is made anew
+        table: dict[str, Any] = {"version": version, "title": rendered.title, "text": rendered.text, "rows": rendered.rows}
         if rendered.chart is not None:
             from vibroimpact.charts.files import save_charts  # here, as it imports matplotlib, which `report` does without
 
             save_charts([rendered.chart], working / FIGURES)
             file = _chart_file(working, part.name)
-            file.write_bytes(pack(plotly_chart(rendered.chart)))
+            file.write_bytes(pack(drawn(rendered.chart, plotly_chart)))
             table[CHECK_SUMS] = {file.name: file_digest(file)}
         _file(working, part.name).write_text(sealed(table), encoding="utf-8")
 

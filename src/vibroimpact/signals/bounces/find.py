@@ -184,7 +184,9 @@ def _checked(record: Record) -> tuple[str, ...]:
     if clipped > _OVERDRIVEN:
         part = f"{100.0 * clipped:.2g} % of its samples are at its largest or lowest value"
         raise InputError(f"it is clipped: {part}; record it at a lower gain")
-    return (f"{100.0 * clipped:.2g} % of the samples are clipped, at the largest or the lowest value",) if clipped else ()
+    if not clipped:
+        return record.doubts
+    return (*record.doubts, f"{100.0 * clipped:.2g} % of the samples are clipped, at the largest or the lowest value")
 
 
 def _reasons(found: Touches, time: Floats, chain: Indices, others: Indices) -> tuple[str, ...]:

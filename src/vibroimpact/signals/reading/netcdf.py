@@ -18,11 +18,13 @@ from vibroimpact.files.reading import FileKind, beginning, with_path
 from vibroimpact.signals.reading.equal_steps import rate_of
 from vibroimpact.signals.reading.si_units import in_si
 from vibroimpact.signals.record import Record
+from vibroimpact.structures.free_memory import check_memory
 
 NETCDF = FileKind("a NetCDF file holds variables with a dimension of time", 1_000_000_000_000, "split it")
 """Requirements on a NetCDF file."""
 
 _SECONDS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "second": 1.0, "seconds": 1.0}
+_COPIES = 3  # of samples, while they are converted
 _AT_ONCE = 2**22
 """Samples that are read at once."""
 
@@ -70,6 +72,7 @@ def _signals(file: h5py.File) -> Iterator[tuple[h5py.Dataset, float, float]]:
             second = _SECONDS.get(_text(scale.attrs.get("units", "")))
             if second is None or len(scale) < 2:
                 continue
+            check_memory(_COPIES * 8.0 * len(scale), f"the times of variable {name} need", NETCDF.smaller)
             time = second * read_array(scale).astype(float)
             try:
                 said = data.attrs.get("rate_Hz", data.parent.attrs.get("rate_Hz"))
@@ -87,6 +90,7 @@ def _records(data: h5py.Dataset, rate: float, start: float) -> Iterator[Record]:
     except InputError as error:
         raise InputError(f"variable {name}: {error.message}") from None
     *outer, samples = data.shape
+    check_memory(_COPIES * 8.0 * max(samples * prod(outer[1:]), 1), f"the signals of variable {name} need", NETCDF.smaller)
     if not outer:
         yield Record(name, factor * read_array(data), rate, unit, start)
         return

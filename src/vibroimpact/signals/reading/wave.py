@@ -1,25 +1,35 @@
-"""Records from WAV files: integers of 8 to 32 bits as parts of full scale, and floating-point numbers as they are."""
+"""Records from WAV files: integers of 8 to 64 bits as parts of full scale, and floating-point numbers as they are.
+
+The header is read first; the samples follow in blocks, for as many channels at once as need little memory.
+"""
 
 from __future__ import annotations
 
-import re
-import warnings
 from collections.abc import Iterator
-from io import BytesIO
+from io import FileIO
+from math import isfinite
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
+from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError
-from vibroimpact.files.reading import FileKind, read_bytes, with_path
+from vibroimpact.files.reading import FileKind, opened, with_path
+from vibroimpact.shown import shown
 from vibroimpact.signals.reading.si_units import in_si
-from vibroimpact.signals.record import Record
+from vibroimpact.signals.reading.wave_header import FullScale, WaveHeader, read_wave_header
+from vibroimpact.signals.record import Record, checked_rate
+from vibroimpact.structures.free_memory import check_memory
 
 WAVE = FileKind("a WAV file begins with RIFF", 4_300_000_000, "keep the part with the impacts")
 """Requirements on a WAV file."""
 
-_SCALE = re.compile(rb"ICMT....1\.0 is ([-+.e\d]+) (\S+) \((?:.*? of )?(.*?)\)\0", re.DOTALL)
-"""The comment of this program, which says what 1.0 is."""
+_BLOCK = 2**22
+"""Bytes that are read at once."""
+
+_TOGETHER = 2**28
+"""Bytes of the samples of channels that are read together."""
 
 
 def wave_records(path: Path) -> Iterator[Record]:
@@ -28,38 +38,81 @@ def wave_records(path: Path) -> Iterator[Record]:
     Raises
     ------
     InputError
-        If the file can't be read.
+        If the file can't be read, or has no samples.
     """
-    from scipy.io import wavfile
-
     try:
-        raw = read_bytes(path, WAVE)
+        with opened(path, WAVE) as file:
+            header = read_wave_header(file)
+            factor, unit, name = _scale(header.full_scale, path.stem)
+            checked_rate(header.rate)
+            if not header.samples:
+                raise InputError("there are no samples in this WAV file")
+            doubts = _doubts(header)
+            check_memory(8.0 * header.samples, "the samples of a channel need", WAVE.smaller)
+            together = max(1, _TOGETHER // (8 * header.samples))
+            for first in range(0, header.channels, together):
+                channels = range(first, min(first + together, header.channels))
+                for number, value in zip(channels, _samples(file, header, channels), strict=True):
+                    title = name if header.channels == 1 else f"{name} {number + 1}"
+                    with np.errstate(over="ignore", invalid="ignore"):  # of floating-point numbers that are no sound
+                        value *= factor
+                    yield Record(title, value, float(header.rate), unit, doubts=doubts)
     except InputError as error:
         raise with_path(path, error) from None
-    if not raw.startswith((b"RIFF", b"RIFX", b"RF64")):
-        raise InputError(f"{path}: this is no WAV file; {WAVE.what}")
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # of chunks that are no sound
-            rate, samples = wavfile.read(BytesIO(raw))
-    except Exception:  # of many types, by what is damaged
-        raise InputError(f"{path}: the WAV file is damaged, or holds no samples of 8 to 64 bits without compression") from None
-    said = _SCALE.search(raw, max(0, len(raw) - 1000))
-    try:
-        factor, unit = in_si(said[2].decode("ascii", "replace")) if said else (1.0, "1")
-    except InputError as error:
-        raise with_path(path, error) from None
-    scale = factor * float(said[1]) if said else 1.0
-    channels = samples.reshape(len(samples), -1).T
-    for number, channel in enumerate(channels, 1):
-        name = said[3].decode("utf-8", "replace") if said else path.stem
-        yield Record(name if len(channels) == 1 else f"{name} {number}", _full_scale(channel) * scale, float(rate), unit)
 
 
-def _full_scale(values: np.ndarray) -> np.ndarray:
-    """Return samples with full scale as 1; those of 8 bits are around 128, those of 24 bits come as 32 bits."""
-    if values.dtype.kind == "f":
-        return values.astype(float)
-    if values.dtype.kind == "u":
-        return (values.astype(float) - 128.0) / 128.0
-    return values.astype(float) / 2.0 ** (8 * values.dtype.itemsize - 1)
+def _scale(full_scale: FullScale | None, stem: str) -> tuple[float, str, str]:
+    """Return the value of full scale in SI, the unit, and the name of the channels."""
+    if full_scale is None:
+        return 1.0, "1", stem
+    value, unit, name = (part.decode("utf-8", "replace") for part in full_scale)
+    factor, si_unit = in_si(unit)
+    try:
+        number = float(value)
+    except ValueError:
+        number = np.nan
+    if not isfinite(number) or number == 0.0:
+        raise InputError(f"by its comment 1.0 is {shown(value)} {unit}; it must be a finite number other than 0, such as 2.5 {unit}")
+    return factor * number, si_unit, name
+
+
+def _doubts(header: WaveHeader) -> tuple[str, ...]:
+    if header.samples >= header.stated:
+        return ()
+    return (f"the file is cut off: it has {header.samples:,} of the {header.stated:,} samples of a channel that its header states",)
+
+
+def _samples(file: FileIO, header: WaveHeader, channels: range) -> Floats:
+    """Return the samples of some channels, (channels, samples), with full scale as 1."""
+    found = np.empty((len(channels), header.samples))
+    frame = header.channels * header.width
+    step = max(1, _BLOCK // frame)
+    for first in range(0, header.samples, step):
+        number = min(step, header.samples - first)
+        file.seek(header.start + first * frame)
+        raw = file.read(number * frame) or b""
+        if len(raw) < number * frame:
+            raise InputError("the file became shorter while it was read")
+        block = np.frombuffer(raw, dtype=np.uint8).reshape(number, header.channels, header.width)
+        found[:, first : first + number] = _full_scale(block[:, channels.start : channels.stop], header).T
+    return found
+
+
+def _full_scale(block: NDArray[np.uint8], header: WaveHeader) -> Floats:
+    """Return samples, given by their bytes (frames, channels, width), with full scale as 1."""
+    if header.floating:
+        return _numbers(block, f"{header.order}f{header.width}")
+    if header.width == 1:  # unsigned, as no other width is
+        return (block[:, :, 0].astype(float) - 128.0) / 128.0
+    size = 2 if header.width == 2 else 4 if header.width <= 4 else 8
+    padded = np.zeros((*block.shape[:2], size), dtype=np.uint8)  # the missing bytes are the lowest
+    if header.order == "<":
+        padded[:, :, size - header.width :] = block
+    else:
+        padded[:, :, : header.width] = block
+    return _numbers(padded, f"{header.order}i{size}") / 2.0 ** (8 * size - 1)
+
+
+def _numbers(block: NDArray[np.uint8], kind: str) -> Floats:
+    with np.errstate(invalid="ignore"):  # of bytes that are no floating-point number
+        return np.ascontiguousarray(block).view(kind)[:, :, 0].astype(float)

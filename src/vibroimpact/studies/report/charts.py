@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable
+from functools import cache, partial
 
 import numpy as np
 
 from vibroimpact.charts.chart import Chart
+from vibroimpact.charts.made import made_charts
 from vibroimpact.studies.report.axes import StudyAxis, study_axes
 from vibroimpact.studies.report.curves import MOST_LINES, impact_curves, level_curves
 from vibroimpact.studies.report.drops import drawn_groups
@@ -17,9 +19,11 @@ from vibroimpact.studies.report.over_axes import MOST_AXES, over_axes_chart
 from vibroimpact.studies.report.restitution import restitution_chart
 from vibroimpact.studies.report.sensitivity import Sensitivity, sensitivity_of
 from vibroimpact.studies.report.sensitivity_chart import sensitivity_chart
-from vibroimpact.studies.report.signals import signal_charts
+from vibroimpact.studies.report.signals import signal_makers
 from vibroimpact.studies.report.slip_chart import slip_chart
 from vibroimpact.studies.study import Study
+
+_Maker = Callable[[], Chart | None]
 
 _MOST_RESULTS = 6  # of a chart of the sensitivity
 
@@ -61,37 +65,44 @@ def study_charts(study: Study, outputs: list[Output] | None = None, found: Sensi
         found = sensitivity_of(study, [one for one in outputs if one.is_informative])
     drawn = drawn_outputs(outputs)
     axes = [axis for axis in study_axes(study) if (len(axis.values) > 1 if study.is_grid else axis.varies)]
-    charts: list[Chart | None] = []
+    makers: dict[str, _Maker] = {}
     if drawn and axes:
-        charts += _of_grid(study, axes, drawn, found) if study.is_grid else _of_samples(study, axes, drawn)
-    charts += [restitution_chart(study), slip_chart(study)]
+        makers |= _of_grid(study, axes, drawn, found) if study.is_grid else _of_samples(study, axes, drawn)
+    makers |= {"restitution": partial(restitution_chart, study), "slip_map": partial(slip_chart, study)}
     if found is not None:
-        charts.append(sensitivity_chart(study, found, drawn[:_MOST_RESULTS]))
-    return [*(chart for chart in charts if chart is not None), *signal_charts(study)]
+        makers["sensitivity"] = partial(sensitivity_chart, study, found, drawn[:_MOST_RESULTS])
+    return made_charts(makers | signal_makers(study))
 
 
-def _of_grid(study: Study, axes: list[StudyAxis], drawn: list[Output], found: Sensitivity | None) -> Iterator[Chart]:
+def _of_grid(study: Study, axes: list[StudyAxis], drawn: list[Output], found: Sensitivity | None) -> dict[str, _Maker]:
     if len(axes) == 1:
-        yield impact_curves(study, axes[0], drawn)
-        return
+        return {"curves": partial(impact_curves, study, axes[0], drawn)}
     first, second = _two_axes(axes, drawn, found)
     # lines for names rather than numbers, and for the fewer levels
     each = min((first, second), key=lambda axis: (len(axis.values) > MOST_LINES, axis.numeric, len(axis.values)))
+    makers: dict[str, _Maker] = {}
     if len(each.values) <= MOST_LINES:
-        yield level_curves(study, axes, drawn, second if each is first else first, each)
+        makers["curves"] = partial(level_curves, study, axes, drawn, second if each is first else first, each)
     else:
-        yield maps_chart(study, axes, drawn, first, second)
-    if len(axes) > 2:
-        groups = drawn_groups(study, axes, drawn)
-        yield from (over_axes_chart(study, axes, output, groups) for output in drawn)
+        makers["maps"] = partial(maps_chart, study, axes, drawn, first, second)
+    return makers | (_over_axes(study, axes, drawn) if len(axes) > 2 else {})
 
 
-def _of_samples(study: Study, axes: list[StudyAxis], drawn: list[Output]) -> Iterator[Chart]:
+def _of_samples(study: Study, axes: list[StudyAxis], drawn: list[Output]) -> dict[str, _Maker]:
+    makers: dict[str, _Maker] = {}
     if independent_drops(study) >= FEWEST and study.design != "zip":
-        yield inputs_chart(study, axes[:MOST_AXES])
-        yield outputs_chart(study, drawn)
-    groups = drawn_groups(study, axes, drawn)
-    yield from (over_axes_chart(study, axes, output, groups) for output in drawn)
+        makers["inputs"] = partial(inputs_chart, study, axes[:MOST_AXES])
+        makers["outputs"] = partial(outputs_chart, study, drawn)
+    return makers | _over_axes(study, axes, drawn)
+
+
+def _over_axes(study: Study, axes: list[StudyAxis], drawn: list[Output]) -> dict[str, _Maker]:
+    groups = cache(partial(drawn_groups, study, axes, drawn))
+
+    def chart_of(output: Output) -> Chart:
+        return over_axes_chart(study, axes, output, groups())
+
+    return {output.name: partial(chart_of, output) for output in drawn}
 
 
 def _two_axes(axes: list[StudyAxis], drawn: list[Output], found: Sensitivity | None) -> tuple[StudyAxis, StudyAxis]:

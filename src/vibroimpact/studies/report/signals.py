@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
 
 import numpy as np
 
@@ -31,13 +32,11 @@ _FEW = 5
 _FINEST = 2500  # columns of a line that is drawn
 
 
-def signal_charts(study: Study) -> Iterator[Chart]:
-    """Yield the charts of the signals of the first sensors."""
+def signal_makers(study: Study) -> dict[str, Callable[[], Chart | None]]:
+    """Return what makes the charts of the signals of the first sensors, by the names of the charts."""
     sensors = [name.removeprefix(SIGNAL) for name in study.shapes if name.startswith(SIGNAL)]
-    for sensor, plain_name in list(plain_names(sensors).items())[:MOST]:
-        chart = _signal_chart(study, sensor, f"signal_{plain_name}")
-        if chart is not None:
-            yield chart
+    names = {sensor: f"signal_{plain_name}" for sensor, plain_name in list(plain_names(sensors).items())[:MOST]}
+    return {name: partial(_signal_chart, study, sensor, name) for sensor, name in names.items()}
 
 
 def _signal_chart(study: Study, sensor: str, name: str) -> Chart | None:

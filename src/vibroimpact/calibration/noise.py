@@ -1,0 +1,96 @@
+"""Noise of measured impacts: what each independent source contributes to each impact, as sparse matrices.
+
+A source reaches one or two neighbouring impacts, so that everything here is linear in the number of impacts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, TypeAlias
+
+import numpy as np
+from scipy.linalg import cholesky_banded, solve_banded
+from scipy.sparse import coo_array, csr_array, diags_array, hstack, vstack
+from scipy.sparse.csgraph import reverse_cuthill_mckee
+
+from vibroimpact.arrays import Floats
+
+Noise: TypeAlias = Any
+"""A sparse array (n, m): the contributions of m sources of unit variance to n impacts."""
+
+
+def as_noise(contributions: Any) -> Noise:
+    """Return contributions (n, m), dense or sparse, as a sparse array."""
+    return csr_array(contributions)
+
+
+def no_noise(impacts: int, sources: int) -> Noise:
+    """Return the noise of exact values."""
+    return csr_array((impacts, sources))
+
+
+def own_noise(deviations: Mapping[str, Floats]) -> dict[str, Noise]:
+    """Return the noise of quantities that are read independently, by their standard deviations (n,) at each impact.
+
+    Examples
+    --------
+    >>> found = own_noise({"max_force": np.array([1.0, 2.0]), "duration": np.array([0.1, 0.2])})
+    >>> found["duration"].toarray().tolist()
+    [[0.0, 0.0, 0.1, 0.0], [0.0, 0.0, 0.0, 0.2]]
+    """
+    names = list(deviations)
+    impacts = len(deviations[names[0]])
+    noise = {}
+    for place, name in enumerate(names):
+        before = no_noise(impacts, place * impacts)
+        after = no_noise(impacts, (len(names) - 1 - place) * impacts)
+        noise[name] = csr_array(hstack([before, diags_array(deviations[name]), after]))
+    return noise
+
+
+def scaled(factors: Floats, noise: Noise) -> Noise:
+    """Return noise with the contributions to each impact multiplied by a factor, (n,)."""
+    return csr_array(diags_array(factors) @ noise)
+
+
+def of_the_impact_before(noise: Noise) -> Noise:
+    """Return noise that each impact takes from the one before it; the first has none."""
+    return csr_array(vstack([no_noise(1, noise.shape[1]), noise[:-1]]))
+
+
+def standard_deviations(noise: Noise) -> Floats:
+    """Return the standard deviation at each impact, (n,).
+
+    Examples
+    --------
+    >>> standard_deviations(as_noise([[3.0, 4.0], [0.0, 1.0]])).tolist()
+    [5.0, 1.0]
+    """
+    return np.asarray(np.sqrt((noise * noise).sum(axis=1)), dtype=float)
+
+
+def whitened(noise: Noise, columns: Floats) -> Floats:
+    r"""Return columns (n, k) times the inverse of a root of the covariance of their noise, which is then independent; in another order.
+
+    The covariance :math:`N N^T` is ordered into a narrow band, in which its Cholesky factor stays.
+
+    Raises
+    ------
+    numpy.linalg.LinAlgError
+        If a value has no noise.
+
+    Examples
+    --------
+    >>> sorted(whitened(as_noise([[2.0, 0.0], [0.0, 4.0]]), np.array([[1.0], [1.0]])).ravel().tolist())
+    [0.25, 0.5]
+    """
+    covariance = csr_array(noise @ noise.T)
+    order = reverse_cuthill_mckee(covariance, symmetric_mode=True)
+    inside = coo_array(covariance[order][:, order])
+    below = inside.row - inside.col
+    width = int(below.max(initial=0))
+    band = np.zeros((width + 1, len(order)))
+    lower = below >= 0
+    band[below[lower], inside.col[lower]] = inside.data[lower]
+    root = cholesky_banded(band, lower=True, overwrite_ab=True)
+    return np.asarray(solve_banded((width, 0), root, columns[order]))
