@@ -75,7 +75,7 @@ def replace_variable(file: h5py.File, name: str, values: Any) -> None:
 
 def test_a_study_is_verified_before_it_is_opened(tmp_path: Path) -> None:
     place = write_knocks(tmp_path / "data", **TINY)
-    (place / "summary.json").write_text(sealed({CHECK_SUMS: {"dataset.nc": "0" * 64}}))
+    (place / "summary.json").write_bytes(sealed({CHECK_SUMS: {"dataset.nc": "0" * 64}}))
     with pytest.raises(vi.InputError, match=r"dataset\.nc: the file is damaged, or was changed after it was written"):
         vi.read_labelled_signals(place)
 

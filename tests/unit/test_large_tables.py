@@ -11,8 +11,6 @@ import pytest
 import attack
 import vibroimpact as vi
 from support import plain_case
-from vibroimpact.calibration.interpolated_impacts import MANY, InterpolatedImpacts
-from vibroimpact.calibration.single_impacts import single_impacts
 
 
 def calibrated(case: dict[str, Any]) -> None:
@@ -36,22 +34,3 @@ def test_a_start_out_of_proportion(law: str) -> None:
     section = {"model": {"law": law, "restitution": 2e-11}, "target": {"restitution": 0.7}}
     case = plain_case(contact={"law": "newton", "restitution": 0.7}, run={"impacts": 1}, calibrate=section)
     assert attack.failures(calibrated, [case]) == ""
-
-
-def test_interpolated_impacts_are_the_computed_ones() -> None:
-    problem = vi.read_case(plain_case(contact={"law": "hunt-crossley", "restitution": 0.7})).to_problem()
-    law = problem.laws[0]
-
-    def respond(speeds: np.ndarray, values: np.ndarray) -> dict[str, np.ndarray]:
-        computed.append(len(speeds))
-        return single_impacts(problem, law.changed({"restitution": values}), speeds)
-
-    computed: list[int] = []
-    random = np.random.default_rng(2)
-    speeds, values = random.uniform(2.0, 6.0, MANY), random.uniform(0.5, 0.9, MANY)
-    found = InterpolatedImpacts(respond, 0.7)(speeds, values)
-    assert sum(computed) < MANY
-    some = slice(0, MANY, 50)
-    expected = respond(speeds[some], values[some])
-    for name, value in found.items():
-        assert np.allclose(value[some], expected[name], rtol=1e-8, atol=0.0), name

@@ -74,7 +74,7 @@ def save_calibration(
     with new_folder(directory, force=force) as folder:
         (folder / "case.toml").write_text(tomli_w.dumps(resolved_case(told.calibrated)), encoding="utf-8")
         table = {**told.document, CHECK_SUMS: {"case.toml": file_digest(folder / "case.toml")}}
-        (folder / CALIBRATION).write_text(sealed(table), encoding="utf-8")
+        (folder / CALIBRATION).write_bytes(sealed(table))
         summary = {"name": case.name, "version": __version__, "calibration": told.parameter}
         (folder / SUMMARY).write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")
         for name, rows in told.tables.items():

@@ -8,7 +8,6 @@ from typing import Literal
 import numpy as np
 
 from vibroimpact.arrays import Floats, Indices
-from vibroimpact.calibration.interpolated_impacts import MANY, InterpolatedImpacts
 from vibroimpact.calibration.matching import Tunable
 from vibroimpact.calibration.single_impacts import batched_law, single_impacts
 from vibroimpact.contact.law import ContactLaw, unit_of
@@ -55,14 +54,7 @@ def law_parameter(problem: Problem, name: str | None = None) -> Tunable:
     given = np.array([float(getattr(law, chosen)) for law in laws])
     start = _start(float(given[0]), told["example"])
 
-    def respond_of_first(speeds: Floats, values: Floats) -> dict[str, Floats]:
-        return single_impacts(problem, first.changed({chosen: values}), speeds)
-
-    of_first = InterpolatedImpacts(respond_of_first, start)
-
     def respond(speeds: Floats, values: Floats, which: Indices) -> dict[str, Floats]:
-        if not problem.vibrates and len(speeds) >= MANY and not which.any():
-            return of_first(speeds, values)
         law = batched_law(laws, int(which.max()) + 1)
         return single_impacts(problem, law.take(which).changed({chosen: values}), speeds)
 

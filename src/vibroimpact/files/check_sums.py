@@ -36,9 +36,13 @@ def digest(content: Any) -> str:
     return hashlib.sha256(json.dumps(content, sort_keys=True, default=_plain).encode()).hexdigest()
 
 
-def sealed(table: Mapping[str, Any]) -> str:
-    """Return a table as JSON text that includes its own checksum."""
-    return json.dumps({**table, SHA256: digest(table)}, indent=2, allow_nan=False) + "\n"
+def sealed(table: Mapping[str, Any]) -> bytes:
+    """Return a table as JSON in UTF-8 that includes its own checksum."""
+    text = bytearray()
+    # by parts, as json.dumps keeps millions of them for a table of many rows
+    for characters in json.JSONEncoder(indent=2, allow_nan=False).iterencode({**table, SHA256: digest(table)}):
+        text += characters.encode()
+    return bytes(text + b"\n")
 
 
 def read_sealed(path: Path, kind: FileKind = JSON_TABLE) -> dict[str, Any]:

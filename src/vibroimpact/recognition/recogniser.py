@@ -188,7 +188,7 @@ def save_recogniser(recogniser: Recogniser, folder: Path) -> None:
     """Write the graph and the card into an existing folder."""
     (folder / GRAPH).write_bytes(recogniser.graph)
     card = {**recogniser.card, CHECK_SUMS: {GRAPH: file_digest(folder / GRAPH)}}
-    (folder / CARD).write_text(sealed(card), encoding="utf-8")
+    (folder / CARD).write_bytes(sealed(card))
 
 
 def load_recogniser(directory: str | PathLike[str]) -> Recogniser:

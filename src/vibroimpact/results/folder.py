@@ -131,7 +131,7 @@ def write_result(result: Result, directory: Path) -> None:
     write_impacts(result.impacts, directory / "impacts.csv")
     write_groups(result, directory / NETCDF)
     check_sums = {name: file_digest(directory / name) for name in (CASE, NETCDF) if (directory / name).is_file()}
-    (directory / SUMMARY).write_text(sealed({**summary_of(result), CHECK_SUMS: check_sums}), encoding="utf-8")
+    (directory / SUMMARY).write_bytes(sealed({**summary_of(result), CHECK_SUMS: check_sums}))
     write_signal_files(result.signals, directory / "sensors")
 
 

@@ -122,7 +122,7 @@ def _create(folder: Path, sweep: Sweep, memory: float, *, force: bool) -> None:
         (working / STUDY).write_text(study_toml(sweep.whole_table), encoding="utf-8")
         (working / FOLDER).mkdir()
         make_ledger(working, _facts(sweep), sweep.size, chunk_size(sweep, memory))
-        (working / SUMMARY).write_text(sealed(_summary(sweep)), encoding="utf-8")
+        (working / SUMMARY).write_bytes(sealed(_summary(sweep)))
 
 
 def _summary(sweep: Sweep) -> dict[str, Any]:

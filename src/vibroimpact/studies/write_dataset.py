@@ -98,7 +98,7 @@ def write_dataset(
                 failures |= {chunk.first + place: reason for place, reason in result.failures.items()}
             _write_failures(file, failures)
         content = {**summary, CHECK_SUMS: {DATASET: file_digest(working)}}
-        write_file(folder / SUMMARY, sealed(content).encode())  # before the dataset appears, so that it always has a checksum
+        write_file(folder / SUMMARY, sealed(content))  # before the dataset appears, so that it always has a checksum
 
 
 def as_text(value: Any) -> Any:

@@ -254,7 +254,7 @@ def _write_part(part: ReportPart, runs: Runs, folder: Path) -> None:
             file = _chart_file(working, part.name)
             file.write_bytes(pack(drawn(rendered.chart, plotly_chart)))
             table[CHECK_SUMS] = {file.name: file_digest(file)}
-        _file(working, part.name).write_text(sealed(table), encoding="utf-8")
+        _file(working, part.name).write_bytes(sealed(table))
 
     try:
         write_into(folder, write)
