@@ -50,7 +50,7 @@ def signals(tiny_models: Path) -> vi.LabelledSignals:
         (lambda file: replace_variable(file, "class", ["coal"] * 36), "class is of the type object; number each class with whole numbers"),
         (lambda file: replace_variable(file, "rock", np.full(36, 1.5)), "rock of signal 0 is 1.5; it must be a whole number"),
         (lambda file: replace_variable(file, "rock", np.zeros(35)), r"rock is of the shape \(35,\); it must have a value"),
-        (lambda file: file["class"].attrs.update(flag_values=["a", "b"]), "flag_values of the variable class is .'a', 'b'."),
+        (lambda file: file["class"].attrs.update(flag_values=["a", "b"]), r'flag_values of the variable class is \["a", "b"\]'),
         (lambda file: file["class"].attrs.update(flag_meanings="coal coal"), 'flag_meanings of the variable class is "coal coal"'),
     ],
 )  # fmt: skip
@@ -93,7 +93,7 @@ def change_card(model: Path, tmp_path: Path, **changes: Any) -> Path:
     place = tmp_path / "model"
     place.mkdir()
     (place / "model.onnx").write_bytes((model / "model.onnx").read_bytes())
-    (place / "card.json").write_text(sealed({**read_sealed(model / "card.json"), **changes}))
+    (place / "card.json").write_bytes(sealed({**read_sealed(model / "card.json"), **changes}))
     return place
 
 

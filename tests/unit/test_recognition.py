@@ -529,7 +529,7 @@ def change_card(saved: Path, tmp_path: Path, **changes: Any) -> Path:
     place = tmp_path / "model"
     place.mkdir()
     (place / "model.onnx").write_bytes((saved / "model" / "model.onnx").read_bytes())
-    (place / "card.json").write_text(sealed({**read_sealed(saved / "model" / "card.json"), **changes}))
+    (place / "card.json").write_bytes(sealed({**read_sealed(saved / "model" / "card.json"), **changes}))
     return place
 
 

@@ -302,7 +302,8 @@ def test_the_result_of_a_run_is_not_added_to(tmp_path: Path, theory: vi.Response
 def test_unknown_parts_are_told_before_anything_is_made(tmp_path: Path) -> None:
     with pytest.raises(vi.InputError) as refused:
         reproduce_paper(tmp_path / "paper", ["table1", "tabel2"])
-    assert str(refused.value) == f'there is no part "tabel2"; there are {", ".join(PARTS)}. Did you mean "table2"?'
+    assert str(refused.value).startswith('there is no part "tabel2"; there are table2, table1, section3.1, ')
+    assert str(refused.value).endswith('. Did you mean "table2"?')
     with pytest.raises(vi.InputError, match="name at least one of table1, "):
         reproduce_paper(tmp_path / "paper", [])
     assert not list(tmp_path.iterdir())
@@ -384,7 +385,7 @@ def with_half_a_chart(chart: Path) -> None:
 def as_of_an_earlier_version(chart: Path) -> None:
     """The charts were files alone."""
     part = chart.with_suffix(".json")
-    part.write_text(sealed({key: value for key, value in read_sealed(part).items() if key != "check_sums"}), encoding="utf-8")
+    part.write_bytes(sealed({key: value for key, value in read_sealed(part).items() if key != "check_sums"}))
 
 
 @pytest.mark.parametrize("damage", [without_chart, with_another_chart, with_half_a_chart, as_of_an_earlier_version])

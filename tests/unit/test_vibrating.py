@@ -80,7 +80,7 @@ def test_columns_of_a_history_are_the_same_alone() -> None:
             assert tuple(found) == columns
             for name in columns:
                 np.testing.assert_array_equal(found[name], expected[name])
-    with pytest.raises(vi.InputError, match=r"no column 'force_kN'; it has time_s, position_m.*\. Did you mean \"force_N\"\?"):
+    with pytest.raises(vi.InputError, match=r"no column 'force_kN'; it has force_N, time_s, position_m.*\. Did you mean \"force_N\"\?"):
         response.history(columns=["force_kN"])
 
 

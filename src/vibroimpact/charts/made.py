@@ -18,10 +18,6 @@ SCENE = "plate_in_motion"
 """Name of the chart that stands for a plate in motion that can't be drawn."""
 
 
-class LostChart(Chart):
-    """What stands in the place of a chart that could not be drawn."""
-
-
 def made_charts(makers: Mapping[str, Callable[[], Chart | None]]) -> list[Chart]:
     """Return charts, each as its function makes it; one that raises is replaced by one that says why, with a `ChartWarning`.
 
@@ -33,7 +29,8 @@ def made_charts(makers: Mapping[str, Callable[[], Chart | None]]) -> list[Chart]
     Examples
     --------
     >>> import warnings
-    >>> with warnings.catch_warnings(record=True) as told:
+    >>> with warnings.catch_warnings():
+    ...     warnings.simplefilter("ignore")
     ...     (lost,) = made_charts({"force": lambda: [][0], "energy": lambda: None})
     >>> lost.name, lost.subtitle
     ('force', 'This chart could not be drawn: IndexError: list index out of range')
@@ -73,7 +70,7 @@ def warn_of_lost(name: str, error: Exception) -> str:
     return reason
 
 
-def _lost(name: str, title: str, error: Exception) -> LostChart:
+def _lost(name: str, title: str, error: Exception) -> Chart:
     words = f"This chart could not be drawn: {warn_of_lost(name, error)}"
     blank = Panel(Axis(), Axis(), (), picture=True)
-    return LostChart(name, title, ((blank,),), height=_HEIGHT, subtitle=words)
+    return Chart(name, title, ((blank,),), height=_HEIGHT, subtitle=words)

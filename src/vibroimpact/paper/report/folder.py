@@ -12,7 +12,7 @@ from typing import Any
 
 from vibroimpact._version import __version__
 from vibroimpact.charts.figures_folder import FIGURES
-from vibroimpact.charts.made import LostChart, drawn
+from vibroimpact.charts.made import drawn
 from vibroimpact.charts.pack import pack, unpack
 from vibroimpact.charts.plotly import plotly_chart
 from vibroimpact.errors import InputError
@@ -245,8 +245,7 @@ def _write_part(part: ReportPart, runs: Runs, folder: Path) -> None:
     def write(working: Path) -> None:
         for name in (_PARTS, FIGURES):
             (working / name).mkdir()
-        version = "" if isinstance(rendered.chart, LostChart) else __version__  # so that a part whose chart is lost is made anew
-        table: dict[str, Any] = {"version": version, "title": rendered.title, "text": rendered.text, "rows": rendered.rows}
+        table: dict[str, Any] = {"version": __version__, "title": rendered.title, "text": rendered.text, "rows": rendered.rows}
         if rendered.chart is not None:
             from vibroimpact.charts.files import save_charts  # here, as it imports matplotlib, which `report` does without
 

@@ -7,7 +7,6 @@ from functools import partial
 from typing import Any, NamedTuple
 
 from vibroimpact.charts.chart import Chart
-from vibroimpact.charts.made import made_charts
 from vibroimpact.errors import InputError
 from vibroimpact.paper.conclusions import conclusions
 from vibroimpact.paper.elastic import section_5_1, section_5_2, section_5_3
@@ -135,8 +134,7 @@ class RenderedPart(NamedTuple):
 def render_part(part: ReportPart, runs: Runs) -> RenderedPart:
     """Return a part, computed and rendered."""
     section = part.section(runs) if part.section is not None else None
-    make = part.chart
-    chart = None if make is None else next(iter(made_charts({part.name: lambda: make(runs)})))
+    chart = part.chart(runs) if part.chart is not None else None  # it computes what it shows: an error of it ends the reproduction
     texts = [] if section is None else [section_text(section)]
     if chart is not None:
         texts.append(chart_text(chart, heading=section is None))
