@@ -56,7 +56,7 @@ def impacts(number: int, folder: Path) -> None:
 
 def modes(number: int, folder: Path) -> None:
     """Modes of a plate on one mesh."""
-    plate = {**PLATE, "modes": number, "mesh": {"element_size": 0.01}}
+    plate = {**PLATE, "modes": number, "mesh": {"element_size": 0.02}}
     vi.simulate(vi.read_case({**RIGID, "plate": plate, "drop": {"speed": 1.0}}))
 
 
@@ -77,10 +77,10 @@ def sensors(number: int, folder: Path) -> None:
 MEASURED: dict[str, tuple[Callable[[int, Path], None], tuple[int, ...]]] = {
     "rows": (calibrated_rows, (1000, 2000, 4000)),
     "samples": (wave_samples, (1_000_000, 2_000_000, 4_000_000)),
-    "impacts": (impacts, (100, 200, 400)),
-    "modes": (modes, (20, 40, 80)),
-    "duration": (duration, (200, 400, 800)),
-    "sensors": (sensors, (4, 8, 16)),
+    "impacts": (impacts, (400, 800, 1600)),
+    "modes": (modes, (40, 80, 160)),
+    "duration": (duration, (4000, 8000, 16000)),
+    "sensors": (sensors, (16, 32, 64)),
 }
 
 

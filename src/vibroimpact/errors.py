@@ -38,9 +38,6 @@ class VibroimpactError(Exception):
     ----------
     faults : tuple of str
         All faults, but of a great many only the first ones.
-    lines : tuple of str
-        One line per fault: printable, of at most `LONGEST_LINE` characters; at most `MOST_LINES` lines, and one that counts the rest;
-        together at most `LONGEST_MESSAGE` characters.
 
     Examples
     --------
@@ -58,7 +55,11 @@ class VibroimpactError(Exception):
 
     @property
     def lines(self) -> tuple[str, ...]:
-        """The lines of the message."""
+        """The lines of the message, one per fault.
+
+        They are printable, of at most `LONGEST_LINE` characters; at most `MOST_LINES`, and one that counts the rest; together they have
+        at most `LONGEST_MESSAGE` characters.
+        """
         return lines_of(self.faults)
 
     def __str__(self) -> str:

@@ -105,12 +105,19 @@ def _full_scale(block: NDArray[np.uint8], header: WaveHeader) -> Floats:
     if header.width == 1:  # unsigned, as no other width is
         return (block[:, :, 0].astype(float) - 128.0) / 128.0
     size = 2 if header.width == 2 else 4 if header.width <= 4 else 8
-    padded = np.zeros((*block.shape[:2], size), dtype=np.uint8)  # the missing bytes are the lowest
-    if header.order == "<":
-        padded[:, :, size - header.width :] = block
+    whole = block if header.width == size else _padded(block, size, header.order)
+    return _numbers(whole, f"{header.order}i{size}") / 2.0 ** (8 * size - 1)
+
+
+def _padded(block: NDArray[np.uint8], size: int, order: str) -> NDArray[np.uint8]:
+    """Return samples with as many bytes as integers have; those that are missing are the lowest."""
+    padded = np.zeros((*block.shape[:2], size), dtype=np.uint8)
+    width = block.shape[2]
+    if order == "<":
+        padded[:, :, size - width :] = block
     else:
-        padded[:, :, : header.width] = block
-    return _numbers(padded, f"{header.order}i{size}") / 2.0 ** (8 * size - 1)
+        padded[:, :, :width] = block
+    return padded
 
 
 def _numbers(block: NDArray[np.uint8], kind: str) -> Floats:
