@@ -28,7 +28,7 @@ unexport PYTHONDONTWRITEBYTECODE
 # tests are computed in a process a core
 test test-slow test-page test-lowest docs-site validation: export OPENBLAS_NUM_THREADS = 1
 
-.PHONY: help demo test test-slow test-whole test-page chromium test-peers test-lowest package check bench docs docs-site validation reproduce ci ci-built clean
+.PHONY: help demo test test-slow test-whole test-page chromium test-peers test-lowest package check bench docs docs-site validation reproduce ci ci-beside-pages clean
 
 demo: $(VENV)/installed
 	$(BIN)/vibroimpact demo --output $(OUTPUT) --force
@@ -96,16 +96,16 @@ reproduce: $(VENV)/installed
 	$(BIN)/vibroimpact reproduce -o vibroimpact-paper --force
 	$(BIN)/python -m vibroimpact.paper.report.docs_page vibroimpact-paper docs
 
-# One environment for all stages, and stages of one process side by side: pages in a browser beside linter, package and site.
+# One environment for all stages. Tests of pages, which wait for a browser most of the time, run beside all others but the slow ones.
 ci: $(VENV)/installed-ci
-	$(MAKE) -j2 --output-sync=target test-page ci-built
-	$(MAKE) test
+	$(MAKE) -j2 --output-sync=target test-page ci-beside-pages
 	$(MAKE) test-slow
 
-ci-built:
+ci-beside-pages:
 	$(MAKE) check
 	$(MAKE) package
 	$(MAKE) docs-site
+	$(MAKE) test
 
 $(VENV)/bin/python:
 	@command -v $(PYTHON) >/dev/null || { \
