@@ -68,6 +68,7 @@ def test_small_grains_lie_at_the_class_limits(agrees: Agrees, heard: dict[float,
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("diameter", KIRCHHOFF)
 def test_medians_are_near_those_of_a_kirchhoff_plate(agrees: Agrees, heard: dict[float, np.ndarray], diameter: float) -> None:
     """Places, pads and the elasticity of the plate's face differ: it is the same plate, not the same model."""

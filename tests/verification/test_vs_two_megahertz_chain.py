@@ -102,6 +102,7 @@ def test_bare_points(agrees: Agrees, response: vi.Response, motion: dict[str, di
     assert signal.uncertainty < PROMISED
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rate", [20e3, 25e3, 40e3])
 def test_rates(agrees: Agrees, response: vi.Response, motion: dict[str, dict[str, Floats]], rate: float) -> None:
     """Down to where most modes lie above half of it: they pass in band what they do below their resonance."""

@@ -88,6 +88,7 @@ def test_points(agrees: Agrees, response: vi.Response, motion: dict[str, Floats]
     agrees("ideal sensors, two oblique impacts", f"{quantity} signal", found, exact[: len(found)], rms=0.01)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("filtered", ["sigma-delta", "butterworth"])
 def test_accelerometers(agrees: Agrees, response: vi.Response, motion: dict[str, Floats], filtered: str) -> None:
     exact = seismic(motion["acceleration"], 30e3, 0.02)

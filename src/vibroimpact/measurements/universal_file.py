@@ -174,6 +174,8 @@ def _function(raw: bytes, header: bytes, place: int, number: int) -> Function | 
         return None
     if not 0 < count <= len(raw):
         raise ValueError
+    if even == 1 and not abs(start) < _LARGEST > abs(step):  # nor are they NaN
+        raise ValueError
     if header.split()[0] == b"58b":
         with np.errstate(invalid="ignore"):  # of bytes that are no number, which are refused below
             given, values = _binary(raw, header, place, ordinate, count, even == 1)

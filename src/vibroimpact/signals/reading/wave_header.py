@@ -95,9 +95,9 @@ def read_wave_header(file: FileIO) -> WaveHeader:
     full_scale: FullScale | None = None
     place = 12
     for _ in range(_MOST_CHUNKS):
-        head = _at(file, place, 8)
-        if len(head) < 8:
+        if place > length - 8:  # a length that a chunk states may lead far beyond the end
             break
+        head = _at(file, place, 8)
         name, size = struct.unpack(f"{order}4sI", head)
         start = place + 8
         if name == b"ds64":
