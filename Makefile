@@ -96,16 +96,16 @@ reproduce: $(VENV)/installed
 	$(BIN)/vibroimpact reproduce -o vibroimpact-paper --force
 	$(BIN)/python -m vibroimpact.paper.report.docs_page vibroimpact-paper docs
 
-# One environment for all stages. Tests of pages, which wait for a browser most of the time, run beside all others but the slow ones.
+# One environment for all stages, and stages of one process side by side: pages in a browser beside linter, package and site.
 ci: $(VENV)/installed-ci
 	$(MAKE) -j2 --output-sync=target test-page ci-beside-pages
+	$(MAKE) test
 	$(MAKE) test-slow
 
 ci-beside-pages:
 	$(MAKE) check
 	$(MAKE) package
 	$(MAKE) docs-site
-	$(MAKE) test
 
 $(VENV)/bin/python:
 	@command -v $(PYTHON) >/dev/null || { \
