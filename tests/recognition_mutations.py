@@ -13,6 +13,7 @@ import numpy as np
 import onnx
 from onnx import TensorProto, helper, numpy_helper
 
+from folder_mutations import places
 from mutations import NUMBERS, OTHERS, TEXTS, deep
 from vibroimpact.files.check_sums import CHECK_SUMS, SHA256, digest, file_digest
 
@@ -252,7 +253,7 @@ def damage_card(folder: Path, hostile: Hostile) -> None:
     table = json.loads(path.read_text())
     table.pop(SHA256)
     for _ in range(draw.choice((1, 1, 1, 2, 3))):
-        holder, key = draw.choice(_parents(table))
+        holder, key = draw.choice(places(table))
         if hostile.change == "removed" and isinstance(holder, dict):
             holder.pop(key, None)
         else:
@@ -263,18 +264,6 @@ def damage_card(folder: Path, hostile: Hostile) -> None:
         path.write_text(json.dumps(table))
     except (RecursionError, UnicodeEncodeError):
         path.write_bytes(b"[" * 5000)
-
-
-def _parents(table: dict[str, Any]) -> list[tuple[Any, Any]]:
-    """Return the places of a card: all of its tables, and the first and last of its lists."""
-    found: list[tuple[Any, Any]] = []
-    pending: list[Any] = [table]
-    while pending and len(found) < 1000:
-        holder = pending.pop()
-        keys = list(holder)[:50] if isinstance(holder, dict) else [0, -1] if holder else []
-        found += [(holder, key) for key in keys]
-        pending += [holder[key] for key in keys if isinstance(holder[key], (dict, list))]
-    return found
 
 
 CARD_CHANGES = ("value", "value", "value", "removed", "text", "bytes")
