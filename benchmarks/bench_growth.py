@@ -40,6 +40,20 @@ def calibrated_rows(rows: int, folder: Path) -> None:
     vi.save_calibration(what.case, vi.calibrate_case(what), folder / "found")
 
 
+def friction_rows(rows: int, folder: Path) -> None:
+    """Oblique impacts in a table, from which friction is fitted."""
+    random = np.random.default_rng(1)
+    speed, along = random.uniform(1.0, 8.0, rows), random.uniform(0.5, 6.0, rows)
+    after = np.maximum(along - 0.34 * speed, 5.0 / 7.0 * along) + 0.02 * random.standard_normal(rows)
+    lines = [f"{row[0]:.6f},{row[1]:.6f},{row[2]:.6f}\n" for row in zip(speed, along, after, strict=True)]
+    (folder / "table.csv").write_text("approach_speed_m_s,approach_velocity_x_m_s,separation_velocity_x_m_s\n" + "".join(lines))
+    contact = {"law": "newton", "restitution": 0.7, "friction": {"law": "coulomb", "coefficient": 0.1}}
+    section = {"parameter": ["friction.coefficient"], "target": {"file": str(folder / "table.csv")}}
+    case = {**RIGID, "contact": contact, "drop": {"speed": 3.0, "angle": 0.5}, "calibrate": section}
+    what = vi.read_calibration(case)
+    vi.save_calibration(what.case, vi.calibrate_case(what), folder / "found")
+
+
 def wave_samples(samples: int, folder: Path) -> None:
     """Features of a sound."""
     from scipy.io import wavfile
@@ -76,6 +90,7 @@ def sensors(number: int, folder: Path) -> None:
 
 MEASURED: dict[str, tuple[Callable[[int, Path], None], tuple[int, ...]]] = {
     "rows": (calibrated_rows, (1000, 2000, 4000)),
+    "friction": (friction_rows, (1000, 2000, 4000)),
     "samples": (wave_samples, (1_000_000, 2_000_000, 4_000_000)),
     "impacts": (impacts, (400, 800, 1600)),
     "modes": (modes, (40, 80, 160)),

@@ -96,11 +96,25 @@ def test_all_values_of_other_kinds(population: Callable[[int], int], tmp_path: P
     judge(random.Random(seed(6)).sample(every, population(len(every))), tmp_path)
 
 
+def calibrate(changed: Substitution) -> None:
+    vi.calibrate_case(vi.read_calibration(changed.table))
+
+
+@pytest.mark.slow
+def test_calibrations_with_values_of_other_kinds() -> None:
+    """What `check` accepts in [calibrate] is calibrated or refused."""
+    concerned = [changed for changed in all_substitutions() if changed.place[0] == "calibrate" and "sweep" not in changed.case]
+    told = failures(calibrate, concerned)
+    assert not told, told
+
+
 @pytest.mark.parametrize(
     ("where", "kind", "words"),
     [
         ("contact.friction.law sweep", "empty list", "contact.friction.law: [] is not the name of a friction law"),
         ("calibrate.parameter calibrate", "empty table", "calibrate.parameter: {} is not allowed; it takes the tuned parameter"),
+        ("calibrate.parameter calibrate", "empty list", "calibrate.parameter: the list is empty; name a parameter, such as"),
+        ("schema_version", "true", "schema_version: true is no version; write 1"),
         ("sweep.over.drop.height.factor sweep", "list of texts", 'sweep.over."drop.height".factor: "x" is not a plain number'),
         ("sweep.classes.fine.over.sphere.radius sweep", "list of tables", "sphere.radius has values that are not numbers"),
         ("calibrate.degree calibrate", "text", 'calibrate.degree: "steel" is not allowed; it must be a whole number from 0 to 12'),

@@ -118,6 +118,8 @@ class AirFlights:
         times = up[1] + down[1]
         by_root = slopes[0][1] + slopes[1][1]
         clock = np.concatenate([-up[1][:0:-1], down[1]])
+        if not np.all(np.diff(clock) > 0.0):  # so high that the times of the descent agree to the last digit
+            raise self._too_far("so high a flight")
         fallen = np.concatenate([root[:0:-1], root]) ** 2
         velocity = np.concatenate([-up[0][:0:-1], down[0]])
         return _Tables(

@@ -175,6 +175,12 @@ def _match_schema() -> dict[str, Any]:
     return {"anyOf": [{"enum": list(MATCHABLE)}, weights]}
 
 
+def _some_names(given: Any) -> Any:
+    if given in ([], ()):
+        raise InputError(f'the list is empty; name a parameter, such as "{FRICTION}coefficient", or leave the key out')
+    return given
+
+
 class CalibrateSection(Section):
     """Settings of `vibroimpact calibrate`; a run ignores them."""
 
@@ -184,7 +190,7 @@ class CalibrateSection(Section):
     model: Annotated[Any, BeforeValidator(_read_model), JsonSchema(_LAW, law_schema)] = Field(
         None, description="the tuned contact law; by default that of the case"
     )
-    parameter: Annotated[Name | tuple[Name, ...], at_most(_MOST_PARAMETERS, "parameters")] | None = Field(
+    parameter: Annotated[Name | tuple[Name, ...], BeforeValidator(_some_names), at_most(_MOST_PARAMETERS, "parameters")] | None = Field(
         None,
         description='the tuned parameter: one of the law, "sphere.damping" or "plate.damping"; or one or a list of those of the friction '
         'law, such as "friction.coefficient"; by default the loss parameter of the law',

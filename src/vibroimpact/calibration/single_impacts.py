@@ -19,7 +19,7 @@ from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.dynamics.tabulate import tabulate
 
 _TOLERANCE = 1e-12
-_AT_ONCE = 4000
+AT_ONCE = 4000
 """Impacts that are computed together: more take memory and no less time."""
 
 
@@ -50,7 +50,7 @@ def single_impacts(problem: Problem, law: ContactLaw, speeds: Floats) -> dict[st
     >>> single_impacts(problem, problem.laws[0], np.array([8.826664149]))["separation_speed"].round(6).tolist()
     [6.838627]
     """
-    some = [slice(begin, begin + _AT_ONCE) for begin in range(0, len(speeds), _AT_ONCE)]
+    some = [slice(begin, begin + AT_ONCE) for begin in range(0, len(speeds), AT_ONCE)]
     each = [_single_impacts(problem, law.take(rows), speeds[rows]) for rows in some]
     return each[0] if len(each) == 1 else {name: np.concatenate([found[name] for found in each]) for name in each[0]}
 

@@ -317,10 +317,16 @@ SECTIONS: dict[str, type[Section]] = {"sphere": SphereSection, "plate": PlateSec
 """The sections of a case that are there once and have fixed keys."""
 
 
+def _whole_number(given: Any) -> Any:
+    if isinstance(given, bool):  # true equals 1 in Python
+        raise InputError(f"{shown(given)} is no version; write 1")
+    return given
+
+
 class CaseTable(Section):
     """A case as a file has it: its sections, validated, in SI."""
 
-    schema_version: Literal[1] = Field(1, description="version of this format")
+    schema_version: Annotated[Literal[1], BeforeValidator(_whole_number)] = Field(1, description="version of this format")
     name: Name = Field("", description="title of the case")
     sphere: SphereSection
     plate: PlateSection

@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Floats, Indices
 from vibroimpact.calibration.friction.least_squares import Bounds
 from vibroimpact.calibration.friction.measured import ObliqueImpacts
 from vibroimpact.calibration.matching import match
 from vibroimpact.calibration.observations import from_table
 from vibroimpact.calibration.section import FRICTION
-from vibroimpact.calibration.single_impacts import oblique_impacts
+from vibroimpact.calibration.single_impacts import AT_ONCE, oblique_impacts
 from vibroimpact.calibration.tunables import law_parameter
 from vibroimpact.calibration.uncertainty import with_nearest_bound
 from vibroimpact.contact.friction.law import FrictionLaw
@@ -143,18 +143,23 @@ class ImpactModel:
 
     def __call__(self, values: Floats) -> dict[str, Floats]:
         """Return the quantities of the impacts (S, n), as `oblique_impacts` has them, with values (S, K) of the parameters."""
-        assert self.problem.oblique is not None
         number = len(self.speeds)
-        which = np.tile(np.arange(number), len(values))
+        every = np.arange(len(values) * number)
+        blocks = [self._impacts(values, every[begin : begin + AT_ONCE]) for begin in range(0, len(every), AT_ONCE)]
+        return {name: np.concatenate([block[name] for block in blocks]).reshape(len(values), number) for name in blocks[0]}
+
+    def _impacts(self, values: Floats, pairs: Indices) -> dict[str, Floats]:
+        """Return the quantities of some pairs of values and impacts, numbered along the rows of (S, n)."""
+        assert self.problem.oblique is not None
+        chains, impacts = np.divmod(pairs, len(self.speeds))
         oblique = Oblique(
-            velocity=(self.velocity[which], 0.0),
-            spin=(0.0, self.spin[which], 0.0),
+            velocity=(self.velocity[impacts], 0.0),
+            spin=(0.0, self.spin[impacts], 0.0),
             gravity=self.problem.oblique.gravity,
-            friction=self.parameters.with_values(np.repeat(values, number, axis=0)),
+            friction=self.parameters.with_values(values[chains]),
             inertia_ratio=self.problem.oblique.inertia_ratio,
         )
-        found = oblique_impacts(self.problem, self.law.take(which), self.speeds[which], oblique)
-        return {name: column.reshape(len(values), number) for name, column in found.items()}
+        return oblique_impacts(self.problem, self.law.take(impacts), self.speeds[impacts], oblique)
 
 
 def impact_model(problem: Problem, parameters: FrictionParameters, impacts: ObliqueImpacts) -> ImpactModel:

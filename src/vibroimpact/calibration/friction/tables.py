@@ -129,22 +129,24 @@ def friction_document(case: Case, found: FrictionCalibration) -> dict[str, Any]:
 
 def friction_rows(found: FrictionCalibration) -> list[dict[str, Any]]:
     """Return the impacts, one mapping each: how they came, what was measured, and what is computed."""
-    impacts, rows = found.impacts, []
-    for place, label in enumerate(impacts.seen.labels):
-        row: dict[str, Any] = {"label": label, "angle_deg": float(impacts.angle[place])}
-        row["approach_speed_m_s"] = float(impacts.seen.speeds[place])
-        row["approach_velocity_x_m_s"] = float(impacts.velocity[place])
-        row["spin_y_before_rad_s"] = float(impacts.spin[place])
-        for name, (column, *_) in ALONG_PLATE.items():
-            if name in impacts.measured:
-                row[f"measured_{column}"] = _finite(impacts.measured[name][place])
-            if name in found.weights and impacts.seen.deviations_known:
-                row[f"standard_deviation_{column}"] = float(_deviations(found, name)[place])
-            row[column] = _finite(found.outcomes[name][place])
-            if found.as_given:
-                row[f"as_given_{column}"] = _finite(found.as_given[name][place])
-        rows.append({**row, "slips_throughout": bool(found.slips[place])})
-    return rows
+    impacts = found.impacts
+    columns: dict[str, list[Any]] = {
+        "label": list(impacts.seen.labels),
+        "angle_deg": impacts.angle.tolist(),
+        "approach_speed_m_s": impacts.seen.speeds.tolist(),
+        "approach_velocity_x_m_s": impacts.velocity.tolist(),
+        "spin_y_before_rad_s": impacts.spin.tolist(),
+    }
+    for name, (column, *_) in ALONG_PLATE.items():
+        if name in impacts.measured:
+            columns[f"measured_{column}"] = _finite_values(impacts.measured[name])
+        if name in found.weights and impacts.seen.deviations_known:
+            columns[f"standard_deviation_{column}"] = _deviations(found, name).tolist()
+        columns[column] = _finite_values(found.outcomes[name])
+        if found.as_given:
+            columns[f"as_given_{column}"] = _finite_values(found.as_given[name])
+    columns["slips_throughout"] = found.slips.tolist()
+    return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
 
 
 def _deviations(found: FrictionCalibration, name: str) -> Floats:
@@ -160,3 +162,7 @@ def _interval_words(interval: Floats, ends: Floats, unit: str) -> str:
 
 def _finite(value: float) -> float | None:
     return float(value) if math.isfinite(value) else None
+
+
+def _finite_values(values: Floats) -> list[float | None]:
+    return [_finite(value) for value in values.tolist()]
