@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Container, Mapping
 from dataclasses import fields, replace
 from os import PathLike
 from typing import Any, NamedTuple
@@ -24,12 +24,13 @@ from vibroimpact.cases.case import Case
 from vibroimpact.cases.fields.contact import read_contact
 from vibroimpact.cases.fields.local import LocalSection
 from vibroimpact.cases.reader import load_table, prefix_errors, read_case
-from vibroimpact.cases.slips.find import slips
 from vibroimpact.contact.friction.law import FrictionLaw
 from vibroimpact.contact.pair import ContactPair
 from vibroimpact.contact.registry import find_contact_law, friction_laws
 from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.errors import InputError
+from vibroimpact.results.result import result_of
 
 MODEL = "adams-impact"
 """The law that is tuned by default."""
@@ -156,9 +157,9 @@ def calibrate_case(
     except InputError as error:
         raise InputError(error.message, f"calibrate.{error.key}".rstrip(".")) from None
     tuned = names if isinstance(found, FrictionCalibration) else (found.parameter,)
-    # its value is only an initial guess, and is not checked for slips of units
+    # its value is computed, and is not checked for slips of units
     aside = {*tuned, *(f"contact.{name}" for name in tuned)}
-    return replace(found, doubts=(*slips(resolved_case(case), aside), *found.doubts))
+    return replace(found, doubts=(*_doubts_of_a_run(case, found, aside), *found.doubts))
 
 
 def calibrated_case(case: Case, found: Calibration | FrictionCalibration) -> Case:
@@ -188,6 +189,11 @@ def calibrated_case(case: Case, found: Calibration | FrictionCalibration) -> Cas
         body = found.parameter.partition(".")[0]
         return read_case({**table, body: {**table[body], "damping": values[0]}})
     return read_case({**table, "contact": {**table["contact"], found.parameter: values}})
+
+
+def _doubts_of_a_run(case: Case, found: Calibration | FrictionCalibration, aside: Container[str]) -> list[str]:
+    """Return the doubts that a run of the calibrated case states: what is matched to a rebound may still exceed a limit of the theory."""
+    return result_of(simulate(calibrated_case(case, found).to_problem())).doubts_but(aside)
 
 
 def _calibrated_law(

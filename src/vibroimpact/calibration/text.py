@@ -10,6 +10,7 @@ from vibroimpact.calibration.adams_dialog import DIALOG_NOTE, DIALOG_TITLE
 from vibroimpact.calibration.report import CalibrationReport, Cells
 from vibroimpact.cases.case import Case
 from vibroimpact.report.terminal_table import TerminalColumn, TerminalTable, numbers
+from vibroimpact.runs.text import doubt_lines
 
 
 def calibration_summary(case: Case, told: CalibrationReport) -> RenderableType:
@@ -32,7 +33,7 @@ def calibration_summary(case: Case, told: CalibrationReport) -> RenderableType:
         parts += [Text(), Text("Remaining differences", style="bold")]
         parts.append(Columns([Group(Text(f" {title}"), cells_table(cells)) for title, cells in told.differences.items()], padding=(0, 4)))
         parts.append(Text(f" {told.ways}", style="dim"))
-    parts += [Text(), *(Text(f"Doubt: {doubt}.") for doubt in told.doubts)] if told.doubts else []
+    parts += [Text(), *doubt_lines(told.doubts)] if told.doubts else []
     return Group(*parts)
 
 

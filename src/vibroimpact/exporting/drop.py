@@ -72,6 +72,8 @@ class Drop:
         Motion of an elastic plate's upper surface: `time` [s] (frames,), grid coordinates `x` [m] (columns,) and `y` [m] (rows,) in the
         plate's frame, `height`: upward displacement [m] (frames, rows, columns), NaN outside the plate, and `sphere_position`: height
         of the sphere's centre [m] (frames,). Empty if there is none.
+    doubts : tuple of str
+        Doubts about the result, as the run states them.
     """
 
     name: str
@@ -100,3 +102,4 @@ class Drop:
     history: Mapping[str, Floats] = field(default_factory=dict, repr=False)
     signals: Mapping[str, Signal] = field(default_factory=dict, repr=False)
     surface: Mapping[str, Floats] = field(default_factory=dict, repr=False)
+    doubts: tuple[str, ...] = field(default=(), repr=False)

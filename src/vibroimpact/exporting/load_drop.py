@@ -92,6 +92,7 @@ def drop_of_result(result: Result, case: Case, function: tuple[str, SpeedFunctio
         history=result.history,
         signals=result.signals,
         surface=surface,
+        doubts=tuple(result.doubts),
     )
 
 

@@ -14,6 +14,7 @@ from vibroimpact.calibration.text import cells_table
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.export_format import ExportFormat, export_formats
 from vibroimpact.report.terminal_table import TerminalColumn, TerminalTable
+from vibroimpact.runs.text import doubt_lines
 from vibroimpact.units.display import digits
 
 _MOST = 6
@@ -32,7 +33,7 @@ def format_table() -> RenderableType:
 
 
 def export_summary(drop: Drop, format: ExportFormat, files: Sequence[Path]) -> RenderableType:
-    """Return the files written, what a dialog takes, the limitations of the format, and what it was tested against."""
+    """Return the files written, what a dialog takes, the limitations of the format, the doubts about the drop, and what the writer was tested against."""
     shown = files if len(files) <= _MOST else files[: _MOST - 1]
     dialog, speeds = format.dialog(drop), drop.impacts["approach_speed_m_s"].tolist()
     names = [f"impact {number} at {digits(speed)} m/s" for number, speed in enumerate(speeds, 1)]
@@ -43,5 +44,6 @@ def export_summary(drop: Drop, format: ExportFormat, files: Sequence[Path]) -> R
         *([Text(more)] if len(shown) < len(files) else []),
         *typed,
         *(Text(f"Note: {note}", style="yellow") for note in format.notes(drop)),
+        *doubt_lines(drop.doubts),
         Text(f"Tested: {format.tested}.", style="dim"),
     )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import platform
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING
@@ -99,7 +99,17 @@ class Result:
     @property
     def doubts(self) -> list[str]:
         """Doubts about the result: sentences naming assumptions and ranges of validity that the run exceeds."""
-        found = doubts(self.case, self._seen)
+        return self.doubts_but()
+
+    def doubts_but(self, aside: Container[str] = ()) -> list[str]:
+        """Return the doubts, without slips of units in the values of some keys.
+
+        Parameters
+        ----------
+        aside : container of str
+            Dotted keys whose values are not checked for slips.
+        """
+        found = doubts(self.case, self._seen, aside)
         found += str(self.deformation.get("doubts", "")).splitlines()  # about the meshes
         highest = max(self.frequencies("plate"), default=math.nan)
         return found + sensor_doubts(self.case, self.signals, highest, float(self._seen.duration))
