@@ -1,5 +1,13 @@
 """Pictures and numbers of the guides: run it in docs/guides/images."""
 
+from __future__ import annotations
+
+import re
+import tomllib
+from functools import cache
+from pathlib import Path
+from typing import Any
+
 import matplotlib
 
 matplotlib.use("Agg")  # no window
@@ -10,26 +18,62 @@ import vibroimpact as vi
 from vibroimpact.cases.reader import load_table
 
 BLUE, RED, GREEN, GREY = "#0b4f8a", "#b3400e", "#3a7d44", "#6b6b6b"
-PLATE = {
-    "size": ["600 mm", "500 mm", "12 mm"],
-    "material": "steel",
-    "model": "elastic",
-    "modes": 150,
-    "damping": 0.02,
-    "supports": "simply-supported",
+
+
+def case_on(page: str, name: str) -> dict[str, Any]:
+    """Return a case that a guide shows, by its page and its name."""
+    text = (Path(__file__).parents[1] / "docs" / "guides" / page).read_text(encoding="utf-8")
+    return next(tomllib.loads(block) for block in re.findall(r"```toml\n(.*?)```", text, flags=re.S) if block.startswith(f"# {name}\n"))
+
+
+ADAMS = case_on("adams-damping.md", "ball.toml")
+THICKNESS = {key: value for key, value in case_on("plate-thickness.md", "thickness.toml").items() if key != "sweep"}
+SENSORS = case_on("accelerometer.md", "sensors.toml")
+
+DIALOG = {"stiffness": 1e5 * 1000.0**2.2, "exponent": 2.2, "damping_max": 10e3, "full_damping_penetration": 1e-4}
+"""What Adams View offers for a new contact: MSC's help, "Contact Parameters for Parts with Small Mass"."""
+
+THICKNESSES = (4.0, 6.0, 8.0, 12.0, 20.0)  # mm
+
+CHAINS = {
+    "the motion itself, 102.4 kHz": ({"rate": "102.4 kHz"}, GREY),
+    "mounted resonance 8 kHz, 51.2 kHz": ({"rate": "51.2 kHz", "accelerometer": {"resonance": "8 kHz"}}, RED),
+    "resonance 32 kHz, range 2000 m/s$^2$, 51.2 kHz": (
+        {"rate": "51.2 kHz", "accelerometer": {"resonance": "32 kHz", "range": 2000.0}},
+        BLUE,
+    ),
+    "sampled at 5 kHz": ({"rate": "5 kHz"}, GREEN),
 }
-CASE = {
-    "sphere": {"radius": "25 mm", "material": "granite"},
-    "plate": PLATE,
-    "drop": {"height": "1 m", "position": ["60 mm", "40 mm"]},
+"""Measuring chains at one position, each with its colour."""
+
+ACETAL = {
+    "sphere": {
+        "radius": "25 mm",
+        "material": {"density": 1410, "youngs_modulus": "2.8 GPa", "poissons_ratio": 0.35, "yield_strength": "65 MPa"},
+    },
+    "plate": {
+        "size": ["600 mm", "500 mm", "5 mm"],
+        "material": "steel",
+        "model": "elastic",
+        "modes": 150,
+        "damping": 0.02,
+        "supports": "simply-supported",
+    },
+    "drop": {"speed": "0.6 m/s", "position": ["60 mm", "40 mm"]},
     "contact": {"law": "tsuji", "restitution": 0.8},
     "run": {"impacts": 1},
 }
+"""The case whose bodies are treated in several ways."""
 
 
-def case_with(**changes: dict) -> vi.Case:
-    """Return the case with other keys in its sections."""
-    return vi.read_case({**CASE, **{section: {**CASE.get(section, {}), **keys} for section, keys in changes.items()}})
+def case_with(table: dict[str, Any], **changes: dict[str, Any]) -> vi.Case:
+    """Return a case with other keys in its sections."""
+    return vi.read_case({**table, **{section: {**table.get(section, {}), **keys} for section, keys in changes.items()}})
+
+
+def first_impact(response: vi.Response) -> dict[str, float]:
+    """Return the first row of the impact table."""
+    return {name: float(values[0]) for name, values in response.impacts.items()}
 
 
 def saved(figure: plt.Figure, name: str) -> None:
@@ -40,100 +84,129 @@ def saved(figure: plt.Figure, name: str) -> None:
     plt.close(figure)
 
 
+@cache
+def found_for_adams() -> tuple[vi.Calibration, vi.Response]:
+    """Return the damping of the ball in Adams, and the drop with it."""
+    question = vi.read_calibration(ADAMS)
+    found = vi.calibrate_case(question)
+    return found, vi.simulate(vi.calibrated_case(question.case, found))
+
+
 def adams() -> None:
-    """Draw the restitution of a steel ball under IMPACT with the dialog's defaults, and with the damping that is found for 0.82."""
-    mass, speeds = 7850.0 * 4.0 / 3.0 * np.pi * 0.02**3, np.geomspace(0.1, 10.0, 60)
-    impact = vi.find_contact_law("adams-impact")
-    dialogs = {
-        "the dialog's defaults: 1e5 N/mm$^{2.2}$, 2.2, 10 N s/mm, 0.1 mm": (1e5, 2.2, 10.0, GREY),
-        "found: 688021 N/mm$^{1.5}$, 1.5, 1.936 N s/mm, 0.1 mm": (688021.0, 1.5, 1.93605, BLUE),
+    """Draw the restitution of a steel ball under IMPACT with the dialog's defaults, and with the damping that is found."""
+    found, response = found_for_adams()
+    mass, speeds, row = float(response.problem.sphere.mass), np.geomspace(0.1, 10.0, 60), first_impact(response)
+    laws = {
+        "the dialog's defaults: 1e5 N/mm$^{2.2}$, 2.2, 10 N s/mm, 0.1 mm": (vi.find_contact_law("adams-impact")(**DIALOG), GREY),
+        f"found: Hertz's stiffness, 1.5, {1e-3 * found.values[0]:.4g} N s/mm, 0.01 mm": (response.problem.laws[0], BLUE),
     }
     figure, axes = plt.subplots(figsize=(7.2, 3.4), layout="constrained")
-    for label, (stiffness, exponent, damping, colour) in dialogs.items():
-        law = impact(stiffness=stiffness * 1000.0**exponent, exponent=exponent, damping_max=1000.0 * damping, full_damping_penetration=1e-4)
+    for label, (law, colour) in laws.items():
         achieved = [float(vi.achieved_restitution(law, mass=mass, speed=speed)) for speed in speeds]
         axes.semilogx(speeds, achieved, color=colour, label=label)
-        print(f"adams: {label}: {np.interp(3.0683, speeds, achieved):.3f} at 3.07 m/s")
-    axes.plot(3.0683, 0.8127, "o", color=RED, label="measured: from 0.5 m back to 0.337 m")
-    axes.set(xlabel="approach speed [m/s]", ylabel="restitution", ylim=(0.0, 1.0))
-    axes.legend(frameon=False)
+        print(f"adams: {label}: {np.interp(row['approach_speed_m_s'], speeds, achieved):.3f} at {row['approach_speed_m_s']:.3f} m/s")
+    print(f"adams: {row['max_force_N']:.0f} N, {1e6 * row['max_indentation_m']:.1f} um, doubts: {vi.result_of(response).doubts}")
+    measured = f"measured: from {ADAMS['drop']['height']} back to {ADAMS['calibrate']['target']['rebound_heights'][0]}"
+    axes.plot(row["approach_speed_m_s"], row["restitution_achieved"], "o", color=RED, label=measured)
+    axes.set(xlabel="approach speed [m/s]", ylabel="restitution", ylim=(0.0, 1.05))
+    axes.legend(frameon=False, loc="center left", bbox_to_anchor=(0.0, 0.55))
     saved(figure, "adams-dialog")
+
+
+LAWS = ("lee-wang", "lankarani-nikravesh", "hunt-crossley", "herbert-mcwhannell", "tsuji", "flores", "gonthier")
+
+
+def restitution_of(name: str, asked: float) -> float:
+    """Return the restitution that a law achieves for a restitution parameter."""
+    law = vi.find_contact_law(name)
+    more = {"effective_mass": 0.1} if "effective_mass" in law.__dataclass_fields__ else {}
+    return float(vi.achieved_restitution(law(stiffness=1e8, restitution=asked, **more), mass=0.1, speed=1.0))
 
 
 def restitution() -> None:
     """Draw the restitution that laws achieve over the one that they are given."""
     asked = np.linspace(0.05, 1.0, 40)
     figure, axes = plt.subplots(figsize=(5.4, 4.6), layout="constrained")
-    names = ("lee-wang", "lankarani-nikravesh", "hunt-crossley", "herbert-mcwhannell", "tsuji", "flores", "gonthier")
-    for name, colour in zip(names, plt.cm.viridis(np.linspace(0.0, 0.9, len(names))), strict=True):
-        law = vi.find_contact_law(name)
-        more = {"effective_mass": 0.1} if name == "tsuji" else {}
-        achieved = [
-            float(vi.achieved_restitution(law(stiffness=1e8, restitution=float(one), **more), mass=0.1, speed=1.0)) for one in asked
-        ]
-        axes.plot(asked, achieved, color=colour, label=name)
+    for name, colour in zip(LAWS, plt.cm.viridis(np.linspace(0.0, 0.9, len(LAWS))), strict=True):
+        axes.plot(asked, [restitution_of(name, float(one)) for one in asked], color=colour, label=name)
     axes.plot([0.0, 1.0], [0.0, 1.0], color=GREY, linestyle=":")
     axes.set(xlabel="restitution given", ylabel="restitution achieved", xlim=(0.0, 1.0), ylim=(0.0, 1.0), aspect="equal")
     axes.legend(frameon=False)
     saved(figure, "restitution-achieved")
 
 
+@cache
+def on_rigid_plate() -> vi.Response:
+    """Return the impact of the nylon ball on a rigid plate."""
+    return vi.simulate(vi.read_case({**THICKNESS, "plate": {"material": "steel"}}))
+
+
+@cache
+def on_plate(thickness: float) -> vi.Response:
+    """Return the impact of the nylon ball on a plate of a thickness [mm]."""
+    return vi.simulate(case_with(THICKNESS, plate={"size": ["600 mm", "500 mm", f"{thickness:g} mm"]}))
+
+
+def zener(thickness: float) -> float:
+    """Return the restitution of the nylon ball on a plate without edges (Zener 1941), of a thickness [mm].
+
+    The plate is a dashpot; the restitution of an elastic contact on it is about exp(-1.72 times the inelasticity parameter).
+    """
+    rigid, steel = on_rigid_plate(), vi.find_material("steel")
+    row, mass = first_impact(rigid), float(rigid.problem.sphere.mass)
+    stiffness = float(vi.read_case(THICKNESS).to_problem().laws[0].stiffness)
+    bending = steel.youngs_modulus * (1e-3 * thickness) ** 3 / (12.0 * (1.0 - steel.poissons_ratio**2))
+    dashpot = 8.0 * np.sqrt(bending * steel.density * 1e-3 * thickness)
+    return row["restitution_achieved"] * np.exp(-1.72 * mass**0.6 * stiffness**0.4 * row["approach_speed_m_s"] ** 0.2 / dashpot)
+
+
 def thickness() -> None:
     """Draw what a plate's thickness does to the rebound, and to the force."""
-    thicknesses = np.array([8.0, 12.0, 20.0, 30.0, 50.0])  # mm
-    responses = [vi.simulate(case_with(plate={"size": ["600 mm", "500 mm", f"{one} mm"]})) for one in thicknesses]
-    achieved = [float(one.impacts["restitution_achieved"][0]) for one in responses]
-    forces = [1e-3 * float(one.impacts["max_force_N"][0]) for one in responses]
-    mass, stiffness = float(responses[0].problem.sphere.mass), float(responses[0].problem.laws[0].stiffness)
-    speed = float(responses[0].impacts["approach_speed_m_s"][0])
-    many = np.geomspace(8.0, 50.0, 80)
-    # Zener 1941: an infinite plate is a dashpot; its restitution is about exp(-1.72 times the inelasticity parameter)
-    dashpot = 1.0 / (8.0 * np.sqrt(210e9 * (1e-3 * many) ** 4 / (12.0 * (1.0 - 0.3**2)) * 7850.0))
-    zener = np.exp(-1.72 * dashpot * mass / ((mass / stiffness) ** 0.4 * speed**-0.2))
+    rows = [first_impact(on_plate(one)) for one in THICKNESSES]
+    many, rigid = np.geomspace(THICKNESSES[0], THICKNESSES[-1], 80), first_impact(on_rigid_plate())
     figure, (left, right) = plt.subplots(1, 2, figsize=(8.6, 3.3), layout="constrained")
-    left.semilogx(many, 0.8 * zener, color=GREY, label="0.8 times Zener's plate without edges")
-    left.semilogx(thicknesses, achieved, "o", color=BLUE, label="computed, 600 x 500 mm")
-    left.axhline(0.8, color=GREY, linestyle=":")
-    left.set(xlabel="thickness [mm]", ylabel="restitution of the first impact", ylim=(0.0, 0.9))
-    left.legend(frameon=False)
-    right.semilogx(thicknesses, forces, "o-", color=RED)
-    right.set(xlabel="thickness [mm]", ylabel="largest force [kN]", ylim=(0.0, None))
+    left.semilogx(many, [zener(one) for one in many], color=GREY, label="Zener's plate without edges")
+    left.semilogx(THICKNESSES, [row["restitution_achieved"] for row in rows], "o", color=BLUE, label="computed, 600 x 500 mm")
+    left.axhline(rigid["restitution_achieved"], color=GREY, linestyle=":", label="rigid plate")
+    left.set(xlabel="thickness [mm]", ylabel="restitution of the first impact", ylim=(0.0, 1.0))
+    left.legend(frameon=False, loc="lower right")
+    right.semilogx(THICKNESSES, [row["max_force_N"] for row in rows], "o-", color=RED)
+    right.axhline(rigid["max_force_N"], color=GREY, linestyle=":")
+    right.set(xlabel="thickness [mm]", ylabel="largest force [N]", ylim=(0.0, None))
     for axes in (left, right):
-        axes.set_xticks(thicknesses, [f"{one:g}" for one in thicknesses])
+        axes.set_xticks(THICKNESSES, [f"{one:g}" for one in THICKNESSES])
         axes.minorticks_off()
     saved(figure, "thickness")
-    for one, response, force, back in zip(thicknesses, responses, forces, achieved, strict=True):
-        row = {name: float(values[0]) for name, values in response.impacts.items()}
+    for one, row in zip((*THICKNESSES, np.inf), (*rows, rigid), strict=True):
+        response = on_plate(one) if np.isfinite(one) else on_rigid_plate()
         print(
-            f"thickness {one:g} mm: {back:.3f} (Zener {0.8 * np.interp(one, many, zener):.3f}), {force:.2f} kN, "
-            f"{1e6 * row['duration_s']:.0f} us, {row['contacts']:.0f} contacts, truncation {response.truncation}"
+            f"thickness {one:g} mm: {row['restitution_achieved']:.4f} (Zener {zener(one):.4f}), {row['max_force_N']:.1f} N, "
+            f"{1e6 * row['duration_s']:.1f} us, truncation {response.truncation}, doubts: {vi.result_of(response).doubts}"
         )
+
+
+@cache
+def measured_by_chains(law: str = SENSORS["contact"]["law"]) -> vi.Response:
+    """Return the impact on the plate under a law, with four measuring chains at the position of the page's sensors."""
+    position = SENSORS["sensors"][0]["position"]
+    sensors = [{"name": name, "position": position, **chain} for name, (chain, _) in CHAINS.items()]
+    return vi.simulate(vi.read_case({**SENSORS, "contact": {"law": law}, "sensors": sensors}))
 
 
 def accelerometer() -> None:
     """Draw what accelerometers of different chains make of one impact."""
-    chains = {
-        "the motion itself, 200 kHz": ({"rate": "200 kHz"}, GREY),
-        "mounted resonance 8 kHz, 51.2 kHz": ({"rate": "51.2 kHz", "accelerometer": {"resonance": "8 kHz"}}, RED),
-        "resonance 32 kHz, range 2000 m/s$^2$, 51.2 kHz": (
-            {"rate": "51.2 kHz", "accelerometer": {"resonance": "32 kHz", "range": 2000.0}},
-            BLUE,
-        ),
-        "sampled at 5 kHz": ({"rate": "5 kHz"}, GREEN),
-    }
-    sensors = [{"name": name, "position": ["200 mm", "120 mm"], **chain} for name, (chain, _) in chains.items()]
-    table = {**CASE, "plate": {**PLATE, "modes": 400}, "run": {"impacts": 1, "duration": "0.5 s"}, "sensors": sensors}
-    response = vi.simulate(vi.read_case(table))
+    response = measured_by_chains()
     touch = float(response.impacts["time_s"][0])
-    figure, axes = plt.subplots(len(chains), 1, figsize=(7.6, 6.2), layout="constrained", sharex=True)
+    figure, axes = plt.subplots(len(CHAINS), 1, figsize=(7.6, 6.2), layout="constrained", sharex=True)
     for one, (name, signal) in zip(axes, response.signals().items(), strict=True):
         near = np.abs(1e3 * (signal.time - touch) - 2.0) < 2.5
-        one.plot(1e3 * (signal.time[near] - touch), 1e-3 * signal.value[near], color=chains[name][1], linewidth=1.0)
+        one.plot(1e3 * (signal.time[near] - touch), 1e-3 * signal.value[near], color=CHAINS[name][1], linewidth=1.0)
         one.set_title(name, loc="left", fontsize=9)
         print(
-            f"accelerometer, {name}: {np.abs(signal.value).max():.0f} m/s2, overload {1e3 * signal.overload_time:.3f} ms, "
+            f"accelerometer, {name}: {signal.largest:.0f} m/s2, overload {1e3 * signal.overload_time:.3f} ms, "
             f"reached {signal.peak:.0f}, uncertain by {signal.uncertainty:.3f}"
         )
+    print(f"accelerometer: {first_impact(response)}, doubts: {vi.result_of(response).doubts}")
     axes[-1].set(xlabel="time since first touch [ms]", xlim=(-0.5, 4.0))
     figure.supylabel("acceleration [km/s$^2$]", fontsize=10)
     saved(figure, "accelerometer")
@@ -180,26 +253,27 @@ def river() -> None:
 
 def treatments() -> None:
     """Draw the force of one impact between bodies that are treated as rigid, quasi-static and elastic."""
-    rigid = {**CASE, "plate": {"material": "steel"}}
+    rigid = {**ACETAL, "plate": {"material": "steel"}}
     cases = {
         "rigid": vi.read_case(rigid),
-        "rigid, finite_sphere": vi.read_case({**rigid, "contact": {**CASE["contact"], "finite_sphere": True}}),
+        "rigid, finite_sphere": vi.read_case({**rigid, "contact": {**ACETAL["contact"], "finite_sphere": True}}),
     }
-    cases |= {f"elastic plate, {modes} modes": case_with(plate={"modes": modes}) for modes in (10, 40, 150)}
+    cases |= {f"elastic plate, {modes} modes": case_with(ACETAL, plate={"modes": modes}) for modes in (10, 40, 150)}
     figure, axes = plt.subplots(figsize=(7.2, 3.6), layout="constrained")
     for (name, case), colour in zip(cases.items(), (GREY, "#222222", "#a9c4dc", "#5b93c4", BLUE), strict=True):
         response = vi.simulate(case)
-        row = {column: float(values[0]) for column, values in response.impacts.items()}
-        time = np.linspace(0.0, 2.2e-4, 300)
-        axes.plot(1e6 * time, 1e-3 * response.at(row["time_s"] + time, ("force_N",))["force_N"], color=colour, label=name)
+        row = first_impact(response)
+        time = np.linspace(0.0, 6e-4, 300)
+        axes.plot(1e6 * time, response.at(row["time_s"] + time, ("force_N",))["force_N"], color=colour, label=name)
         print(
             f"{name}: {row['max_force_N']:.0f} N, {1e6 * row['duration_s']:.0f} us, {row['restitution_achieved']:.3f}, "
             f"truncation {response.truncation}"
         )
-    axes.set(xlabel="time since first touch [us]", ylabel="contact force [kN]", xlim=(0.0, 220.0), ylim=(0.0, None))
+    axes.set(xlabel="time since first touch [us]", ylabel="contact force [N]", xlim=(0.0, 600.0), ylim=(0.0, None))
     axes.legend(frameon=False)
     saved(figure, "treatments")
 
 
-for draw in (adams, restitution, thickness, accelerometer, coal, river, treatments):
-    draw()
+if __name__ == "__main__":
+    for draw in (adams, restitution, thickness, accelerometer, coal, river, treatments):
+        draw()
