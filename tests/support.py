@@ -1,11 +1,18 @@
-"""Cases for tests."""
+"""Cases for tests, and what pages and examples compute."""
 
 from __future__ import annotations
 
+import importlib.util
+import re
 from collections.abc import Callable, Iterable
+from functools import cache
+from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import pytest
+
+ROOT = Path(__file__).parents[1]
 
 
 def plain_case(**changes: object) -> dict:
@@ -34,3 +41,28 @@ def one_in(every: int, values: Iterable[Any], name: Callable[[Any], str] = str) 
     """Parameters of a test, of which one in so many is tried each time, and the others where there is time for the slow ones."""
     several = [value if isinstance(value, tuple) else (value,) for value in values]
     return [pytest.param(*value, id=name(value[0]), marks=pytest.mark.slow if place % every else ()) for place, value in enumerate(several)]
+
+
+@cache
+def example(name: str) -> ModuleType:
+    """A program of `examples`, as a module."""
+    found = importlib.util.spec_from_file_location(name, ROOT / "examples" / f"{name}.py")
+    assert found is not None
+    assert found.loader is not None
+    module = importlib.util.module_from_spec(found)
+    found.loader.exec_module(module)
+    return module
+
+
+def blocks(page: str, language: str) -> list[str]:
+    """The blocks of a page in a language."""
+    return re.findall(rf"```{language}\n(.*?)```", (ROOT / page).read_text(encoding="utf-8"), flags=re.S)
+
+
+@cache
+def names_of_page(page: str) -> dict[str, Any]:
+    """What the names in the Python programs of a page stand for, after they have run."""
+    names: dict[str, Any] = {}
+    for block in blocks(page, "python"):
+        exec(compile(block, page, "exec"), names)
+    return names

@@ -1,0 +1,105 @@
+"""Numbers of the guide on restitution in discrete-element codes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import vibroimpact as vi
+from stated import says
+from support import blocks, example, names_of_page
+from vibroimpact.cases.limits.relaxation import LIMITS as RELAXATION
+from vibroimpact.cases.limits.strength import demands
+
+PAGE = "docs/guides/restitution-in-dem.md"
+ASKED = (0.9, 0.7, 0.5)
+
+
+def achieved(name: str) -> list[float]:
+    return [example("pictures_of_guides").restitution_of(name, asked) for asked in ASKED]
+
+
+def test_laws() -> None:
+    assert achieved("linear-spring-dashpot") == pytest.approx(achieved("tsuji"), abs=1e-6)
+    says(PAGE, "| linear-spring-dashpot, tsuji | {} | {} | {} |", *achieved("tsuji"))
+    says(PAGE, "| flores | {} | {} | {} |", *achieved("flores"))
+    says(PAGE, "| gonthier | {} | {} | {} |", *achieved("gonthier"))
+    says(PAGE, "| herbert-mcwhannell | {} | {} | {} |", *achieved("herbert-mcwhannell"))
+    says(PAGE, "| hunt-crossley | {} | {} | {} |", *achieved("hunt-crossley"))
+    says(PAGE, "| lankarani-nikravesh | {} | {} | {} |", *achieved("lankarani-nikravesh"))
+    says(PAGE, "| lee-wang | {} | {} | {} |", *achieved("lee-wang"))
+
+
+def test_program_of_the_page() -> None:
+    law = names_of_page(PAGE)["law"]
+    says(PAGE, "vi.achieved_restitution(law, mass=0.1, speed=1.0) # {}", float(vi.achieved_restitution(law, mass=0.1, speed=1.0)))
+    asked = vi.law_achieving(law, 0.7, mass=0.1, speed=1.0)
+    says(PAGE, "# {} achieves 0.7", float(asked.restitution))
+
+
+def test_steps() -> None:
+    names = names_of_page(PAGE)
+
+    def errors(asked: float) -> list[float]:
+        law = vi.find_contact_law("tsuji")(stiffness=1e8, restitution=asked, effective_mass=0.1)
+        return [names["restitution_in_steps"](law, 0.1, 1.0, steps) - asked for steps in (10, 20, 50, 100)]
+
+    nearly, half = errors(0.9), errors(0.5)
+    says(PAGE, "| error of 0.9 | {} | {} | {} | {} |", *nearly)
+    says(PAGE, "| error of 0.5 | {} | {} | {} | {} |", *half)
+    says(PAGE, "with 50 steps in the *shortest* contact the restitution is accurate to {}", max(nearly[2], half[2]))
+
+
+def test_dashpots() -> None:
+    """Of the sizes and speeds of the table; it scales as the page says."""
+    names = names_of_page(PAGE)
+    mass, speed = names["mass"] * names["each"], names["speed"] * names["each"]
+    damping = vi.law_achieving(names["dashpot"], 0.9, mass=mass, speed=speed).damping_max
+    says(PAGE, "| radius | {} m/s | {} m/s | {} m/s | {} m/s |", *names["speed"][0])
+    says(PAGE, "| 0.5 mm | {} | {} | {} | {} |", *damping[0])
+    says(PAGE, "| 1 mm | {} | {} | {} | {} |", *damping[1])
+    says(PAGE, "| 2 mm | {} | {} | {} | {} |", *damping[2])
+    says(PAGE, "| 5 mm | {} | {} | {} | {} |", *damping[3])
+    scale = names["radius"] ** 2 * names["speed"] ** 0.2
+    assert damping / scale == pytest.approx(float(damping[0, 0] / scale[0, 0]), rel=1e-3)
+
+
+def test_viscoelastic_grains() -> None:
+    names = names_of_page(PAGE)
+    mass, speed = names["mass"] * names["each"], names["speed"] * names["each"]
+    law = vi.find_contact_law("kuwabara-kono")(stiffness=names["dashpot"].stiffness, dissipation_time=0.2e-6)
+    found = vi.achieved_restitution(law, mass=mass, speed=speed)
+    assert (found.min(), found.max()) == (found[0, -1], found[-1, 0])
+    says(
+        PAGE,
+        "a dissipation time of 0.2 µs the restitution of the same grains ranges from {} (0.5 mm, 1 m/s) to {} (5 mm, 0.03 m/s)",
+        found[0, -1],
+        found[-1, 0],
+    )
+    hertz = vi.find_contact_law("hertz")(stiffness=float(law.stiffness[0, -1]))
+    body = vi.Body(mass=float(mass[0, -1]), contact_offset=1e-3)
+    alone = vi.Problem(sphere=body, plate=vi.rigid_plate(), laws=(hertz,), speed=1.0, gravity=0.0, impacts=1)
+    (limit,) = RELAXATION
+    assert 0.2e-6 / float(vi.simulate(alone).impacts["duration_s"][0]) < limit.threshold
+
+
+def test_glass_is_within_its_strength() -> None:
+    names = names_of_page(PAGE)
+    stiffness, radius = names["dashpot"].stiffness[:, -1], 0.5 * names["radius"][:, 0]
+    depth = (1.25 * names["mass"][:, 0] * 1.0**2 / stiffness) ** 0.4
+    pressure = 1.5 * stiffness * depth**1.5 / (np.pi * radius * depth)
+    assert pressure == pytest.approx(pressure[0])
+    glass = demands(names["glass"], float(pressure[0]))
+    crushed, torn = (glass[name][0] / glass[name][1] for name in ("compressive_strength", "tensile_strength"))
+    says(PAGE, "At 1 m/s Hertz's pressure is {} of that at which glass is crushed", crushed)
+    says(PAGE, "the tension beside the contact is {} times the tensile strength of float glass", torn)
+
+
+def test_exported_line(tmp_path: Path) -> None:
+    """The line that the page shows is in the exported file."""
+    vi.simulate(vi.load_case("paper:type1-constant")).save(tmp_path / "run")
+    (script,) = vi.export_result(tmp_path / "run", "lammps", tmp_path / "rock.in")
+    shown = " ".join(blocks(PAGE, "text")[0].removesuffix("...\n").split())
+    assert shown in " ".join(script.read_text(encoding="utf-8").split())
