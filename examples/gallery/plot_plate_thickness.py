@@ -3,7 +3,8 @@ Restitution coefficient against plate thickness
 ===============================================
 
 A plate takes energy from an impact, which its bending waves carry away. The restitution of the paper's rock of 25 mm radius on steel plates
-from 7 to 20 mm agrees with Zener's theory of an infinite plate: at 8 mm a quarter of the speed is lost without any damping.
+from 7 to 20 mm agrees with Zener's theory of an infinite plate: at 8 mm a quarter of the speed is lost without any damping. The contact is
+taken to be elastic; whether the rock would yield or crack is not known, since the paper gives no strength.
 """
 
 # %%

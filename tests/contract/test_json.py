@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import html
 import inspect
 import json
 import math
@@ -253,6 +254,26 @@ def test_units_are_whole_numbers_of_the_machine(printed: Printed) -> None:
     assert document == {"number": 5.115e8, "unit": "N/m^1.5", "converted": [{"number": number, "unit": "N/mm^1.5"}]}
     systems = printed("units", "-5", "N/m", numbers=True)["converted"]
     assert [one["number"] for one in systems[:2]] == [-5.0, vi.convert_units(-5.0, "N/m", "N/mm")]
+
+
+def test_doubts_are_those_of_the_run(printed: Printed) -> None:
+    """What is calibrated and what is exported exceeds the limits that a run of the same case exceeds."""
+    steel = {
+        "sphere": {"radius": 0.02, "material": "steel"},
+        "plate": {"material": "steel"},
+        "drop": {"height": 0.5},
+        "run": {"impacts": 1},
+    }
+    target = {"target": {"rebound_heights": [0.337]}}
+    Path("ball.toml").write_text(tomli_w.dumps({**steel, "contact": {"law": "adams-impact"}, "calibrate": target}))
+    calibrated = printed("calibrate", "ball.toml", "-o", "ball")["doubts"]
+    run = printed("run", "ball/case.toml", "-o", "run")["doubts"]
+    assert sum("yields under Hertz's peak pressure" in doubt for doubt in run) == 2
+    assert calibrated[: len(run)] == run
+    for folder in ("ball", "run"):
+        assert printed("export", folder, "--to", "adams")["doubts"] == run
+        assert printed("export", folder, "--to", "lammps")["doubts"] == run
+    assert all(html.escape(doubt).replace("&#x27;", "&#39;") in Path("ball/report.html").read_text(encoding="utf-8") for doubt in run)
 
 
 def test_exports_name_their_files(printed: Printed) -> None:
