@@ -34,7 +34,6 @@ NOT_YET = {
     "docs/elastic-bodies.md",
     "docs/elastic-drops.md",
     "docs/export.md",
-    "docs/first-steps.md",
     "docs/glossary.md",
     "docs/hammer.md",
     "docs/how-it-works.md",
