@@ -43,10 +43,15 @@ def one_in(every: int, values: Iterable[Any], name: Callable[[Any], str] = str) 
     return [pytest.param(*value, id=name(value[0]), marks=pytest.mark.slow if place % every else ()) for place, value in enumerate(several)]
 
 
-@cache
 def example(name: str) -> ModuleType:
     """A program of `examples`, as a module."""
-    found = importlib.util.spec_from_file_location(name, ROOT / "examples" / f"{name}.py")
+    return module_at(f"examples/{name}.py")
+
+
+@cache
+def module_at(place: str) -> ModuleType:
+    """A Python file of the project, as a module."""
+    found = importlib.util.spec_from_file_location(Path(place).stem, ROOT / place)
     assert found is not None
     assert found.loader is not None
     module = importlib.util.module_from_spec(found)

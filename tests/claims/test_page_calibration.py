@@ -1,0 +1,186 @@
+"""Numbers of the page on calibration."""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+import vibroimpact as vi
+from heard import heard
+from stated import says
+from support import blocks, module_at, plain_case
+from vibroimpact.calibration.evaluate_measurement import _MATTERS
+from vibroimpact.calibration.noise import standard_deviations
+from vibroimpact.calibration.section import _MEASURED
+from vibroimpact.contact.pair import effective_shear_modulus
+from vibroimpact.signals.bounces import chain, touches
+from vibroimpact.signals.bounces.find import _DOUBLE
+
+PAGE = "docs/calibration.md"
+
+
+@cache
+def paper() -> vi.Calibration:
+    found = vi.calibrate_case(vi.load_calibration("paper:calibration"))
+    assert isinstance(found, vi.Calibration)
+    return found
+
+
+def test_dampings() -> None:
+    """Those found, and those printed, which the case gives."""
+    rows = list(zip(paper().observations.speeds, paper().values, paper().given, strict=True))
+    says(PAGE, "| 1 | {} | {} | {} |", *rows[0])
+    says(PAGE, "| 2 | {} | {} | {} |", *rows[1])
+    says(PAGE, "| 3 | {} | {} | {} |", *rows[2])
+    says(PAGE, "| 4 | {} | {} | {} |", *rows[3])
+    says(PAGE, "| 5 | {} | {} | {} |", *rows[4])
+    function = paper().fit.function
+    constant, slope, curvature = function.coefficients
+    says(PAGE, "| function of the speed | {} to {} | {} + {} v - {} v²", function.slowest, function.fastest, constant, slope, -curvature)
+    says(PAGE, "found.values # [{}, {}, {}, {}, {}]", *paper().values)
+
+
+def test_what_remains() -> None:
+    off = {way: paper().drops[way] for way in ("target", "variable", "constant")}
+    force = 100.0 * (1.0 - off["variable"]["max_force_N"] / off["target"]["max_force_N"])
+    says(PAGE, "the largest force is {} to {} % below the target", force.min(), force.max())
+    height = 100.0 * (1.0 - off["constant"]["rebound_height_m"] / off["target"]["rebound_height_m"])
+    says(PAGE, "constant damping the fifth rebound is {} % too low", height[4])
+
+
+def test_sizes_of_files() -> None:
+    says(PAGE, "A file has at most {} MB", 1e-6 * _MEASURED.largest)
+
+
+@pytest.mark.slow
+def test_drifting_forces() -> None:
+    """The records of the test of that name, counted."""
+    drifts = module_at("tests/unit/test_force_drift.py")
+    contact = {"law": "adams-impact", "damping_max": 200.0}
+    response = vi.simulate(vi.read_case(plain_case(contact=contact, drop={"height": 1.0}, run={"impacts": 3})))
+    begin, duration = float(response.impacts["time_s"][0]), float(response.impacts["duration_s"][0])
+    time = np.arange(begin - 6.0 * duration, begin + 12.0 * duration, 1e-7)
+    force, exact = response.at(time)["force_N"], float(response.impacts["separation_speed_m_s"][0])
+
+    def covered(drift: Any) -> float:
+        seen = [drifts.measured(response, lambda at: np.interp(at, time, force), drift, seed) for seed in range(drifts.TIMES)]
+        off = np.array([one.wanted["separation_speed"][0] for one in seen]) - exact
+        stated = np.array([standard_deviations(one.noise["separation_speed"])[0] for one in seen])
+        return 100.0 * float(np.mean(np.abs(off) <= 1.96 * stated))
+
+    parts = [covered(drift) for drift in (drifts.ramp, drifts.settling, drifts.discharge, drifts.wander)]
+    says(PAGE, "noise of {} % and drifts of {} %", 100.0 * 20.0 / float(force.max()), 100.0 * drifts.PART)
+    says(PAGE, "hum), {} of each kind, the 95 % interval contains the true rebound in {} to {} %", drifts.TIMES, min(parts), max(parts))
+
+
+def test_a_contact_in_a_flight() -> None:
+    says(PAGE, "{} for 0.2 ms, 300 ms and 0.5, but {} for 5 ms and 100 ms", 0.5 * 0.2 / 300.0, 0.5 * 5.0 / 100.0)
+
+
+def test_how_bounces_are_found() -> None:
+    says(PAGE, "rumble below {} Hz", touches._LOWEST)
+    says(PAGE, "over the next 2 ms exceeds that over the last {} ms by {} standard deviations", 1e3 * touches.WINDOW, touches._ABOVE)
+    says(PAGE, "Touches with {} % of their energy in three samples are clicks", 100.0 * touches._PART)
+    says(PAGE, "by a factor between {} and {} that changes slowly", chain.LOWEST, chain.HIGHEST)
+    slowly = 100.0 * chain._SLOWLY
+    says(PAGE, "by {} % from bounce to bounce (standard deviation) and {} % at most", slowly, slowly * chain._FURTHEST)
+    says(PAGE, "Second contacts within {} ms", 1e3 * _DOUBLE)
+
+
+@pytest.mark.slow
+def test_intervals_of_bounces() -> None:
+    """The records of the test of bounces, counted."""
+    bounces = module_at("tests/unit/test_bounces.py")
+    off, wide, level = [], [], []
+    for seed in range(100):
+        condition = bounces.CONDITIONS[seed // 5 % 5]
+        made = heard(seed, *bounces.BALLS[seed % 5], **condition)
+        found = vi.find_bounces(made.record)
+        off += (found.restitution - made.restitution[: len(found.restitution)]).tolist()
+        wide += (bounces.SAID * np.sqrt(np.diag(found.covariance))).tolist()
+        level += [condition["decibels"]] * len(found.restitution)
+    within, noise = np.abs(off) <= wide, np.array(level)
+    parts = [100.0 * float(part.mean()) for part in (within, within[noise == 0.0], within[noise == 20.0])]
+    says(
+        PAGE,
+        "they contain the true restitution of {} % of {} impacts ({} % at 0 dB, {} % at 20 dB), and the largest error is {}.",
+        parts[0],
+        len(off),
+        *parts[1:],
+        float(np.abs(off).max()),
+    )
+
+
+def test_flights_in_air() -> None:
+    (case,) = (table for table in map(tomllib.loads, blocks(PAGE, "toml")) if "air" in table.get("calibrate", {}))
+
+    def first(**changes: Any) -> tuple[float, vi.Calibration]:
+        found = vi.calibrate_case(vi.read_calibration({**case, "calibrate": {**case["calibrate"], **changes}}))
+        assert isinstance(found, vi.Calibration)
+        return float(found.outcomes["separation_speed"][0] / found.observations.speeds[0]), found
+
+    in_air, found = first()
+    assert any("strains" in doubt for doubt in found.doubts)  # the ball is too soft for Hertz
+    says(PAGE, "A rubber ball of {} mm", 2.0 * 13.0)
+    says(PAGE, "has {} at its first impact if its heights are treated as those in a vacuum", first(air=False)[0])
+    says(PAGE, "and the result is {}.", in_air)
+    says(PAGE, "a doubt states the change of the restitutions if it exceeds {} %", 100.0 * _MATTERS)
+    says(PAGE, "drag (air of {} kg/m³", float(vi.Air().density))
+
+
+def test_the_penetration_of_the_paper() -> None:
+    what = vi.load_calibration("paper:full-damping-penetration")
+    found = vi.calibrate_case(what)
+    assert isinstance(found, vi.Calibration)
+    radius, gravity = what.case.sphere.radius, what.case.drop.gravity
+    given, wanted = (float(one["separation_speed"][0]) for one in (found.as_given, found.outcomes))
+    heights = [radius + speed**2 / (2.0 * gravity) for speed in (given, wanted)]
+    says(PAGE, "the first rebound height is {} m instead of {} m; {} mm matches it", *heights, 1e3 * float(found.values[0]))
+    says(PAGE, "prints a full-damping penetration of {} m", float(found.given[0]))
+
+
+@cache
+def fitted(friction: str, steep: bool, *names: str) -> tuple[vi.FrictionCalibration, float]:
+    """The fit to the measured impacts, all or the steep ones, and the mean error of the tangential restitution."""
+    kharaz = module_at("tests/verification/test_vs_kharaz.py")
+    rows = kharaz.SLIPPING if steep else kharaz.ALL
+    angles, wanted = kharaz.ANGLES[rows], {"tangential_restitution": kharaz.MEASURED[rows]}
+    noise = {name: np.ones(len(angles)) for name in wanted}
+    seen = kharaz.from_table(kharaz.SPEED * np.cos(angles), wanted, noise, tuple("abcdefgh"[: len(angles)]))
+    impacts = vi.ObliqueImpacts(replace(seen, deviations_known=False), kharaz.SPEED * np.sin(angles), np.zeros(len(angles)), wanted)
+    found = vi.calibrate_friction(kharaz.problem_of(friction).take(0), impacts, ["friction.coefficient", *names])
+    return found, float(np.abs(found.outcomes["tangential_restitution"] - kharaz.MEASURED[rows]).mean())
+
+
+def row(friction: str) -> list[float]:
+    """A row of the table: coefficient and interval, mean error; coefficient and interval of the steep impacts."""
+    (found, error), (steep, _) = fitted(friction, False), fitted(friction, True)
+    assert found.intervals is not None
+    assert steep.intervals is not None
+    return [found.values[0], *found.intervals[0], error, steep.values[0], *steep.intervals[0]]
+
+
+@pytest.mark.slow
+def test_measured_friction() -> None:
+    kharaz = module_at("tests/verification/test_vs_kharaz.py")
+    says(PAGE, "who determined {} from those that slide throughout", kharaz.FRICTION)
+    says(PAGE, "from {}° on: coefficient", float(np.degrees(kharaz.ANGLES[kharaz.SLIPPING][0])))
+    says(PAGE, "| mdr | {} ({} to {}) | {} | {} ({} to {}) |", *row("mdr"))
+    says(PAGE, "| coulomb | {} ({} to {}) | {} | {} ({} to {}) |", *row("coulomb"))
+    says(PAGE, "| mindlin | {} ({} to {}) | {} | {} ({} to {}) |", *row("mindlin"))
+    found, error = fitted("mdr", False, "friction.effective_shear_modulus")
+    assert found.intervals is not None
+    modulus = [1e-9 * float(one) for one in (found.values[1], *found.intervals[1], effective_shear_modulus(kharaz.ALUMINA, kharaz.GLASS))]
+    says(
+        PAGE,
+        "| mdr with the shear modulus: {} GPa ({} to {}), {} from the materials | {} ({} to {}) | {} |",
+        *modulus,
+        found.values[0],
+        *found.intervals[0],
+        error,
+    )
