@@ -9,7 +9,7 @@ follow the damping at each approach speed, its interval, and the values in the u
 # %%
 # The measurement
 # ---------------
-# A rock of 25 mm radius was dropped from 4 m; its first four rebounds are known to 2 mm.
+# A rock of 25 mm radius is dropped from 4 m. Its first four rebounds are those of the paper's theory, taken as if measured to 2 mm.
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -49,7 +49,7 @@ for speed, damping in zip(found.observations.speeds, found.values, strict=True):
 print(*found.doubts, sep="\n")
 
 # %%
-# The paper found 179.75, 172.8, 166.3 and 160.9 N s/m by trial, for the rebounds of its own theory: the intervals contain these values.
+# The paper prints 179.75, 172.8, 166.3 and 160.9 N s/m, for the rebounds of its own theory: the intervals contain these values.
 printed = np.array([179.75, 172.8, 166.3, 160.9])
 assert np.all((found.intervals[:, 0] < printed) & (printed < found.intervals[:, 1]))
 
@@ -98,7 +98,7 @@ axes.plot(
     color="#b3400e",
     markersize=22,
     markeredgewidth=1.8,
-    label="found by trial in the paper",
+    label="printed in the paper",
 )
 axes.set(
     xlabel="Approach speed [m/s]",
