@@ -16,7 +16,7 @@ def formats_document() -> dict[str, Any]:
 
 
 def export_document(drop: Drop, format: ExportFormat, files: Sequence[Path]) -> dict[str, Any]:
-    """Return the files written, the limitations of the format for this drop, the doubts about it, what the writer was tested against, and what a dialog takes."""
+    """Return the files written, the limitations of the format for this drop, the doubts about it, the tests of the writer, and a dialog."""
     told: dict[str, Any] = {"format": format.name, "files": [str(file) for file in files], "notes": format.notes(drop)}
     told |= {"doubts": list(drop.doubts), "tested": format.tested}
     return told | ({"adams_dialog": dialog} if (dialog := format.dialog(drop)) else {})
