@@ -59,7 +59,6 @@ NOT_YET = {
     "docs/guides/choosing.md",
     "docs/guides/coal-from-rock.md",
     "docs/guides/how-far-to-trust-it.md",
-    "docs/guides/measured-and-computed.md",
     "docs/guides/plate-thickness.md",
     "docs/guides/reproduce-the-paper.md",
     "docs/guides/restitution-in-dem.md",
