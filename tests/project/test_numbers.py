@@ -24,7 +24,6 @@ PAGES = [
 ]
 
 NOT_YET = {
-    "README.md",
     "docs/benchmarks.md",
     "docs/bounds.md",
     "docs/calibration.md",
@@ -53,12 +52,10 @@ NOT_YET = {
     "docs/signals.md",
     "docs/studies.md",
     "docs/systems.md",
-    "docs/verification.md",
     "docs/guides/accelerometer.md",
     "docs/guides/adams-damping.md",
     "docs/guides/choosing.md",
     "docs/guides/coal-from-rock.md",
-    "docs/guides/how-far-to-trust-it.md",
     "docs/guides/plate-thickness.md",
     "docs/guides/reproduce-the-paper.md",
     "docs/guides/restitution-in-dem.md",
