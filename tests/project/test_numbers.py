@@ -41,7 +41,6 @@ NOT_YET = {
     "docs/instruments.md",
     "docs/laws.md",
     "docs/live-page.md",
-    "docs/method.md",
     "docs/oblique.md",
     "docs/packages.md",
     "docs/recognition.md",
