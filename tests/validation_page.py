@@ -16,7 +16,8 @@ KINDS = {
     "closed form": "analytical solutions and published formulas, evaluated in the tests; benchmarks of other programs that have one",
     "published computation": "published numerical results without a closed form, printed or digitized from figures",
     "other program": "other programs and libraries, run for the same case, or their recorded results",
-    "own independent computation": "integrations, series and finite elements by the same authors, without the solvers of the package; some take its formulas of contact laws",
+    "own independent computation": "integrations, series and finite elements by the same authors, without the solvers of the package; some "
+    "take its formulas of contact laws",
     "consistency": "no external reference: limits, conservation laws, round trips, convergence, another method of the package",
     "fitted to published numbers": "published numbers to which an input of the case was fitted here: the fit meets them; no prediction",
     "experiment": "measurements; friction and restitution measured in the same series, nothing fitted to the compared values",
