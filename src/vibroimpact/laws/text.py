@@ -52,8 +52,8 @@ class LawText:
 
     Parameters
     ----------
-    name, title, equation, source : str
-        Its name, the first paragraph of its docstring, its equation, and its source.
+    name, title, equation, source, departure : str
+        Its name, the first paragraph of its docstring, its equation, its source, and in what it departs from that; "" if in nothing.
     loss_parameters : str
         The parameters that set the energy loss.
     end, tension : str
@@ -70,6 +70,7 @@ class LawText:
     title: str
     equation: str
     source: str
+    departure: str
     loss_parameters: str
     end: str
     tension: str
@@ -115,6 +116,7 @@ def law_text(law: type[ContactLaw | FrictionLaw]) -> LawText:
         title=title,
         equation=law.equation,
         source=law.source,
+        departure=law.departure if issubclass(law, ContactLaw) else "",
         loss_parameters=_loss_parameters(law) if issubclass(law, ContactLaw) else "",
         end=end,
         tension=tension,

@@ -34,11 +34,6 @@ class Storakers(YieldingSphereLaw):
 
     Notes
     -----
-    Published are the two relations of the fully plastic contact, with :math:`c^2` of 1.43 without hardening, 1 for an m of about 3, and 0.5
-    for m = 1. The power between the ends is this software's, and gives 1.007 for m = 3. So is the passage from Hertz's contact: the force
-    over the contact radius is Thornton's (1997), with this pressure in the place of a constant one, and the indentation is the mean of the
-    fully plastic and the elastic one, with the weights by which it is Hertz's at yield.
-
     The contact stays elastic until Hertz's largest pressure is near the fully plastic pressure, whereas a sphere begins to yield at 1.6 Y.
     Without hardening nothing is lost up to 4.8 times the speed of first yield, and too little until the contact is fully plastic, at about
     100 times that speed; `meyer` has the rise of the pressure in between. The restitution is above Jackson, Green and Marghitu's fit to
@@ -66,6 +61,12 @@ class Storakers(YieldingSphereLaw):
         "delta = a^2/(2 c^2 R) + (1 - 1/(2 c^2)) 3 F/(4 E* a), c^2 = 1.43 (0.5/1.43)^(1/m); unloading Hertz's, of a flatter sphere"
     )
     source = "Storakers, Biwa & Larsson 1997, Int. J. Solids Struct. 34:3061 (fully plastic); Thornton 1997, J. Appl. Mech. 64:383"
+    departure = (
+        "Published are the two relations of the fully plastic contact, with c^2 of 1.43 without hardening, 1 for an m of about 3, and 0.5 "
+        "for m = 1. The power between the ends is this software's, and gives 1.007 for m = 3. So is the passage from Hertz's contact: the "
+        "force over the contact radius is Thornton's, with this pressure in the place of a constant one, and the indentation is the mean "
+        "of the fully plastic and the elastic one, with the weights by which it is Hertz's at yield."
+    )
     free_parameter = "yield_strength"
 
     yield_strength: Array = parameter(
