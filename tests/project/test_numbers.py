@@ -56,7 +56,6 @@ NOT_YET = {
     "docs/verification.md",
     "docs/guides/accelerometer.md",
     "docs/guides/adams-damping.md",
-    "docs/guides/choosing.md",
     "docs/guides/coal-from-rock.md",
     "docs/guides/how-far-to-trust-it.md",
     "docs/guides/measured-and-computed.md",
