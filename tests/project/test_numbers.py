@@ -41,7 +41,6 @@ NOT_YET = {
     "docs/identification.md",
     "docs/index.md",
     "docs/instruments.md",
-    "docs/laws.md",
     "docs/limits.md",
     "docs/live-page.md",
     "docs/method.md",

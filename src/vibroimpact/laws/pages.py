@@ -11,7 +11,7 @@ from pathlib import Path
 from vibroimpact.contact.law import CompliantLaw, ContactLaw
 from vibroimpact.contact.registry import contact_laws
 from vibroimpact.errors import InputError
-from vibroimpact.laws.text import SPEED, ParameterText, asked_and_achieved, law_text
+from vibroimpact.laws.text import SPEED, ParameterText, asked_and_achieved, law_text, short_sources
 from vibroimpact.report.markdown_table import markdown_table
 
 BEGIN, END = "<!-- laws: begin (written by make docs) -->", "<!-- laws: end -->"
@@ -107,7 +107,7 @@ def _table_of(laws: Iterable[type[ContactLaw]]) -> str:
     for law in laws:
         end, tension = (_ENDS[law.contact_end], _TENSION[law.tension]) if issubclass(law, CompliantLaw) else ("instantaneous", "")
         equation = law.equation.replace("|", r"\|")
-        source = f"{law.source}; not as published there" if law.departure else law.source
+        source = f"{short_sources(law)}; changed" if law.departure else short_sources(law)
         rows.append((f"[`{law.name}`](laws/{law.name}.md)", f"`{equation}`", end, tension, source))
     return _table(("law", "force, or restitution", "contact ends", "tensile force", "source"), rows)
 

@@ -170,7 +170,23 @@ def short_source(law: type[ContactLaw | FrictionLaw]) -> str:
     >>> short_source(find_contact_law("jkr")), short_source(find_contact_law("adams-poisson"))
     ('Johnson, Kendall & Roberts 1971', 'MSC Adams/Solver guide')
     """
-    parts = law.source.split("; ")[0].split(",")
+    return _short(law.source.split("; ")[0])
+
+
+def short_sources(law: type[ContactLaw]) -> str:
+    """Return the authors and years of all sources of a law.
+
+    Examples
+    --------
+    >>> from vibroimpact.contact.registry import find_contact_law
+    >>> short_sources(find_contact_law("tsuji"))
+    'Tsuji et al. 1992; Antypov & Elliott 2011'
+    """
+    return "; ".join(map(_short, law.source.split("; ")))
+
+
+def _short(source: str) -> str:
+    parts = source.split(",")
     dated = [number for number, part in enumerate(parts, 1) if _is_year(part.rpartition(" ")[2])]
     return ",".join(parts[: dated[0] if dated else 1])
 

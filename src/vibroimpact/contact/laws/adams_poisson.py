@@ -35,7 +35,7 @@ class AdamsPoisson(TwoPhaseLaw):
 
     name = "adams-poisson"
     equation = "F = p delta on approach, e^2 p delta on the way out"
-    source = "MSC Adams/Solver guide, statement CONTACT (parameters and outcome; the course of the force is not published)"
+    source = "MSC Adams/Solver guide, statement CONTACT (parameters and outcome)"
     departure = (
         "The course of the force is this software's: Adams' manual gives the parameters and the outcome only. What happens within the "
         "contact (force, penetration, duration) is that of a linear spring and is no prediction of Adams."
