@@ -44,7 +44,6 @@ NOT_YET = {
     "docs/limits.md",
     "docs/live-page.md",
     "docs/method.md",
-    "docs/oblique.md",
     "docs/packages.md",
     "docs/recognition.md",
     "docs/result-folder.md",
