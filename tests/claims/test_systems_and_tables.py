@@ -8,7 +8,8 @@ import vibroimpact as vi
 from stated import says
 from vibroimpact.cases.motion import _FEWEST, _MOST
 
-SYSTEMS, SHAKEN = "docs/systems.md", "docs/shaken.md"
+SYSTEMS = "docs/systems.md"
+SHAKEN = "docs/shaken.md"
 
 
 def test_newtons_cradle() -> None:
