@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import re
 
+import numpy as np
 import pytest
 
 import vibroimpact as vi
 from stated import ROOT, page_text, says
 from vibroimpact.contact.law import CompliantLaw
+from vibroimpact.contact.laws.tsuji import Tsuji
+from vibroimpact.contact.pair import ContactPair
 
 PAGE = "docs/laws.md"
 LAWS = {name: law for name, law in vi.contact_laws().items() if law.__module__.startswith("vibroimpact.")}
@@ -43,11 +46,7 @@ def test_elastic_plastic_laws() -> None:
 
 
 def test_restitutions_of_lankarani_and_nikravesh() -> None:
-    def achieved(asked: float) -> float:
-        law = vi.find_contact_law("lankarani-nikravesh")(stiffness=1e8, restitution=asked)
-        return float(vi.achieved_restitution(law, 0.1, 1.0))
-
-    one, other, least = map(achieved, (0.9, 0.65, 0.0))
+    one, other, least = (achieved("lankarani-nikravesh", asked) for asked in (0.9, 0.65, 0.0))
     says(PAGE, "than the one asked: {} gives {}, {} gives {}, and no value gives less than {}.", 0.9, one, 0.65, other, least)
 
 
@@ -55,3 +54,49 @@ def test_the_pile_up_between_the_published_values() -> None:
     kind = vi.find_contact_law("storakers")
     law = kind(effective_modulus=1e11, effective_radius=0.01, yield_strength=1e8, hardening_exponent=3.0)
     says("docs/laws/storakers.md", "and gives {} for m = 3", float(law.pile_up))
+
+
+def achieved(name: str, asked: float) -> float:
+    """Return the restitution that a law achieves for one asked."""
+    law = LAWS[name].example(ContactPair(2.4e9, 0.025, 0.09, 8e7, 0.28)).changed({"restitution": asked})
+    return float(vi.achieved_restitution(law, 0.09, 1.0))
+
+
+@pytest.mark.parametrize("name", [name for name in LAWS if re.search(r"[\d.]+ gives [\d.]+\d", page_text(f"docs/laws/{name}.md"))])
+def test_what_a_restitution_asked_gives(name: str) -> None:
+    text = page_text(f"docs/laws/{name}.md")
+    pairs = [(float(asked), given) for asked, given in re.findall(r"(0\.\d+) gives (0\.\d+)", text)]
+    assert pairs
+    for asked, given in pairs:
+        assert f"{achieved(name, asked):.{len(given) - 2}f}" == given
+    for least in re.findall(r"no value gives less than (0\.\d+)", text):
+        assert float(least) <= achieved(name, 0.0) < float(least) + 0.01
+
+
+def test_how_near_the_restitutions_are_to_those_asked() -> None:
+    asked = np.arange(0.05, 1.0, 0.01)
+    names = ("hu-guo", "flores", "herbert-mcwhannell", "safaeifar", "lee-wang")
+    found = {name: np.array([achieved(name, one) for one in asked]) for name in names}
+    says("docs/laws/hu-guo.md", "is within {} of the one asked for above {}", 0.01, 0.55)
+    assert np.abs(found["hu-guo"] - asked)[asked > 0.55].max() < 0.01
+    assert (found["flores"] < asked).all()
+    assert "larger than the one asked for below 0.9" in page_text("docs/laws/herbert-mcwhannell.md")
+    assert (found["herbert-mcwhannell"] > asked)[asked < 0.9].all()
+    assert "larger than the one asked for above 0.2" in page_text("docs/laws/safaeifar.md")
+    assert (found["safaeifar"] > asked)[asked > 0.205].all()
+    assert "Loses about half of what is asked" in page_text("docs/laws/lee-wang.md")
+    assert ((1 - found["lee-wang"] ** 2) / (1 - asked**2)) == pytest.approx(0.5, abs=0.06)
+
+
+def test_programs_that_cut_the_tension_of_tsuji() -> None:
+    class Cut(Tsuji):
+        tension = "cut"
+
+    law = Cut(stiffness=1e8, restitution=0.5, effective_mass=0.1)
+    body = vi.Body(mass=0.1, contact_offset=0.01)
+    drop = vi.Problem(sphere=body, plate=vi.rigid_plate(), laws=(law,), speed=1.0, gravity=0.0, impacts=1)
+    says(
+        "docs/laws/tsuji.md",
+        "end it sooner, and get {} where they ask for 0.5",
+        float(vi.simulate(drop).impacts["restitution_achieved"][0]),
+    )
