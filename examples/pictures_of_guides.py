@@ -180,9 +180,9 @@ def river() -> None:
 
 def treatments() -> None:
     """Draw the force of one impact between bodies that are treated as rigid, quasi-static and elastic."""
-    acetal = {"density": 1410, "youngs_modulus": "2.8 GPa", "poissons_ratio": 0.35, "yield_strength": "65 MPa"}
+    acetal = {"density": 1410, "youngs_modulus": "2.8 GPa", "poissons_ratio": 0.35, "yield_strength": "70 MPa"}
     plate = {**PLATE, "size": ["600 mm", "500 mm", "5 mm"]}
-    drop = {"speed": "0.6 m/s", "position": ["60 mm", "40 mm"]}
+    drop = {"speed": "0.5 m/s", "position": ["60 mm", "40 mm"]}
     elastic = {**CASE, "sphere": {"radius": "25 mm", "material": acetal}, "plate": plate, "drop": drop}
     rigid = {**elastic, "plate": {"material": "steel"}}
     cases = {

@@ -48,6 +48,11 @@ def test_treatments() -> None:
     says(PAGE, "| {} | {} | {} | | elastic plate, 150 modes | {} | {} | {} |", *quasi_static, *elastic)
 
 
+def test_nothing_yields() -> None:
+    for response in (drop(None), drop(None, finite_sphere=True), drop(150)):
+        assert not any("yield" in doubt or "strength" in doubt for doubt in vi.result_of(response).doubts)
+
+
 def test_numbers_of_modes() -> None:
     def row(modes: int) -> tuple[float, float, float]:
         response = drop(modes)
