@@ -180,23 +180,27 @@ def river() -> None:
 
 def treatments() -> None:
     """Draw the force of one impact between bodies that are treated as rigid, quasi-static and elastic."""
-    rigid = {**CASE, "plate": {"material": "steel"}}
+    acetal = {"density": 1410, "youngs_modulus": "2.8 GPa", "poissons_ratio": 0.35, "yield_strength": "70 MPa"}
+    plate = {**PLATE, "size": ["600 mm", "500 mm", "5 mm"]}
+    drop = {"speed": "0.5 m/s", "position": ["60 mm", "40 mm"]}
+    elastic = {**CASE, "sphere": {"radius": "25 mm", "material": acetal}, "plate": plate, "drop": drop}
+    rigid = {**elastic, "plate": {"material": "steel"}}
     cases = {
         "rigid": vi.read_case(rigid),
         "rigid, finite_sphere": vi.read_case({**rigid, "contact": {**CASE["contact"], "finite_sphere": True}}),
     }
-    cases |= {f"elastic plate, {modes} modes": case_with(plate={"modes": modes}) for modes in (10, 40, 150)}
+    cases |= {f"elastic plate, {modes} modes": vi.read_case({**elastic, "plate": {**plate, "modes": modes}}) for modes in (10, 40, 150)}
     figure, axes = plt.subplots(figsize=(7.2, 3.6), layout="constrained")
     for (name, case), colour in zip(cases.items(), (GREY, "#222222", "#a9c4dc", "#5b93c4", BLUE), strict=True):
         response = vi.simulate(case)
         row = {column: float(values[0]) for column, values in response.impacts.items()}
-        time = np.linspace(0.0, 2.2e-4, 300)
-        axes.plot(1e6 * time, 1e-3 * response.at(row["time_s"] + time, ("force_N",))["force_N"], color=colour, label=name)
+        time = np.linspace(0.0, 6e-4, 300)
+        axes.plot(1e6 * time, response.at(row["time_s"] + time, ("force_N",))["force_N"], color=colour, label=name)
         print(
             f"{name}: {row['max_force_N']:.0f} N, {1e6 * row['duration_s']:.0f} us, {row['restitution_achieved']:.3f}, "
             f"truncation {response.truncation}"
         )
-    axes.set(xlabel="time since first touch [us]", ylabel="contact force [kN]", xlim=(0.0, 220.0), ylim=(0.0, None))
+    axes.set(xlabel="time since first touch [us]", ylabel="contact force [N]", xlim=(0.0, 600.0), ylim=(0.0, None))
     axes.legend(frameon=False)
     saved(figure, "treatments")
 
