@@ -61,7 +61,6 @@ NOT_YET = {
     "docs/guides/how-far-to-trust-it.md",
     "docs/guides/measured-and-computed.md",
     "docs/guides/plate-thickness.md",
-    "docs/guides/reproduce-the-paper.md",
     "docs/guides/restitution-in-dem.md",
     "docs/guides/river-geophone.md",
 }

@@ -234,7 +234,8 @@ def test_rigid_bodies_are_reproduced_or_explained(rigid_rows: list[dict]) -> Non
 def test_results_of_rigid_bodies_are_counted_apart(rigid_rows: list[dict]) -> None:
     """The stiffness follows from the inputs; what else is reproduced is an input, or was used to infer restitution and penetration."""
     by_kind = {
-        kind: [row["name"] for row in rigid_rows if (row["kind"], row["verdict"]) == (kind.value, Verdict.REPRODUCED.value)] for kind in Kind
+        kind: [row["name"] for row in rigid_rows if (row["kind"], row["verdict"]) == (kind.value, Verdict.REPRODUCED.value)]
+        for kind in Kind
     }
     assert by_kind[Kind.RESULT] == ["stiffness"]
     assert {*by_kind[Kind.INFERRED]} == {*EXACT} - {"stiffness"}
@@ -253,7 +254,9 @@ def test_what_the_inference_uses_is_inferred(runs: Runs, rigid_rows: list[dict],
 
     before = residuals(held)
     moved = {
-        name for name in held if not np.array_equal(before, residuals({**held, name: replace(held[name], text=f"{1.001 * held[name].value}")}))
+        name
+        for name in held
+        if not np.array_equal(before, residuals({**held, name: replace(held[name], text=f"{1.001 * held[name].value}")}))
     }
     inferred = {name for name, value in held.items() if value.role == "inferred"} - {"full_damping_penetration"}
     assert moved == inferred

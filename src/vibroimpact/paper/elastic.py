@@ -287,7 +287,10 @@ def _plate_percentages() -> list[ComparedValue]:
     released, thickness = printed("type3.potential_energy"), printed("plate.size.3")
     kinetic, strain = (printed(f"plate.{name}_energy") for name in ("kinetic", "strain"))
     parts = {
-        "plate.displacement_part": (printed("plate.displacement").value / (1e-3 * thickness.value), "the printed displacement and thickness"),
+        "plate.displacement_part": (
+            printed("plate.displacement").value / (1e-3 * thickness.value),
+            "the printed displacement and thickness",
+        ),
         "plate.kinetic_part": (kinetic.value / released.value, "the printed energies"),
         "plate.strain_part": (strain.value / released.value, "the printed energies"),
         "plate.energy_part": ((kinetic.value + strain.value) / released.value, "the printed energies"),

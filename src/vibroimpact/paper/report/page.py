@@ -71,11 +71,11 @@ _OPENING = (
 _IN_SHORT = (
     "Summary, in the interpretation of the authors of this package. Of the results printed for rigid bodies (Type 1), the contact "
     "stiffness follows from the inputs to all digits. One height, two percentages, the dampings and their function are compatible "
-    "with one restitution and one full-damping penetration, which were inferred from them. Force and acceleration are not met: the computed "
-    "ones are 1.3 % larger. Table 2 is not met either; it is compatible with peaks read from samples, by ranges 3.9 to 12.4 percentage points "
-    "wide. The results printed for elastic bodies (Types 2 and 3) are not reproduced by any setting that was tried, neither "
-    "with a consistent model nor with the superposed one of multibody programs; the results that agree are bounds, or printed with one "
-    "digit. An unresolved run is a hypothesis: it approximates force, rebound and strain energy of the sphere, but not its fall "
+    "with one restitution and one full-damping penetration, which were inferred from them. Force and acceleration are not met: the "
+    "computed ones are 1.3 % larger. Table 2 is not met either; it is compatible with peaks read from samples, by ranges 3.9 to 12.4 "
+    "percentage points wide. The results printed for elastic bodies (Types 2 and 3) are not reproduced by any setting that was tried, "
+    "neither with a consistent model nor with the superposed one of multibody programs; the results that agree are bounds, or printed "
+    "with one digit. An unresolved run is a hypothesis: it approximates force, rebound and strain energy of the sphere, but not its fall "
     "beyond touch, the order of the forces, or the energies of the plate.",
 )
 
@@ -180,7 +180,7 @@ def kind_summary(parts: Mapping[str, Mapping[str, Any]]) -> Group:
 
 
 _KINDS_IN_SHORT = (
-    " Only a result tests the paper. Inferred: restitution, full-damping penetration, and the printed values from which they were inferred. "
+    " Only a result tests the paper. Inferred: restitution, full-damping penetration, and the printed values they were inferred from. "
     "Fitted model: fitted to printed results of Type 2. Arithmetic: from other printed results. Input: what the paper assumes."
 )
 
