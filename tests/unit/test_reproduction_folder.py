@@ -429,7 +429,7 @@ def test_the_command_prints_the_counts(tmp_path: Path, monkeypatch: pytest.Monke
     assert command(monkeypatch, "reproduce", "--only", "table1, section3.1", "-o", tmp_path / "paper") == 0
     *lines, last = capsys.readouterr().out.splitlines()
     by_part, by_kind, note = ([*rows] for blank, rows in groupby(lines, key=lambda line: not line.strip()) if not blank)
-    for (head, *rows), first in ((by_part, "part"), (by_kind, "kind")):
+    for (head, *_), first in ((by_part, "part"), (by_kind, "kind")):
         assert re.split(r"  +", head.strip()) == [first, *(verdict.value for verdict in Verdict)]
     assert [row.split() for row in by_part[1:]] == [
         ["table1", "14", "0", "0", "0"],
