@@ -13,7 +13,7 @@ from typing import Any, Literal
 from vibroimpact.errors import InputError, did_you_mean
 
 PAPER = '"Study on the Vibroimpact Response of the Particle Elastic Impact on the Metal Plate" (Shock and Vibration)'
-"""Title and journal of the paper."""
+"""Title and journal of the paper; its authors, year and DOI were not at hand."""
 
 Relation = Literal["=", "<", ">"]
 
