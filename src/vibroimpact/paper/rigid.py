@@ -30,8 +30,8 @@ def section_3_2(runs: Runs) -> ReportSection:
         "Section 3.2: rebounds of rigid bodies",
         (
             "The theory is the law of Lankarani and Nikravesh with e_h = 0.65, the simulation IMPACT of Adams with a full-damping "
-            "penetration of 0.1 mm; both are integrated here to a relative error of 1e-9, and peaks are located, not picked from samples. "
-            "These two values are not printed: they were recovered from printed numbers, including these (see the section on "
+            "penetration of 0.1 mm; both are integrated here with a relative tolerance of 1e-9, and peaks are located, not picked from "
+            "samples. These two values are not printed: they were recovered from printed numbers, including these (see the section on "
             "inferences), so that the evidence is the agreement of all of them with two values.",
         ),
         (
