@@ -20,15 +20,16 @@ from vibroimpact.cases.reader import load_table
 BLUE, RED, GREEN, GREY = "#0b4f8a", "#b3400e", "#3a7d44", "#6b6b6b"
 
 
-def case_on(page: str, name: str) -> dict[str, Any]:
-    """Return a case that a guide shows, by its page and its name."""
+def case_on(page: str) -> dict[str, Any]:
+    """Return the first case that a guide shows."""
     text = (Path(__file__).parents[1] / "docs" / "guides" / page).read_text(encoding="utf-8")
-    return next(tomllib.loads(block) for block in re.findall(r"```toml\n(.*?)```", text, flags=re.S) if block.startswith(f"# {name}\n"))
+    return tomllib.loads(re.findall(r"```toml\n(.*?)```", text, flags=re.S)[0])
 
 
-ADAMS = case_on("adams-damping.md", "ball.toml")
-THICKNESS = {key: value for key, value in case_on("plate-thickness.md", "thickness.toml").items() if key != "sweep"}
-SENSORS = case_on("accelerometer.md", "sensors.toml")
+ADAMS = case_on("adams-damping.md")
+THICKNESS = {key: value for key, value in case_on("plate-thickness.md").items() if key != "sweep"}
+SENSORS = case_on("accelerometer.md")
+TREATED = case_on("choosing.md")
 
 DIALOG = {"stiffness": 1e5 * 1000.0**2.2, "exponent": 2.2, "damping_max": 10e3, "full_damping_penetration": 1e-4}
 """What Adams View offers for a new contact: MSC's help, "Contact Parameters for Parts with Small Mass"."""
@@ -45,25 +46,6 @@ CHAINS = {
     "sampled at 5 kHz": ({"rate": "5 kHz"}, GREEN),
 }
 """Measuring chains at one position, each with its colour."""
-
-ACETAL = {
-    "sphere": {
-        "radius": "25 mm",
-        "material": {"density": 1410, "youngs_modulus": "2.8 GPa", "poissons_ratio": 0.35, "yield_strength": "65 MPa"},
-    },
-    "plate": {
-        "size": ["600 mm", "500 mm", "5 mm"],
-        "material": "steel",
-        "model": "elastic",
-        "modes": 150,
-        "damping": 0.02,
-        "supports": "simply-supported",
-    },
-    "drop": {"speed": "0.6 m/s", "position": ["60 mm", "40 mm"]},
-    "contact": {"law": "tsuji", "restitution": 0.8},
-    "run": {"impacts": 1},
-}
-"""The case whose bodies are treated in several ways."""
 
 
 def case_with(table: dict[str, Any], **changes: dict[str, Any]) -> vi.Case:
@@ -253,12 +235,12 @@ def river() -> None:
 
 def treatments() -> None:
     """Draw the force of one impact between bodies that are treated as rigid, quasi-static and elastic."""
-    rigid = {**ACETAL, "plate": {"material": "steel"}}
+    rigid = {**TREATED, "plate": {"material": "steel"}}
     cases = {
         "rigid": vi.read_case(rigid),
-        "rigid, finite_sphere": vi.read_case({**rigid, "contact": {**ACETAL["contact"], "finite_sphere": True}}),
+        "rigid, finite_sphere": vi.read_case({**rigid, "contact": {**TREATED["contact"], "finite_sphere": True}}),
     }
-    cases |= {f"elastic plate, {modes} modes": case_with(ACETAL, plate={"modes": modes}) for modes in (10, 40, 150)}
+    cases |= {f"elastic plate, {modes} modes": case_with(TREATED, plate={"modes": modes}) for modes in (10, 40, 150)}
     figure, axes = plt.subplots(figsize=(7.2, 3.6), layout="constrained")
     for (name, case), colour in zip(cases.items(), (GREY, "#222222", "#a9c4dc", "#5b93c4", BLUE), strict=True):
         response = vi.simulate(case)

@@ -21,7 +21,17 @@ import pytest
 ROOT = Path(__file__).parents[1]
 TOLD = Path(__file__).with_name("validation.jsonl")
 
-Kind = Literal["closed form", "published computation", "other program", "own independent computation", "consistency", "experiment"]
+Kind = Literal[
+    "closed form",
+    "published computation",
+    "other program",
+    "own independent computation",
+    "consistency",
+    "fitted to published numbers",
+    "experiment",
+    "experiment, speed assumed",
+    "fitted to measurements",
+]
 Subject = Literal[
     "Hertz and elastic contact",
     "damping laws",

@@ -13,13 +13,19 @@ PAGE = ROOT / "docs" / "validation.md"
 PROSE = Path(__file__).with_suffix(".md")
 """The text of the page, with placeholders for the generated tables."""
 KINDS = {
-    "closed form": "analytical solutions",
-    "published computation": "published numerical results, printed or digitized from figures",
-    "other program": "other programs, run for the same case",
-    "own independent computation": "integrations, series and finite elements that share no code with the package except NumPy and SciPy",
+    "closed form": "analytical solutions and published formulas, evaluated in the tests; benchmarks of other programs that have one",
+    "published computation": "published numerical results without a closed form, printed or digitized from figures",
+    "other program": "other programs and libraries, run for the same case, or their recorded results",
+    "own independent computation": "integrations, series and finite elements by the same authors, without the solvers of the package; some "
+    "take its formulas of contact laws",
     "consistency": "no external reference: limits, conservation laws, round trips, convergence, another method of the package",
-    "experiment": "measurements",
+    "fitted to published numbers": "published numbers to which an input of the case was fitted here: the fit meets them; no prediction",
+    "experiment": "measurements; friction and restitution measured in the same series, nothing fitted to the compared values",
+    "experiment, speed assumed": "measurements whose impact speeds are not stated; computed at one assumed speed",
+    "fitted to measurements": "measurements to which the compared law or its coefficient was fitted, by its authors or here: no prediction",
 }
+MEASURED = ("experiment", "experiment, speed assumed", "fitted to measurements")
+"""Kinds whose reference values were measured."""
 
 
 def number(value: float) -> str:
@@ -82,9 +88,21 @@ def summary(rows: list[dict[str, Any]]) -> list[str]:
         if some:
             worst = max(some, key=part)
             counts = len({row["opponent"] for row in some}), len(some), sum(row["points"] for row in some)
-            told = f"{part(worst):.1g}: {worst['opponent']}; {worst['case']}; {worst['quantity']}"
+            told = f"{part(worst):.2g}: {worst['opponent']}; {worst['case']}; {worst['quantity']}"
             table.append(f"| {kind} | {KINDS[kind]} | " + " | ".join(f"{count:,}" for count in counts) + f" | {told} |")
     return [*table, ""]
+
+
+def measured(rows: list[dict[str, Any]]) -> list[str]:
+    """A sentence on how many comparisons are with measured values, and of which kinds."""
+    counts = {kind: sum(row["kind"] == kind for row in rows) for kind in MEASURED}
+    kinds = ", ".join(f"{counts[kind]} *{kind}*" for kind in MEASURED)
+    predicted = sum(row["points"] for row in rows if row["kind"] == MEASURED[0])
+    return [
+        f"Of these {len(rows):,} comparisons {sum(counts.values())} are with measured values: {kinds}. Only the first kind tests a "
+        f"prediction, in {predicted} values.",
+        "",
+    ]
 
 
 def missing(rows: list[dict[str, Any]]) -> list[str]:
@@ -96,12 +114,12 @@ def missing(rows: list[dict[str, Any]]) -> list[str]:
 
 def page(rows: list[dict[str, Any]]) -> str:
     """The complete page, from rows as `agreement.read` returns them."""
-    measured, computed = ([row for row in rows if (row["kind"] == "experiment") == which] for which in (True, False))
+    experiments, computed = ([row for row in rows if (row["kind"] in MEASURED) == which] for which in (True, False))
     tables = []
     for subject in get_args(Subject):
         tables += blocks([row for row in computed if row["subject"] == subject], _capital(subject))
-    tables += blocks(measured, "Experiments")
-    made = {"summary": summary(rows), "comparisons": tables, "missing": missing(rows)}
+    tables += blocks(experiments, "Experiments")
+    made = {"summary": summary(rows), "measured": measured(rows), "comparisons": tables, "missing": missing(rows)}
     return re.sub(r"<!-- (\w+) -->\n", lambda place: "\n".join(made[place[1]]), PROSE.read_text(encoding="utf-8"))
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import tomllib
-from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -12,6 +11,7 @@ import pytest
 
 import vibroimpact as vi
 from heard import heard
+from oblique_measured import ALL, ALUMINA, ANGLES, FRICTION, GLASS, MEASURED, SLIPPING, fitted_friction
 from stated import says
 from support import blocks, module_at, plain_case
 from vibroimpact.calibration.evaluate_measurement import _MATTERS
@@ -145,16 +145,11 @@ def test_the_penetration_of_the_paper() -> None:
 
 
 @cache
-def fitted(friction: str, steep: bool, *names: str) -> tuple[vi.FrictionCalibration, float]:
+def fitted(friction: str, steep: bool, *more: str) -> tuple[vi.FrictionCalibration, float]:
     """The fit to the measured impacts, all or the steep ones, and the mean error of the tangential restitution."""
-    kharaz = module_at("tests/verification/test_vs_kharaz.py")
-    rows = kharaz.SLIPPING if steep else kharaz.ALL
-    angles, wanted = kharaz.ANGLES[rows], {"tangential_restitution": kharaz.MEASURED[rows]}
-    noise = {name: np.ones(len(angles)) for name in wanted}
-    seen = kharaz.from_table(kharaz.SPEED * np.cos(angles), wanted, noise, tuple("abcdefgh"[: len(angles)]))
-    impacts = vi.ObliqueImpacts(replace(seen, deviations_known=False), kharaz.SPEED * np.sin(angles), np.zeros(len(angles)), wanted)
-    found = vi.calibrate_friction(kharaz.problem_of(friction).take(0), impacts, ["friction.coefficient", *names])
-    return found, float(np.abs(found.outcomes["tangential_restitution"] - kharaz.MEASURED[rows]).mean())
+    rows = SLIPPING if steep else ALL
+    found = fitted_friction(friction, rows, *more)
+    return found, float(np.abs(found.outcomes["tangential_restitution"] - MEASURED[rows]).mean())
 
 
 def row(friction: str) -> list[float]:
@@ -167,15 +162,14 @@ def row(friction: str) -> list[float]:
 
 @pytest.mark.slow
 def test_measured_friction() -> None:
-    kharaz = module_at("tests/verification/test_vs_kharaz.py")
-    says(PAGE, "who determined {} from those that slide throughout", kharaz.FRICTION)
-    says(PAGE, "from {}° on: coefficient", float(np.degrees(kharaz.ANGLES[kharaz.SLIPPING][0])))
+    says(PAGE, "who determined {} from those that slide throughout", FRICTION)
+    says(PAGE, "from {}° on: coefficient", float(np.degrees(ANGLES[SLIPPING][0])))
     says(PAGE, "| mdr | {} ({} to {}) | {} | {} ({} to {}) |", *row("mdr"))
     says(PAGE, "| coulomb | {} ({} to {}) | {} | {} ({} to {}) |", *row("coulomb"))
     says(PAGE, "| mindlin | {} ({} to {}) | {} | {} ({} to {}) |", *row("mindlin"))
     found, error = fitted("mdr", False, "friction.effective_shear_modulus")
     assert found.intervals is not None
-    modulus = [1e-9 * float(one) for one in (found.values[1], *found.intervals[1], effective_shear_modulus(kharaz.ALUMINA, kharaz.GLASS))]
+    modulus = [1e-9 * float(one) for one in (found.values[1], *found.intervals[1], effective_shear_modulus(ALUMINA, GLASS))]
     says(
         PAGE,
         "| mdr with the shear modulus: {} GPa ({} to {}), {} from the materials | {} ({} to {}) | {} |",

@@ -30,7 +30,7 @@ def test_markup_is_githubs() -> None:
         assert ":math:" not in text, name
         assert ".. math::" not in text, name
         assert text.count("```") % 2 == 0, name
-        assert f"$ vibroimpact laws {name}\n" in text
+        assert f"$ vibroimpact laws {name} -o {name}.png\n" in text
         assert [target for target in re.findall(r"\]\(([^)#]+)\)", text) if not (DOCS / "laws" / target).exists()] == [], name
 
 

@@ -20,6 +20,19 @@ AGAINST = Against(
     "calibration, identification and studies",
     "Study on the Vibroimpact Response of the Particle Elastic Impact on the Metal Plate, Shock and Vibration, section 3.2",
 )
+OTHER = Against(
+    "independent integration, damping that gives each rebound of the paper's theory",
+    "own independent computation",
+    "calibration, identification and studies",
+    "separate program, tolerance 1e-12",
+)
+INFERRED = Against(
+    "the paper, the rebound height from which the penetration depth is inferred",
+    "fitted to published numbers",
+    "calibration, identification and studies",
+    "Study on the Vibroimpact Response of the Particle Elastic Impact on the Metal Plate, Shock and Vibration, section 3.2; "
+    "0.1 mm is the default of Adams",
+)
 
 
 EXACT = [179.790, 172.746, 166.419, 160.869, 156.663]  # N s/m
@@ -31,7 +44,8 @@ SPEEDS = [8.8266641, 6.8386265, 5.2982339, 4.1046840, 3.1798731]  # m/s
 
 def test_dampings(agrees: Agrees, damping: vi.Calibration) -> None:
     assert damping.observations.speeds == pytest.approx(SPEEDS, rel=1e-7)
-    agrees("damping coefficient of each impact, recomputed", "damping coefficient", damping.values, EXACT, unit="N s/m", relative=1e-5)
+    case = "damping coefficient of each impact, recomputed"
+    agrees(case, "damping coefficient", damping.values, EXACT, unit="N s/m", against=OTHER, relative=1e-5)
     assert damping.outcomes["separation_speed"] == pytest.approx(damping.observations.wanted["separation_speed"], rel=1e-10)
 
 
@@ -41,6 +55,7 @@ def test_function_of_the_speed(agrees: Agrees, damping: vi.Calibration) -> None:
         "polynomial coefficients",
         damping.fit.function.coefficients,
         EXACT_FIT,
+        against=OTHER,
         relative=1e-5,
     )
 
@@ -82,6 +97,7 @@ def test_printed_penetration_does_not_go_with_the_printed_rebound(agrees: Agrees
         found.values[0],
         1e-4,
         unit="m",
+        against=INFERRED,
         relative=1e-4,
     )
     assert found.others["damping_max"] == pytest.approx(172.22, abs=0.01)

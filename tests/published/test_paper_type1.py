@@ -1,8 +1,8 @@
-"""The paper's Type 1 with corrected equations: every number, integrated independently at 1e-12.
+"""The paper's Type 1 with corrected equations, integrated independently at 1e-12, and what it prints of it.
 
 "Study on the Vibroimpact Response of the Particle Elastic Impact on the Metal Plate", Shock and Vibration; a rock
 sphere of 25 mm falls 4 m on a steel plate. Time, duration, approach and separation speed, restitution,
-indentation, force and rebound height of five impacts. Tolerance: 2e-6 relative, 1e-5 for the force.
+indentation, force and rebound height of five impacts. Tolerance: 1e-7, the digits kept of the integration.
 """
 
 from __future__ import annotations
@@ -17,10 +17,17 @@ from agreement import Against, Agrees
 from vibroimpact.contact.laws.adams_impact import AdamsImpact
 
 AGAINST = Against(
-    "the paper, Type 1 (rigid sphere on a rigid plate), corrected equations",
-    "published computation",
+    "independent integration of the paper's corrected equations, Type 1 (rigid sphere on a rigid plate)",
+    "own independent computation",
     "damping laws",
-    "Study on the Vibroimpact Response of the Particle Elastic Impact on the Metal Plate, Shock and Vibration; tolerance 1e-12",
+    "equations of Study on the Vibroimpact Response of the Particle Elastic Impact on the Metal Plate, Shock and Vibration, by a separate "
+    "program, tolerance 1e-12",
+)
+PAPER = Against(
+    "the paper, Type 1, the height from which the penetration depth was inferred",
+    "fitted to published numbers",
+    "damping laws",
+    "Study on the Vibroimpact Response of the Particle Elastic Impact on the Metal Plate, Shock and Vibration, section 5.1",
 )
 
 
@@ -68,7 +75,6 @@ def run(request: pytest.FixtureRequest) -> tuple[vi.Response, np.ndarray]:
 @pytest.mark.parametrize("column", COLUMNS)
 def test_every_column(agrees: Agrees, run: tuple[vi.Response, np.ndarray], column: str) -> None:
     response, table = run
-    tolerance = 1e-5 if column == "max_force_N" else 2e-6
     expected, (quantity, unit) = table[:, COLUMNS.index(column)], QUANTITIES[column]
     agrees(
         "theoretical, constant and variable damping, five impacts",
@@ -76,7 +82,7 @@ def test_every_column(agrees: Agrees, run: tuple[vi.Response, np.ndarray], colum
         response.impacts[column],
         expected,
         unit=unit,
-        relative=tolerance,
+        relative=1e-7,
     )
 
 
@@ -93,7 +99,8 @@ def test_inputs_of_the_paper() -> None:
 def test_printed_text_figures(agrees: Agrees) -> None:
     theory, constant = (vi.simulate(vi.load_case(f"paper:type1-{name}")).impacts for name in ("theory", "constant"))
     first = constant["rebound_height_m"][0]
-    agrees("constant damping, section 5.1, first impact", "rebound height, printed", first, 2.41132, unit="m", absolute=5e-6)
+    case = "constant damping, section 5.1, first impact"
+    agrees(case, "rebound height, printed", first, 2.41132, unit="m", against=PAPER, absolute=5e-6)
     assert 100 * (1 - constant["rebound_height_m"][3] / theory["rebound_height_m"][3]) == pytest.approx(10.50, abs=0.01)  # section 3.2
     assert 100 * (1 - constant["max_indentation_m"][4] / theory["max_indentation_m"][4]) == pytest.approx(5.7, abs=0.05)
 

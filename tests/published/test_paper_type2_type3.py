@@ -27,10 +27,17 @@ import vibroimpact as vi
 from agreement import Against, Agrees
 
 AGAINST = Against(
-    "the paper, Types 2 and 3 (elastic sphere on a rigid and on an elastic plate)",
+    "the paper, Type 3 (elastic sphere on an elastic plate), with the local element of Type 2",
     "published computation",
     "impacts on vibrating bodies",
     "Study on the Vibroimpact Response of the Particle Elastic Impact on the Metal Plate, Shock and Vibration",
+)
+FITTED = Against(
+    "the paper, Type 2 (elastic sphere on a rigid plate), to which the local element is fitted",
+    "fitted to published numbers",
+    "impacts on vibrating bodies",
+    "Study on the Vibroimpact Response of the Particle Elastic Impact on the Metal Plate, Shock and Vibration; the acceleration follows "
+    "from the force",
 )
 OTHER = Against(
     "modal integration with the same local element",
@@ -91,10 +98,11 @@ def test_identified_meets_type_2(agrees: Agrees) -> None:
     assert problem.local_element is not None
     assert problem.local_element == pytest.approx((1.20e6, 586.0), rel=0.04)
     impacts = vi.simulate(problem).impacts
-    agrees("Type 2, local element identified from it", "maximum contact force", impacts["max_force_N"], FORCE, unit="N", relative=1e-8)
-    agrees("Type 2, local element identified from it", "rebound height", impacts["rebound_height_m"], REBOUND, unit="m", relative=1e-8)
-    acceleration = impacts["max_acceleration_m_s2"]
-    agrees("Type 2, local element identified from it", "maximum acceleration", acceleration, 39656.0, unit="m/s²", relative=5e-4)
+    force, height, acceleration = (impacts[name] for name in ("max_force_N", "rebound_height_m", "max_acceleration_m_s2"))
+    case = "Type 2, local element identified from it"
+    agrees(case, "maximum contact force", force, FORCE, unit="N", against=FITTED, relative=1e-8)
+    agrees(case, "rebound height", height, REBOUND, unit="m", against=FITTED, relative=1e-8)
+    agrees(case, "maximum acceleration", acceleration, 39656.0, unit="m/s²", against=FITTED, relative=5e-4)
 
 
 def test_type_3_is_predicted(agrees: Agrees) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,13 +14,15 @@ from shown_lines import assert_shows, lines_of
 from vibroimpact.charts.marks import Facets, Level, Points
 from vibroimpact.charts.pack import pack
 from vibroimpact.charts.plotly import plotly_chart
-from vibroimpact.paper.printed import printed, printed_values
+from vibroimpact.paper import printed as library
+from vibroimpact.paper.evidence import evidence_of, impact_splines
+from vibroimpact.paper.printed import PrintedValue, printed, printed_values
 from vibroimpact.paper.report.compared_quantity import ComparedQuantity
 from vibroimpact.paper.report.docs_page import docs_page_text
 from vibroimpact.paper.report.elastic_charts import PLATE_QUANTITIES, SPHERE_ENERGY, SPHERE_MOTION
 from vibroimpact.paper.report.outline import CHAPTERS, PARTS, RenderedPart, render_part
 from vibroimpact.paper.report.page import report_html, report_text
-from vibroimpact.paper.report_section import Verdict
+from vibroimpact.paper.report_section import Kind, Verdict
 from vibroimpact.paper.runs import TREATMENTS, Runs
 from vibroimpact.paper.step_sweep import COMPARED, paper_impact, superposed, sweep_steps
 
@@ -89,8 +93,12 @@ def test_numbers_of_rigid_bodies_are_those_computed_now(rigid_parts: dict[str, R
     first, beyond = f"## {RIGID[0]}\n", f"## {list(CHAPTERS)[len(RIGID)]}\n"
     check_numbers(page[page.index(first) : page.index(beyond)], text[text.index(first) : text.index("Not made yet: ")])
     counted = [line for line in text[: text.index(first)].splitlines() if line.startswith("| ") and not line.startswith("| All |")]
-    assert len(counted) == 2 + len({row["part"] for row in rows_of(rigid_parts)})
-    assert set(counted) <= set(page.splitlines())
+    explained = {row["part"] for row in rows_of(rigid_parts) if row["verdict"] == Verdict.EXPLAINED.value}
+    kinds = {f"| {kind.value.capitalize()} " for kind in Kind}
+    of_parts = [line for line in counted if not any(map(line.startswith, kinds))]
+    assert len(counted) - len(of_parts) == len(kinds)  # counts over all parts, which differ from those of these ones
+    assert len(of_parts) == 6 + len({row["part"] for row in rows_of(rigid_parts)}) + len(explained)
+    assert set(of_parts) <= set(page.splitlines())
 
 
 @pytest.mark.slow
@@ -221,6 +229,72 @@ def test_rigid_bodies_are_reproduced_or_explained(rigid_rows: list[dict]) -> Non
     assert {row["part"] for row in rigid_rows} == {"table1", "section3.1", "section3.2", "damping", "table2"}
     open_ones = {row["name"] for row in rigid_rows if row["verdict"] == Verdict.NOT_REPRODUCED.value}
     assert open_ones == {"full_damping_penetration", "worst_compression.variable"}
+
+
+def test_results_of_rigid_bodies_are_counted_apart(rigid_rows: list[dict]) -> None:
+    """The stiffness follows from the inputs; what else is reproduced is an input, or was used to infer restitution and penetration."""
+    by_kind = {
+        kind: [row["name"] for row in rigid_rows if (row["kind"], row["verdict"]) == (kind.value, Verdict.REPRODUCED.value)]
+        for kind in Kind
+    }
+    assert by_kind[Kind.RESULT] == ["stiffness"]
+    assert {*by_kind[Kind.INFERRED]} == {*EXACT} - {"stiffness"}
+    assert len(by_kind[Kind.INPUT]) == 15  # Table 1, gravity, the height and the exponent
+    assert not by_kind[Kind.ARITHMETIC]
+    assert not by_kind[Kind.FITTED_MODEL]
+
+
+def test_what_the_inference_uses_is_inferred(runs: Runs, rigid_rows: list[dict], monkeypatch: pytest.MonkeyPatch) -> None:
+    """A printed number of the kind "inferred" moves the residuals of the inference; no other result does."""
+    splines, held = impact_splines(runs), printed_values()
+
+    def residuals(values: Mapping[str, PrintedValue]) -> np.ndarray:
+        monkeypatch.setattr(library, "printed_values", lambda: values)
+        return np.concatenate([np.ravel(one.residuals(0.65, -4.0)) for one in evidence_of(splines) if one.joint])
+
+    before = residuals(held)
+    moved = {
+        name
+        for name in held
+        if not np.array_equal(before, residuals({**held, name: replace(held[name], text=f"{1.001 * held[name].value}")}))
+    }
+    inferred = {name for name, value in held.items() if value.role == "inferred"} - {"full_damping_penetration"}
+    assert moved == inferred
+    assert inferred <= {row["name"] for row in rigid_rows} | {"type1.rebound_height"}
+
+
+@pytest.mark.slow
+def test_results_are_counted_apart(rows: list[dict]) -> None:
+    """Of Types 2 and 3 only bounds and values of one digit are reproduced by a model that was not fitted."""
+    met = [row for row in rows if (row["kind"], row["verdict"]) == (Kind.RESULT.value, Verdict.REPRODUCED.value)]
+    one_digit = {"plate.displacement", "plate.velocity"}
+    assert {row["name"] for row in met if row["relation"] == "="} == {"stiffness"} | one_digit
+    assert all(printed(name).half >= 0.4 * printed(name).value for name in one_digit)
+    assert all(row["by"] in ("consistent", "superposed") for row in met if row["name"] != "stiffness")
+
+
+@pytest.mark.slow
+def test_a_model_that_was_fitted_gives_no_result(rows: list[dict]) -> None:
+    fitted = [row for row in rows if row["by"] == "identified" or row["by"].startswith("implicit Euler")]
+    assert fitted
+    assert {row["kind"] for row in fitted} == {Kind.FITTED_MODEL.value}
+    assert all(row["kind"] == Kind.FITTED_MODEL.value for row in rows if row["verdict"] == Verdict.FITTED.value)
+    told = [row for row in rows if "printed" in row["by"] and row["name"] not in printed_for_inference()]
+    assert {row["kind"] for row in told} == {Kind.ARITHMETIC.value}
+
+
+def printed_for_inference() -> set[str]:
+    return {name for name, value in printed_values().items() if value.role == "inferred"}
+
+
+@pytest.mark.slow
+def test_an_explanation_has_its_range(rows: list[dict]) -> None:
+    for row in rows:
+        if row["verdict"] == Verdict.EXPLAINED.value:
+            half = printed(row["name"]).half
+            assert row["range_low"] - half <= float(row["printed"]) <= row["range_high"] + half
+        else:
+            assert row["range_low"] is row["range_high"] is None
 
 
 @pytest.mark.slow

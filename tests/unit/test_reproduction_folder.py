@@ -11,6 +11,7 @@ import zlib
 from base64 import b64decode
 from collections.abc import Callable
 from html import unescape
+from itertools import groupby
 from pathlib import Path
 from typing import Any
 
@@ -34,13 +35,13 @@ from vibroimpact.paper.report.folder import (
     write_reproduction_report,
 )
 from vibroimpact.paper.report.outline import PARTS, ReportPart, find_parts, render_part
-from vibroimpact.paper.report.page import report_html, report_text, verdict_counts
-from vibroimpact.paper.report_section import ComparedValue, ReportSection, Verdict
+from vibroimpact.paper.report.page import kind_counts, range_widths, report_html, report_text, verdict_counts
+from vibroimpact.paper.report_section import ComparedValue, Kind, ReportSection, Verdict
 from vibroimpact.paper.runs import Runs
 from vibroimpact.report.page import plotly_script
 
 QUICK = ["table1", "section3.1", "fig4"]
-COLUMNS = "part,name,what,place,read,unit,relation,printed,by,computed,difference,allowed,verdict,why"
+COLUMNS = "part,name,what,place,read,unit,relation,printed,by,computed,difference,allowed,verdict,why,kind,range_low,range_high"
 
 
 @pytest.fixture(scope="module")
@@ -185,7 +186,8 @@ def test_verdicts_have_classes_and_words_have_none() -> None:
 
 def test_counts_tell_each_verdict_apart() -> None:
     def part(*verdicts: Verdict) -> dict[str, Any]:
-        return {"title": "T|1", "text": "A text.\n", "rows": [{"verdict": verdict.value} for verdict in verdicts]}
+        ranges = {"kind": "result", "printed": "-2", "range_low": -3.0, "range_high": -2.0}
+        return {"title": "T|1", "text": "A text.\n", "rows": [{"verdict": verdict.value, **ranges} for verdict in verdicts]}
 
     parts = {"table1": part(*Verdict), "fig3": part(), "section3.2": part(Verdict.FITTED, Verdict.FITTED)}
     assert {name: list(by.values()) for name, by in verdict_counts(parts).items()} == {
@@ -194,7 +196,11 @@ def test_counts_tell_each_verdict_apart() -> None:
         "all": [1, 1, 3, 1],
     }
     assert "| T\\|1 | 1 | 1 | 1 | 1 |" in report_text(parts)
-    assert verdict_counts({"fig3": part()}) == {}
+    assert verdict_counts({"fig3": part()}) == kind_counts({"fig3": part()}) == range_widths({"fig3": part()}) == {}
+    assert {name: list(by.values()) for name, by in kind_counts(parts).items() if any(by.values())} == {"result": [1, 1, 3, 1]}
+    assert list(kind_counts(parts)) == [kind.value for kind in Kind]
+    assert range_widths(parts) == {"table1": (1, 0.5, 0.5)}
+    assert "| T\\|1 | 1 | 50 % | 50 % |" in report_text(parts)
     assert "| Part |" not in report_text({"fig3": part()})
     assert "Not made yet" not in report_text({name: part() for name in PARTS})
 
@@ -421,13 +427,23 @@ def test_all_missing_charts_are_told_at_once(drawn: Path, tmp_path: Path, monkey
 
 def test_the_command_prints_the_counts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     assert command(monkeypatch, "reproduce", "--only", "table1, section3.1", "-o", tmp_path / "paper") == 0
-    head, *rows, last = capsys.readouterr().out.splitlines()
-    assert re.split(r"  +", head.strip()) == ["part", *(verdict.value for verdict in Verdict)]
-    assert [row.split() for row in rows] == [
+    *lines, last = capsys.readouterr().out.splitlines()
+    by_part, by_kind, note = ([*rows] for blank, rows in groupby(lines, key=lambda line: not line.strip()) if not blank)
+    for (head, *_), first in ((by_part, "part"), (by_kind, "kind")):
+        assert re.split(r"  +", head.strip()) == [first, *(verdict.value for verdict in Verdict)]
+    assert [row.split() for row in by_part[1:]] == [
         ["table1", "14", "0", "0", "0"],
         ["section3.1", "2", "0", "0", "1"],
         ["all", "16", "0", "0", "1"],
     ]
+    assert [re.split(r"  +", row.strip()) for row in by_kind[1:]] == [
+        ["result", "1", "0", "0", "0"],
+        ["inferred", "0", "0", "0", "1"],
+        ["fitted model", "0", "0", "0", "0"],
+        ["arithmetic", "0", "0", "0", "0"],
+        ["input", "15", "0", "0", "0"],
+    ]
+    assert note[0].strip().startswith("Only a result tests the paper.")
     assert last == f"wrote {tmp_path / 'paper' / 'report.html'}"
 
 

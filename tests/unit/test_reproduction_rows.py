@@ -13,7 +13,7 @@ from markdown_it import MarkdownIt
 
 from vibroimpact.errors import InputError
 from vibroimpact.paper import printed as library
-from vibroimpact.paper.printed import PrintedValue, Relation, corrections, printed, printed_values
+from vibroimpact.paper.printed import PrintedValue, Relation, Role, corrections, printed, printed_values
 from vibroimpact.paper.report.markdown import (
     allowed_text,
     computed_text,
@@ -25,7 +25,7 @@ from vibroimpact.paper.report.markdown import (
     table,
     verdict_text,
 )
-from vibroimpact.paper.report_section import ComparedValue, Explanation, ReportSection, TextTable, Verdict
+from vibroimpact.paper.report_section import ComparedValue, Explanation, Kind, ReportSection, TextTable, Verdict
 
 
 def value(text: str, relation: Relation = "=", digits: int | None = None, unit: str = "m") -> PrintedValue:
@@ -68,6 +68,7 @@ def test_every_value_is_whole() -> None:
         assert re.fullmatch(r"-?\d+(\.\d+)?(e-?\d+)?", held.text), name
         assert held.value == float(Decimal(held.text)), name
         assert held.relation in get_args(Relation), name
+        assert held.role in get_args(Role), name
         assert held.digits is None or held.digits > 0, name
         assert "{" not in held.what, name
         assert held.half > 0.0, name
@@ -241,6 +242,15 @@ def test_a_value_is_said_once_where_several_things_compute_it() -> None:
     said = [line.strip("|").split("|")[:4] for line in lines[2:]]
     whole = [" a value ", " section 1 ", " 2.5\u00a0m "]
     assert said == [[*whole, " one "], ["  ", "  ", "  ", " another "], [*whole, " a third "]]
+
+
+@pytest.mark.parametrize("role", get_args(Role))
+def test_the_role_of_a_printed_value_is_its_kind_unless_it_was_computed_otherwise(role: Role) -> None:
+    held = PrintedValue("a.value", "a value", "2.5", "m", "section 1", "text", role=role)
+    assert ComparedValue(held, 2.5, by="a calculation").kind.value == role
+    assert ComparedValue(held, 2.5, by="a model", made_by=Kind.FITTED_MODEL).kind == Kind.FITTED_MODEL
+    (line,) = rows_table([ComparedValue(held, 2.5, by="a sum", made_by=Kind.ARITHMETIC)]).splitlines()[2:]
+    assert line.endswith("| arithmetic | reproduced |")
 
 
 @pytest.mark.parametrize("text", ["a|b", "*a* and _b_", "a \\| b", "1 < 2 <b>", "[a](b)", "`a`", "\u22122\u00a0%"])

@@ -37,7 +37,7 @@ from vibroimpact.exporting.export_format import find_export_format
 from vibroimpact.exporting.text import export_summary, format_table
 from vibroimpact.laws.sheet import law_sheet, law_table
 from vibroimpact.modes.text import modes_summary
-from vibroimpact.paper.report.page import verdict_table
+from vibroimpact.paper.report.page import kind_summary, verdict_table
 from vibroimpact.paper.report_section import Verdict
 from vibroimpact.recognition.text import recognised_summary, recognition_summary
 from vibroimpact.report.console import TerminalConsole
@@ -196,11 +196,15 @@ def test_every_command_is_readable_in_every_encoding(commands: Printed, name: st
 
 
 def test_verdicts_of_the_reproduction_fit() -> None:
-    rows = {"rows": [{"verdict": verdict.value} for verdict in Verdict] * 30, "title": "", "text": ""}
+    rows = {"rows": [{"verdict": verdict.value, "kind": "fitted model"} for verdict in Verdict] * 30, "title": "", "text": ""}
     for width in (40, 60):
         lines = shown(verdict_table({"table1": rows, "section5.2": rows}), width)
         assert max(map(len, lines)) <= width
         assert {*_NUMBER.findall(" ".join(lines))} == {"30", "60"}
+        lines = shown(kind_summary({"table1": rows}), width)
+        assert max(map(len, lines)) <= width
+        found = _NUMBER.findall(" ".join(lines))
+        assert (found.count("0"), found.count("30"), len(found)) == (16, 4, 21)  # and the 2 of "Type 2"
 
 
 @pytest.mark.parametrize("encoding", ["ascii", "cp1252", "utf-8"])

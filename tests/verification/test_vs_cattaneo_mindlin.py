@@ -20,12 +20,6 @@ AGAINST = Against(
     "oblique impact and friction",
     "4,000 springs, explicit time integration in the test",
 )
-PUBLISHED = Against(
-    "oblique impact with Cattaneo-Mindlin contact, published values",
-    "published computation",
-    "oblique impact and friction",
-    "Maw, Barber and Fawcett 1976, Wear 38, 101, and later publications: similar materials, Poisson's ratio 0.3, to the digits given",
-)
 SLIDING = Against(
     "gross sliding, closed form",
     "closed form",
@@ -68,22 +62,6 @@ def slip_before(response: vi.Response, radius: float = 0.01) -> Floats:
 
 
 HERTZ = vi.find_contact_law("hertz")(stiffness=4.0 / 3.0 * 1e9 * 0.1)
-
-
-def test_rebound_of_the_slip_of_similar_materials(agrees: Agrees) -> None:
-    """Published values of the same contact, to their three digits."""
-    psi = np.array([0.25, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0])
-    expected = np.array([-0.1665, -0.0957, 0.0597, 0.2853, 0.4186, 0.4649, 0.4599, 0.3591, 0.1529])
-    found = impact(psi, HERTZ)
-    rebound = -slip_after(found) / slip_before(found)
-    agrees(
-        "similar materials, dimensionless angle of incidence ψ1 = 0.25 to 5",
-        "tangential coefficient of restitution at the contact point",
-        rebound,
-        expected,
-        against=PUBLISHED,
-        absolute=1e-4,
-    )
 
 
 def test_gross_sliding_is_exact(agrees: Agrees) -> None:
@@ -202,13 +180,13 @@ def by_springs(psi: float, drive: float, bound: float = 1.0, number: int = 4000,
     return velocity / psi, lost[0] / (0.5 * psi**2), lost[1] / (0.5 * psi**2)
 
 
-@pytest.mark.parametrize("psi", [0.2, 0.7, 0.99, 1.4, 2.3, 3.6])
+@pytest.mark.parametrize("psi", [0.2, 0.5, 0.7, 0.99, 1.4, 2.3, 3.0, 3.6, 5.0])
 def test_impacts_against_four_thousand_springs(agrees: Agrees, psi: float) -> None:
     """The velocity after is within 1e-4 of that of the springs."""
     found = impact(np.array([psi]), HERTZ)
     after = slip_after(found) / slip_before(found)
     agrees(
-        "oblique impacts, dimensionless angle of incidence ψ1 = 0.2 to 3.6",
+        "oblique impacts of similar materials, dimensionless angle of incidence ψ1 = 0.2 to 5",
         "ratio of contact-point velocity after to before impact",
         after,
         by_springs(psi, DRIVE)[0],

@@ -1,7 +1,7 @@
 """Against Chung and Ooi (2011), Granular Matter 13, 643-656, doi 10.1007/s10035-011-0277-0: tests 1, 2, 5, 7 and 8.
 
-Inputs from the article; values from Hertz's closed form, which its digitised curves meet to 1 %. Tolerance 1e-5,
-the digits given. Inputs of test 8 and the points read from its figure are those of the benchmarks of Kratos' DEM application. Test 7, two
+The article was not at hand: inputs are those of the examples of YADE and of Kratos' DEM application, values of tests 1 and 2 those of
+Hertz's closed form (tolerance 1e-5, the digits given), and points of the figures of tests 5 and 8 those of Kratos' benchmarks. Test 7, two
 equal spheres with opposite spins, is its own mirror image in the plane of contact, whose points move along it with both spheres: seen from
 there each hits a rigid plate without slip.
 """
@@ -21,9 +21,9 @@ from vibroimpact.contact.pair import effective_modulus, effective_shear_modulus,
 PAPER = "Chung and Ooi 2011, Granular Matter 13, 643, doi 10.1007/s10035-011-0277-0"
 AGAINST = Against(
     "Chung and Ooi, benchmark tests 1 and 2",
-    "published computation",
+    "closed form",
     "Hertz and elastic contact",
-    f"{PAPER}; values of Hertz's closed form, with which their curves coincide",
+    f"cases of {PAPER}, with the inputs of YADE's examples; values of Hertz's closed form",
 )
 
 
@@ -31,7 +31,14 @@ FINITE_ELEMENTS = Against(
     "Chung and Ooi, finite-element results digitized from their figures",
     "published computation",
     "oblique impact and friction",
-    PAPER,
+    f"{PAPER}; inputs and digitized points of Kratos' DEM benchmarks",
+)
+SPHERES = Against(
+    "Chung and Ooi, test 8, results digitized from their figure",
+    "published computation",
+    "oblique impact and friction",
+    f"{PAPER}; inputs and digitized points of Kratos' DEM benchmarks, case A; where spheres stick in part, the tangential model "
+    "of the article differs from those of this package",
 )
 SLIDING = Against("gross sliding, closed form", "closed form", "oblique impact and friction", PAPER)
 SYMMETRY = Against("symmetry of two equal spheres", "closed form", "oblique impact and friction", PAPER)
@@ -125,6 +132,7 @@ def test_2_aluminium_sphere_on_a_rigid_wall(agrees: Agrees) -> None:
 
 
 FINITE_ELEMENTS_5 = (
+    (0.0058, 0.0),
     (0.318, 0.187),
     (0.595, 0.406),
     (0.890, 0.665),
@@ -139,6 +147,7 @@ FINITE_ELEMENTS_5 = (
     (5.659, 4.941),
     (7.03, 4.941),
     (9.04, 4.972),
+    (12.335, 4.970),
     (18.8, 4.975),
 )
 """Slip before and spin after of test 5, over the coefficient of friction and the normal speed: points read from the figure."""
@@ -208,13 +217,30 @@ FIGURE_8 = (
     (0.5508, -0.4394),
     (0.7647, -0.2378),
     (0.9786, -0.0173),
+    (1.2139, 0.0961),
+    (1.4920, 0.1108),
+    (1.7701, 0.0898),
+    (2.0909, 0.0583),
+    (2.5187, 0.0058),
+    (2.9893, -0.0488),
+    (3.6310, -0.1034),
+    (4.5080, -0.1391),
+    (5.7701, -0.1622),
+    (7.8449, -0.2042),
+    (11.9091, -0.2483),
+    (23.9733, -0.3176),
 )
-"""7/2 mu (1 + e) over the tangent of the angle, and minus the slip after over that before, of the points of test 8 that slip throughout."""
+"""7/2 mu (1 + e) over the tangent of the angle, and minus the slip after over that before, of test 8. The first five points slip
+throughout; the others depend on the tangential model."""
+SLIPPING = 5
 
 
-@pytest.mark.parametrize("law", ["mdr", "mindlin", "mindlin-rescale", "mindlin-force"])
-def test_8_a_spinning_sphere_on_a_larger_one(agrees: Agrees, law: str) -> None:
-    """The larger sphere, of 1000 times the density and the modulus and five times the radius, is held: it has 125,000 times the mass."""
+@pytest.mark.parametrize(("law", "sticking"), [("mdr", 0.70), ("mindlin", 0.54), ("mindlin-rescale", 0.48), ("mindlin-force", 0.63)])
+def test_8_a_spinning_sphere_on_a_larger_one(agrees: Agrees, law: str, sticking: float) -> None:
+    """The larger sphere, of 1000 times the density and the modulus and five times the radius, is held: it has 125,000 times the mass.
+
+    In gross sliding the results are those of the figure; where the contact sticks in part they are others, by `sticking` at most.
+    """
     radius, speed, friction = 0.1, 0.2, 0.4
     small = vi.Material(density=2700, youngs_modulus=7e10, poissons_ratio=0.33)
     large = vi.Material(density=2.7e6, youngs_modulus=7e13, poissons_ratio=0.33)
@@ -238,7 +264,8 @@ def test_8_a_spinning_sphere_on_a_larger_one(agrees: Agrees, law: str) -> None:
     found = -(row["separation_velocity_x_m_s"] - radius * row["spin_y_after_rad_s"]) / slip
     achieved = 3.5 * friction * (1.0 + row["restitution_achieved"]) * speed / slip
     case = f"test 8, spinning sphere on a larger sphere, friction law {law}"
-    agrees(case, "tangential coefficient of restitution at the contact point", found, achieved - 1.0, against=SLIDING, relative=1e-6)
-    agrees(
-        case, "tangential coefficient of restitution at the contact point, digitized", found, beta, against=FINITE_ELEMENTS, absolute=0.02
-    )
+    quantity, sliding, stuck = "tangential coefficient of restitution at the contact point", slice(SLIPPING), slice(SLIPPING, None)
+    agrees(case, quantity, found[sliding], achieved[sliding] - 1.0, against=SLIDING, relative=1e-6)
+    agrees(f"{case}, sliding", f"{quantity}, digitized", found[sliding], beta[sliding], against=SPHERES, absolute=0.02)
+    agrees(f"{case}, sticking in part", f"{quantity}, digitized", found[stuck], beta[stuck], against=SPHERES, absolute=sticking)
+    assert np.abs(found - beta).max() > 0.95 * sticking

@@ -13,7 +13,7 @@ from vibroimpact.dynamics.restitution import integrated_restitution
 
 AGAINST = Against(
     "EXUDYN, reference results of contactSphereSphereTest",
-    "published computation",
+    "other program",
     "damping laws",
     "EXUDYN, TestModels/contactSphereSphereTest.py; accurate to 1e-4",
 )

@@ -15,7 +15,7 @@ from vibroimpact.contact.laws.thornton import Thornton
 
 AGAINST = Against(
     "Thornton, elastic-perfectly plastic sphere",
-    "published computation",
+    "closed form",
     "elastic-plastic contact",
     "Thornton 1997, J. Appl. Mech. 64, 383",
 )

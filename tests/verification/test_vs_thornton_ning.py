@@ -17,7 +17,7 @@ from vibroimpact.contact.laws.krijt import Krijt
 
 AGAINST = Against(
     "Johnson, Kendall and Roberts; Thornton and Ning, adhesive spheres",
-    "published computation",
+    "closed form",
     "adhesion",
     "Johnson, Kendall and Roberts 1971, Proc. R. Soc. A 324, 301; Thornton and Ning 1998, Powder Technol. 99, 154",
 )

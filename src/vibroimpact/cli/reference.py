@@ -157,6 +157,6 @@ def doctor(
         as_json=as_json,
     )
     error = first_rebound_error()
-    if not error < 2e-6:
+    if not error < 1e-7:
         raise ComputationError(f"the self-test is off by {error:.1e}; reinstall the package")
     say(f"self-test passed: the paper's first rebound, off by {error:.1e}", err=as_json)

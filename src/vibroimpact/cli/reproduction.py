@@ -26,15 +26,15 @@ def reproduce(
 ) -> None:
     """Reproduce the numbers and figures of the paper. Each printed value is compared with the computed one.
 
-    The report states for each value whether it is reproduced, explained, or not reproduced, and why. It takes about half a minute. An
-    interrupted run is continued with the same command.
+    The report states for each value whether it is reproduced, explained, or not reproduced, and why, and whether it is a result or an input
+    or was inferred or fitted. It takes about a minute. An interrupted run is continued with the same command.
 
     The parts: table1, section3.1, fig3, section3.2, fig4 to fig8, damping, table2, section4, fig9, section5.1, fig10 to fig13,
     section5.2, fig14 to fig17, section5.3, fig18 to fig23, conclusions, recovery, sampling, unresolved, corrections.
     """
     from vibroimpact._version import __version__
     from vibroimpact.paper.report.folder import missing_parts, read_parts, reproduce_paper, reproduced_values
-    from vibroimpact.paper.report.page import verdict_counts, verdict_table
+    from vibroimpact.paper.report.page import kind_counts, kind_summary, verdict_counts, verdict_table
     from vibroimpact.report.progress import patient_progress
 
     names = None if only is None else names_in(only)
@@ -49,7 +49,13 @@ def reproduce(
     parts = read_parts(folder)
     show_folder(
         folder,
-        lambda: {"version": __version__, "verdicts": verdict_counts(parts), "values": reproduced_values(parts)},
+        lambda: {
+            "version": __version__,
+            "verdicts": verdict_counts(parts),
+            "kinds": kind_counts(parts),
+            "values": reproduced_values(parts),
+        },
         lambda: verdict_table(parts),
+        lambda: kind_summary(parts),
         as_json=as_json,
     )

@@ -125,9 +125,9 @@ def show(document: Callable[[], Mapping[str, Any]], *tables: Callable[[], Render
             screen.print(table())
 
 
-def show_folder(folder: Path, document: Callable[[], Mapping[str, Any]], table: Callable[[], RenderableType], *, as_json: bool) -> None:
+def show_folder(folder: Path, document: Callable[[], Mapping[str, Any]], *tables: Callable[[], RenderableType], as_json: bool) -> None:
     """Print what a folder with a report holds, as `show` does, and that it was written."""
-    show(lambda: {"folder": str(folder), **document()}, table, as_json=as_json)
+    show(lambda: {"folder": str(folder), **document()}, *tables, as_json=as_json)
     say(f"wrote {folder / 'report.html'}", err=as_json)
 
 

@@ -3,6 +3,7 @@
 A law is a frozen dataclass in a file of its own under `vibroimpact.contact.laws`, where the registry finds it. It declares
 
 * `name`, `equation` and `source`, which the command line and the documentation print;
+* `departure`, if it is not as its sources have it;
 * its parameters, each with `parameter(...)`: meaning, unit, range, default;
 * the state variables on which its force depends, if any, each with `memory(...)`;
 * and, if it is a `CompliantLaw`, when its contact ends and whether its force may be tensile.
@@ -31,6 +32,9 @@ class ContactLaw(Parameters):
     >>> isinstance(law, vi.ContactLaw), law.name, law.exponent
     (True, 'hertz', 1.5)
     """
+
+    departure: ClassVar[str] = ""
+    """In what the law departs from its sources, in sentences; "" if it is as published."""
 
     @property
     def free_parameter(self) -> str | None:

@@ -12,6 +12,9 @@ from vibroimpact.arrays import Floats
 CLOSURE_LIMIT = 1e-6
 """Largest closure error of the ledger, as a part of the energy put in, above which a run has failed."""
 
+CLOSURE_USUAL = 1e-9
+"""Part of the energy put in below which the closure error of runs at the default tolerance is: rounding, which machines differ in."""
+
 WRITE_OFF_LIMIT = 1e-9
 """Largest negative energy written off at rest, as a part of the energy put in, that counts as rounding."""
 
@@ -37,6 +40,22 @@ def close_ledger(energy_in: Floats, added: Floats, entries: dict[str, Floats]) -
     closure = sum(entries.values(), -energy_in)
     relative = np.abs(closure) / (energy_in + added)
     return {"input_J": energy_in, **entries, "closure_J": closure, "closure_relative": relative}
+
+
+def closure_in_words(relative: float) -> str:
+    """Return the closure error of the ledger as it is printed: a bound of rounding, which is the same on every machine, or its size.
+
+    Examples
+    --------
+    >>> closure_in_words(7.3e-13)
+    'closure below 1e-9 of the energy put in'
+    >>> closure_in_words(2.6e-8)
+    'closure 3e-8 of the energy put in'
+    """
+    if relative < CLOSURE_USUAL:
+        return "closure below 1e-9 of the energy put in"
+    mantissa, _, exponent = f"{relative:.0e}".partition("e")
+    return f"closure {mantissa}e{int(exponent)} of the energy put in"
 
 
 def why_failed(energy: Mapping[str, Any]) -> str:

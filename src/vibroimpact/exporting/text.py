@@ -33,7 +33,7 @@ def format_table() -> RenderableType:
 
 
 def export_summary(drop: Drop, format: ExportFormat, files: Sequence[Path]) -> RenderableType:
-    """Return the files written, what a dialog takes, the limitations of the format, the doubts about the drop, and the tests of the writer."""
+    """Return the files written, what a dialog takes, the limitations of the format, the doubts about the drop, and how it was tested."""
     shown = files if len(files) <= _MOST else files[: _MOST - 1]
     dialog, speeds = format.dialog(drop), drop.impacts["approach_speed_m_s"].tolist()
     names = [f"impact {number} at {digits(speed)} m/s" for number, speed in enumerate(speeds, 1)]

@@ -11,7 +11,7 @@ from pathlib import Path
 from vibroimpact.contact.law import CompliantLaw, ContactLaw
 from vibroimpact.contact.registry import contact_laws
 from vibroimpact.errors import InputError
-from vibroimpact.laws.text import SPEED, ParameterText, asked_and_achieved, law_text
+from vibroimpact.laws.text import SPEED, ParameterText, asked_and_achieved, law_text, short_sources
 from vibroimpact.report.markdown_table import markdown_table
 
 BEGIN, END = "<!-- laws: begin (written by make docs) -->", "<!-- laws: end -->"
@@ -65,6 +65,7 @@ def law_page(law: type[ContactLaw]) -> str:
         rows = ((f"`{item.name}`", _cell(item.meaning), item.unit or "-") for item in text.state)
         parts += ["## State", "Zero at first contact.", _table(("state", "meaning", "unit"), rows), text.persistence]
     parts += ["## End of the contact", f"{text.end} {text.tension}".strip()]
+    parts += ["## Departure from the source", text.departure] if text.departure else []
     parts += ["## Notes", *map(_marked, text.notes)] if text.notes else []
     pairs = asked_and_achieved(law)
     if pairs:
@@ -73,8 +74,8 @@ def law_page(law: type[ContactLaw]) -> str:
             f"Asked for and achieved, of the paper's rock sphere on its steel plate at {SPEED:g} m/s, without gravity:",
             _table(("asked", *(f"{asked:g}" for asked, _ in pairs)), [("achieved", *(f"{achieved:.3f}" for _, achieved in pairs))]),
         ]
-    parts += ["## Curves", f"```console\n$ vibroimpact laws {law.name}\n```"]
-    parts += [f"writes `{law.name}.png`: curves of the law with typical parameters."]
+    parts += ["## Curves", f"```console\n$ vibroimpact laws {law.name} -o {law.name}.png\n```"]
+    parts += ["draws the curves of the law with typical parameters."]
     parts += ["## References", "\n".join(f"- {_marked(reference)}" for reference in text.references or (text.source,))]
     parts += ["[All contact laws](../laws.md)"]
     return "\n\n".join(parts) + "\n"
@@ -106,7 +107,8 @@ def _table_of(laws: Iterable[type[ContactLaw]]) -> str:
     for law in laws:
         end, tension = (_ENDS[law.contact_end], _TENSION[law.tension]) if issubclass(law, CompliantLaw) else ("instantaneous", "")
         equation = law.equation.replace("|", r"\|")
-        rows.append((f"[`{law.name}`](laws/{law.name}.md)", f"`{equation}`", end, tension, law.source))
+        source = f"{short_sources(law)}; changed" if law.departure else short_sources(law)
+        rows.append((f"[`{law.name}`](laws/{law.name}.md)", f"`{equation}`", end, tension, source))
     return _table(("law", "force, or restitution", "contact ends", "tensile force", "source"), rows)
 
 

@@ -64,6 +64,7 @@ def law_sheet(name: str) -> RenderableType:
         *(_indented(f"Refused {plain_paragraph(line)[:1].lower()}{plain_paragraph(line)[1:]}") for line in text.raises),
         *_state(text),
         *((*_heading("End of the contact"), _indented(f"{text.end} {text.tension}".strip())) if text.end else ()),
+        *((*_heading("Departure from the source"), _indented(text.departure)) if text.departure else ()),
         *(_heading("Notes") if text.notes else []),
         *_prose(text.notes),
         *(_achieved(law) if issubclass(law, ContactLaw) else ()),

@@ -52,8 +52,8 @@ class LawText:
 
     Parameters
     ----------
-    name, title, equation, source : str
-        Its name, the first paragraph of its docstring, its equation, and its source.
+    name, title, equation, source, departure : str
+        Its name, the first paragraph of its docstring, its equation, its source, and in what it departs from that; "" if in nothing.
     loss_parameters : str
         The parameters that set the energy loss.
     end, tension : str
@@ -70,6 +70,7 @@ class LawText:
     title: str
     equation: str
     source: str
+    departure: str
     loss_parameters: str
     end: str
     tension: str
@@ -115,6 +116,7 @@ def law_text(law: type[ContactLaw | FrictionLaw]) -> LawText:
         title=title,
         equation=law.equation,
         source=law.source,
+        departure=law.departure if issubclass(law, ContactLaw) else "",
         loss_parameters=_loss_parameters(law) if issubclass(law, ContactLaw) else "",
         end=end,
         tension=tension,
@@ -168,7 +170,23 @@ def short_source(law: type[ContactLaw | FrictionLaw]) -> str:
     >>> short_source(find_contact_law("jkr")), short_source(find_contact_law("adams-poisson"))
     ('Johnson, Kendall & Roberts 1971', 'MSC Adams/Solver guide')
     """
-    parts = law.source.split("; ")[0].split(",")
+    return _short(law.source.split("; ")[0])
+
+
+def short_sources(law: type[ContactLaw]) -> str:
+    """Return the authors and years of all sources of a law.
+
+    Examples
+    --------
+    >>> from vibroimpact.contact.registry import find_contact_law
+    >>> short_sources(find_contact_law("tsuji"))
+    'Tsuji et al. 1992; Antypov & Elliott 2011'
+    """
+    return "; ".join(map(_short, law.source.split("; ")))
+
+
+def _short(source: str) -> str:
+    parts = source.split(",")
     dated = [number for number, part in enumerate(parts, 1) if _is_year(part.rpartition(" ")[2])]
     return ",".join(parts[: dated[0] if dated else 1])
 

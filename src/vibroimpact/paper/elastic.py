@@ -16,6 +16,7 @@ from vibroimpact.paper.measures import (
     energy_released,
     history_column,
     in_first_impact,
+    kind_of,
     largest_of,
     plate_energy_part,
     sphere_rotation,
@@ -23,7 +24,7 @@ from vibroimpact.paper.measures import (
     values_by_treatment,
 )
 from vibroimpact.paper.printed import printed
-from vibroimpact.paper.report_section import ComparedValue, Explanation, ReportSection, TextTable, holds_text
+from vibroimpact.paper.report_section import ComparedValue, Explanation, Kind, ReportSection, TextTable, holds_text
 from vibroimpact.paper.runs import IMPACTS, TREATMENTS, Runs
 from vibroimpact.paper.sampling import contact_pulses, spacing_bound
 from vibroimpact.paper.unresolved import unresolved_range
@@ -93,7 +94,11 @@ def _accelerations(runs: Runs) -> list[ComparedValue]:
         value = printed(f"type{kind}.max_acceleration")
         rows.append(
             ComparedValue(
-                value, force.value / mass - gravity, by="the printed force over the mass, less gravity", explanations=explanations
+                value,
+                force.value / mass - gravity,
+                by="the printed force over the mass, less gravity",
+                explanations=explanations,
+                made_by=Kind.ARITHMETIC,
             )
         )
     return rows
@@ -201,7 +206,7 @@ def _released(runs: Runs, kind: int) -> list[ComparedValue]:
         released = energy_released(runs.treated(kind, treatment))
         beyond = 1e3 * (released / (mass * gravity) - fall)
         why = f"the printed fall beyond first touch is {deep:.2f} mm, the computed one {beyond:.2f} mm"
-        rows.append(ComparedValue(value, released, by=treatment, otherwise=why))
+        rows.append(ComparedValue(value, released, by=treatment, otherwise=why, made_by=kind_of(treatment)))
     return rows
 
 
@@ -215,7 +220,11 @@ def _from_height(runs: Runs, kind: int) -> ComparedValue:
     reason = f"the sphere separates while it is still indented, with the mass of the mesh: {low:.5f} to {high:.5f} J"
     value = printed(f"type{kind}.energy_at_separation")
     return ComparedValue(
-        value, mass * gravity * (height - radius), by="m g times the printed rebound", explanations=(Explanation(reason, low, high),)
+        value,
+        mass * gravity * (height - radius),
+        by="m g times the printed rebound",
+        explanations=(Explanation(reason, low, high),),
+        made_by=Kind.ARITHMETIC,
     )
 
 
@@ -224,7 +233,7 @@ def _percentage(kind: int, part: str, of: str) -> ComparedValue:
     over, under = printed(f"type{kind}.{of}"), printed(f"type{kind}.potential_energy")
     ratio = 100.0 * over.value / under.value
     why = f"{over.text} J of {under.text} J are {ratio:.2f} %: a misprint"
-    return ComparedValue(printed(f"type{kind}.{part}"), ratio, by="the printed energies", otherwise=why)
+    return ComparedValue(printed(f"type{kind}.{part}"), ratio, by="the printed energies", otherwise=why, made_by=Kind.ARITHMETIC)
 
 
 _PLATE_COLUMNS = {
@@ -277,16 +286,16 @@ def _plate_percentages() -> list[ComparedValue]:
     """Return the printed percentages with the ratios of the printed numbers that define them."""
     released, thickness = printed("type3.potential_energy"), printed("plate.size.3")
     kinetic, strain = (printed(f"plate.{name}_energy") for name in ("kinetic", "strain"))
-    return [
-        ComparedValue(
-            printed("plate.displacement_part"),
-            100.0 * printed("plate.displacement").value / (1e-3 * thickness.value),
-            by="the printed displacement and thickness",
+    parts = {
+        "plate.displacement_part": (
+            printed("plate.displacement").value / (1e-3 * thickness.value),
+            "the printed displacement and thickness",
         ),
-        ComparedValue(printed("plate.kinetic_part"), 100.0 * kinetic.value / released.value, by="the printed energies"),
-        ComparedValue(printed("plate.strain_part"), 100.0 * strain.value / released.value, by="the printed energies"),
-        ComparedValue(printed("plate.energy_part"), 100.0 * (kinetic.value + strain.value) / released.value, by="the printed energies"),
-    ]
+        "plate.kinetic_part": (kinetic.value / released.value, "the printed energies"),
+        "plate.strain_part": (strain.value / released.value, "the printed energies"),
+        "plate.energy_part": ((kinetic.value + strain.value) / released.value, "the printed energies"),
+    }
+    return [ComparedValue(printed(name), 100.0 * part, by=by, made_by=Kind.ARITHMETIC) for name, (part, by) in parts.items()]
 
 
 def _peak_decay(runs: Runs) -> tuple[TextTable, str]:

@@ -10,7 +10,7 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.response import Response
 from vibroimpact.paper.printed import PrintedValue
-from vibroimpact.paper.report_section import ComparedValue, Explanation
+from vibroimpact.paper.report_section import ComparedValue, Explanation, Kind
 from vibroimpact.paper.runs import TREATMENTS, Runs, history_of
 
 Timeline = Callable[[Response], tuple[Floats, Floats]]
@@ -114,6 +114,11 @@ FITTED = ("type2.max_force", "type2.rebound_height")
 """The printed values to which the identified treatment was fitted."""
 
 
+def kind_of(treatment: str) -> Kind | None:
+    """Return the kind of the values computed under a treatment, where the printed value alone does not decide it."""
+    return Kind.FITTED_MODEL if treatment == "identified" else None
+
+
 def values_by_treatment(
     runs: Runs, kind: int, value: PrintedValue, measure: Measure, unresolved: tuple[float, float] | None = None
 ) -> list[ComparedValue]:
@@ -155,6 +160,7 @@ def values_by_treatment(
             otherwise=words[treatment],
             fitted=treatment == "identified" and value.name in FITTED,
             digits=MESH_DIGITS,
+            made_by=kind_of(treatment),
         )
         for treatment in TREATMENTS
     ]

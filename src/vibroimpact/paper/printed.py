@@ -13,9 +13,11 @@ from typing import Any, Literal
 from vibroimpact.errors import InputError, did_you_mean
 
 PAPER = '"Study on the Vibroimpact Response of the Particle Elastic Impact on the Metal Plate" (Shock and Vibration)'
-"""Title and journal of the paper."""
+"""Title and journal of the paper; its authors, year and DOI were not at hand."""
 
 Relation = Literal["=", "<", ">"]
+
+Role = Literal["result", "inferred", "input"]
 
 
 @dataclass(frozen=True)
@@ -40,6 +42,9 @@ class PrintedValue:
         Whether the paper states the value itself, an upper bound or a lower bound.
     digits : int, optional
         Number of significant digits, where the text does not show it, as with 200.
+    role : {"result", "inferred", "input"}
+        What the number is here: a result of the paper; one from which the restitution or the full-damping penetration was inferred, or
+        that penetration itself; or an input of the paper.
 
     Examples
     --------
@@ -56,6 +61,7 @@ class PrintedValue:
     read: str
     relation: Relation = "="
     digits: int | None = None
+    role: Role = "result"
 
     @property
     def value(self) -> float:

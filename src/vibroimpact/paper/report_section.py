@@ -9,6 +9,25 @@ from enum import Enum
 from vibroimpact.paper.printed import PrintedValue
 
 
+class Kind(Enum):
+    """What a comparison of a printed with a computed value can show, by what the computed value is made of."""
+
+    RESULT = "result"
+    """Computed from the inputs, and from what was assumed or inferred from other printed numbers; the printed value was not used."""
+
+    INFERRED = "inferred"
+    """A printed value from which the restitution or the full-damping penetration was inferred, or that penetration itself."""
+
+    FITTED_MODEL = "fitted model"
+    """Computed by a model with parameters that were fitted to printed results of Type 2."""
+
+    ARITHMETIC = "arithmetic"
+    """Calculated from other printed results: the paper is compared with itself."""
+
+    INPUT = "input"
+    """An input of the paper, compared with that of the shipped case."""
+
+
 class Verdict(Enum):
     """Verdict on the difference between a printed and a computed value."""
 
@@ -65,6 +84,8 @@ class ComparedValue:
         Whether the model was fitted to the printed value, so that agreement is no evidence.
     digits : int
         Most significant digits shown of the computed value; fewer for values that depend on a mesh.
+    made_by : Kind, optional
+        `Kind.FITTED_MODEL` or `Kind.ARITHMETIC`, where the computed value is made so; by default the role of the printed value decides.
 
     Examples
     --------
@@ -81,6 +102,12 @@ class ComparedValue:
     otherwise: str = ""
     fitted: bool = False
     digits: int = 13
+    made_by: Kind | None = None
+
+    @property
+    def kind(self) -> Kind:
+        """What the comparison can show."""
+        return self.made_by or Kind(self.printed.role)
 
     @property
     def allowed(self) -> float:

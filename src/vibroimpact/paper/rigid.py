@@ -10,7 +10,7 @@ from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.paper.derived import parabola, printed_function
 from vibroimpact.paper.printed import printed
-from vibroimpact.paper.report_section import ComparedValue, Explanation, ReportSection, TextTable
+from vibroimpact.paper.report_section import ComparedValue, Explanation, Kind, ReportSection, TextTable
 from vibroimpact.paper.runs import DAMPINGS, IMPACTS, Runs, with_law
 from vibroimpact.paper.sampling import QUANTITIES, error_range, spacing_bound, table2_error
 from vibroimpact.units.display import fixed
@@ -30,8 +30,8 @@ def section_3_2(runs: Runs) -> ReportSection:
         "Section 3.2: rebounds of rigid bodies",
         (
             "The theory is the law of Lankarani and Nikravesh with e_h = 0.65, the simulation IMPACT of Adams with a full-damping "
-            "penetration of 0.1 mm; both are integrated here to a relative error of 1e-9, and peaks are located, not picked from samples. "
-            "These two values are not printed: they were recovered from printed numbers, including these (see the section on "
+            "penetration of 0.1 mm; both are integrated here with a relative tolerance of 1e-9, and peaks are located, not picked from "
+            "samples. These two values are not printed: they were recovered from printed numbers, including these (see the section on "
             "inferences), so that the evidence is the agreement of all of them with two values.",
         ),
         (
@@ -165,7 +165,11 @@ def table2(runs: Runs) -> ReportSection:
     worst = max((table2_error("compression", "variable", impact) for impact in IMPACTS), key=lambda value: value.value)
     rows.append(
         ComparedValue(
-            printed("worst_compression.variable"), worst.value, by="Table 2", otherwise=f"Table 2 and conclusion (1) have {worst.text} %"
+            printed("worst_compression.variable"),
+            worst.value,
+            by="Table 2",
+            otherwise=f"Table 2 and conclusion (1) have {worst.text} %",
+            made_by=Kind.ARITHMETIC,
         )
     )
     return ReportSection(

@@ -9,7 +9,7 @@ from vibroimpact.paper.derived import fall_beyond_touch, mesh_mass
 from vibroimpact.paper.implicit_euler import ENERGY_SHARES, unresolved_impact
 from vibroimpact.paper.measures import MESH_DIGITS
 from vibroimpact.paper.printed import printed
-from vibroimpact.paper.report_section import ComparedValue, Explanation, ReportSection, TextTable, Verdict
+from vibroimpact.paper.report_section import ComparedValue, Explanation, Kind, ReportSection, TextTable, Verdict
 from vibroimpact.paper.runs import Runs
 from vibroimpact.paper.sampling import output_step
 from vibroimpact.paper.step_sweep import (
@@ -94,6 +94,7 @@ def _compared_values(runs: Runs) -> tuple[ComparedValue, ...]:
                     otherwise=otherwise,
                     fitted=kind == 2,
                     digits=MESH_DIGITS,
+                    made_by=Kind.FITTED_MODEL,
                 )
             )
     return tuple(rows)

@@ -8,6 +8,7 @@ from rich.console import Group, RenderableType
 from rich.text import Text
 
 from vibroimpact.dynamics.columns import ALL_IMPACT_COLUMNS
+from vibroimpact.dynamics.energy import closure_in_words
 from vibroimpact.report.terminal_table import TerminalColumn, TerminalTable, facts, numbers, with_gap
 from vibroimpact.results.result import Result
 from vibroimpact.runs.deformation import deformation_rows, treatment_sentence
@@ -65,7 +66,7 @@ def energy_table_for_terminal(result: Result) -> RenderableType:
         numbers("", unit, [row.energy for row in shown]),
         TerminalColumn("%", [row.part for row in shown]),
     )
-    closure = Text(f" closure {result.energy['closure_relative']:.1e} of the energy put in", style="dim")
+    closure = Text(f" {closure_in_words(float(result.energy['closure_relative']))}", style="dim")
     return Group(TerminalTable(columns, bold=(len(shown) - 1,)), closure)
 
 

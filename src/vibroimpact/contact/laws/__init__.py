@@ -1,1 +1,1 @@
-"""The published contact laws, one file each; a file put here is found by itself."""
+"""The contact laws, one file each; a file put here is found by itself."""

@@ -19,7 +19,7 @@ class HuntCrossley(HystereticLaw):
     Notes
     -----
     Derived for e near 1, from an energy loss that is small. The restitution achieved is larger than the one
-    asked for: 0.7 gives 0.768, and no value gives less than 0.49.
+    asked for: 0.7 gives 0.768, and no value gives less than 0.487.
 
     References
     ----------

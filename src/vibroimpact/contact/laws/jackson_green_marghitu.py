@@ -29,8 +29,7 @@ class JacksonGreenMarghitu(ElasticPairLaw, InstantaneousLaw):
     Notes
     -----
     An instantaneous law: it gives the restitution and no force. Meant to compare the elastic-plastic laws with. The fits
-    rest on finite-element results up to :math:`V^*` of about 1000; far beyond they would turn negative, and are
-    held at zero. Every impact falls on fresh material.
+    rest on finite-element results up to :math:`V^*` of about 1000. Every impact falls on fresh material.
 
     References
     ----------
@@ -49,6 +48,7 @@ class JacksonGreenMarghitu(ElasticPairLaw, InstantaneousLaw):
         "e = 1 - 0.1 ln(V) ((V - 1)/59)^0.156 for 1 < V <= 60, 1 - 0.1 ln(60) - 0.11 ln(V/60) (V - 60)^(2.36 Sy/E*) beyond, V = v/v_c"
     )
     source = "Jackson, Green & Marghitu 2010, Nonlinear Dynamics 60:217"
+    departure = "Far beyond the speeds that were fitted the formula would turn negative: it is held at zero."
     free_parameter = "yield_strength"
 
     yield_strength: Array = parameter(

@@ -20,8 +20,7 @@ class Krijt(ViscoelasticLaw, AdhesiveLaw):
 
     Notes
     -----
-    Without adhesion it is Kuwabara and Kono's law. The paper also lets the work of adhesion depend on the
-    speed of the contact's edge, and lets the sphere yield; those two losses are not in this law.
+    Without adhesion it is Kuwabara and Kono's law.
 
     References
     ----------
@@ -39,6 +38,10 @@ class Krijt(ViscoelasticLaw, AdhesiveLaw):
     name = "krijt"
     equation = "F = F_JKR(a) + 2 E* A a delta_dot"
     source = "Krijt et al. 2013, J. Phys. D 46:435303 (the loss in the bulk)"
+    departure = (
+        "Two losses of the paper are not in this law: that of a work of adhesion which depends on the speed of the contact's edge, and "
+        "that of yielding."
+    )
 
     dissipation_time: Array = inherited_parameter(
         ViscoelasticLaw,

@@ -58,6 +58,11 @@ class Meyer(YieldingSphereLaw):
         "unloading Hertz's, of a sphere in its dent"
     )
     source = "Kharaz & Gorham 2000, Philos. Mag. Lett. 80:549; Tabor 1951, The Hardness of Metals"
+    departure = (
+        "The law is put together by this software: the pressures at yield and at full plasticity (Tabor), a power of the contact radius "
+        "between them (Meyer), the depth of a spherical dent, and Hertz's unloading. The default index is chosen to fit the onset of full "
+        "plasticity (Kharaz and Gorham)."
+    )
     free_parameter = "yield_strength"
 
     yield_strength: Array = parameter(

@@ -1,4 +1,4 @@
-"""Zhiying and Qishao's law: Lankarani and Nikravesh's damping with a correction."""
+"""Qin and Lu's law (Qin Zhiying and Lu Qishao): Lankarani and Nikravesh's damping with a correction."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from vibroimpact.contact.hysteretic import HystereticLaw
 
 @dataclass(frozen=True, kw_only=True)
 class ZhiyingQishao(HystereticLaw):
-    r"""Hertz's force with hysteretic damping (Zhiying and Qishao 2006).
+    r"""Hertz's force with hysteretic damping (Qin and Lu 2006).
 
     .. math:: F = K \delta^n \left[1 + \tfrac34 (1 - e^2)\, \mathrm{e}^{2 (1 - e)}\, \dot\delta / \dot\delta_0\right]
 
@@ -20,11 +20,12 @@ class ZhiyingQishao(HystereticLaw):
 
     Notes
     -----
-    For e above about 0.5: 0.7 gives 0.680, 0.3 gives 0.327, and no value gives less than 0.17.
+    For e above about 0.5: 0.7 gives 0.680, 0.3 gives 0.327, and no value gives less than 0.17. The law is called by the given names of its
+    authors, Qin Zhiying and Lu Qishao.
 
     References
     ----------
-    Zhiying, Q. and Qishao, L. (2006). Analysis of impact process based on restitution coefficient. Journal of
+    Qin, Z. and Lu, Q. (2006). Analysis of impact process model based on restitution coefficient. Journal of
     Dynamics and Control 4, 294-298 (in Chinese).
 
     Examples
@@ -37,7 +38,7 @@ class ZhiyingQishao(HystereticLaw):
 
     name = "zhiying-qishao"
     equation = "F = K delta^n [1 + 3/4 (1 - e^2) exp(2 (1 - e)) delta_dot / v0]"
-    source = "Zhiying & Qishao 2006, J. Dynamics and Control 4:294"
+    source = "Qin & Lu 2006, J. Dynamics and Control 4:294"
 
     @property
     def damping_factor(self) -> Array:

@@ -22,7 +22,7 @@ from vibroimpact.files.json_reading import read_json_table
 from vibroimpact.files.recover import recover
 from vibroimpact.paper.report.outline import PARTS, VALUE_COLUMNS, ReportPart, find_parts, render_part
 from vibroimpact.paper.report.page import report_html, report_text
-from vibroimpact.paper.report_section import Verdict
+from vibroimpact.paper.report_section import Kind, Verdict
 from vibroimpact.paper.runs import Runs
 from vibroimpact.report.page import replace_report_files
 from vibroimpact.results.csv_files import write_csv
@@ -176,7 +176,7 @@ def _row(row: Any) -> dict[str, Any]:
     """
     if not isinstance(row, dict) or row.keys() != set(VALUE_COLUMNS):
         raise KeyError("its columns are not those of values.csv")
-    return {**row, "verdict": Verdict(row["verdict"]).value}
+    return {**row, "verdict": Verdict(row["verdict"]).value, "kind": Kind(row["kind"]).value}
 
 
 def reproduced_values(parts: Mapping[str, Mapping[str, Any]]) -> list[dict[str, Any]]:

@@ -48,10 +48,11 @@ def rows_table(rows: Sequence[ComparedValue]) -> str:
                 computed_text(row),
                 difference_text(row),
                 allowed_text(row),
+                row.kind.value,
                 verdict_text(row),
             )
         )
-    return table(("What", "Where", "Printed", "Computed by", "Computed", "Difference", "Allowed", "Verdict"), cells)
+    return table(("What", "Where", "Printed", "Computed by", "Computed", "Difference", "Allowed", "Kind", "Verdict"), cells)
 
 
 def printed_text(value: PrintedValue) -> str:

@@ -20,7 +20,7 @@ from vibroimpact.paper.report.recovery_chart import recovery_chart
 from vibroimpact.paper.report.rigid_charts import RIGID_FIGURES, rigid_chart
 from vibroimpact.paper.report.sampling_chart import sampling_chart
 from vibroimpact.paper.report.unresolved_chart import unresolved_chart
-from vibroimpact.paper.report_section import ComparedValue, ReportSection
+from vibroimpact.paper.report_section import ComparedValue, ReportSection, Verdict
 from vibroimpact.paper.rigid import damping_section, section_3_2, table2
 from vibroimpact.paper.runs import Runs
 from vibroimpact.paper.sampling import sampling_section
@@ -144,13 +144,14 @@ def render_part(part: ReportPart, runs: Runs) -> RenderedPart:
 
 VALUE_COLUMNS = (
     "part", "name", "what", "place", "read", "unit", "relation", "printed", "by", "computed", "difference", "allowed", "verdict", "why",
+    "kind", "range_low", "range_high",
 )  # fmt: skip
 """The columns of `values.csv`."""
 
 
 def _values_row(part: str, row: ComparedValue) -> dict[str, Any]:
     """Return a compared value as a row of `values.csv`, in full precision."""
-    value = row.printed
+    value, explanation = row.printed, row.explanation if row.verdict is Verdict.EXPLAINED else None
     return {
         "part": part,
         "name": value.name,
@@ -166,4 +167,7 @@ def _values_row(part: str, row: ComparedValue) -> dict[str, Any]:
         "allowed": row.allowed if value.relation == "=" else None,
         "verdict": row.verdict.value,
         "why": row.reason,
+        "kind": row.kind.value,
+        "range_low": None if explanation is None else explanation.low,
+        "range_high": None if explanation is None else explanation.high,
     }

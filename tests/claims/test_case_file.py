@@ -1,0 +1,99 @@
+"""Defaults and limits that the page of the case file states, read from a case and from the limits that the program applies."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import vibroimpact as vi
+from stated import ROOT, says
+from vibroimpact.bodies.elastic import plate_recipe
+from vibroimpact.calibration.section import CalibrateSection
+from vibroimpact.cases.fields import quantities, size_limits
+from vibroimpact.cli import main
+from vibroimpact.materials import find_material
+from vibroimpact.structures.recipe import Reduction
+from vibroimpact.units.reading import to_si
+
+PAGE = "docs/case-file.md"
+
+
+@pytest.fixture(scope="module")
+def blocks() -> list[str]:
+    """The cases of the page."""
+    return re.findall(r"^```toml\n(.*?)^```", (ROOT / PAGE).read_text(encoding="utf-8"), re.M | re.S)
+
+
+def case_of(folder: Path, text: str, **changes: Any) -> vi.Case:
+    file = folder / "case.toml"
+    file.write_text(text, encoding="utf-8")
+    return vi.load_case(file, changes)
+
+
+def test_defaults_of_the_drop(tmp_path: Path, blocks: list[str]) -> None:
+    problem = case_of(tmp_path, blocks[0].replace("gravity = 9.8\n", "")).to_problem()
+    says(PAGE, "| {} by default; 0 is allowed", problem.gravity)
+    says(PAGE, "at the end of a contact: {} by default", problem.tolerance)
+    air, water = vi.Air(), vi.Liquid()
+    says(PAGE, "({} kg/m^3), ", air.density)
+    says(PAGE, "({} Pa s), or a constant", air.viscosity)
+    says(PAGE, "({} kg/m^3) and", water.density)
+    says(PAGE, "({} Pa s); ", water.viscosity)
+
+
+@pytest.mark.parametrize(("given", "is_allowed"), [(1e-13, True), (0.99e-13, False), (1e-6, True), (1.01e-6, False)])
+def test_range_of_the_tolerance(tmp_path: Path, blocks: list[str], given: float, is_allowed: bool) -> None:
+    says(PAGE, "by default, {} to {}", 1e-13, 1e-6)
+    changes = {"run.tolerance": given}
+    if is_allowed:
+        assert case_of(tmp_path, blocks[0], **changes).to_problem().tolerance == given
+    else:
+        with pytest.raises(vi.InputError, match="tolerance"):
+            case_of(tmp_path, blocks[0], **changes)
+
+
+def test_defaults_of_instruments() -> None:
+    sensor = vi.Sensor("a", filter="butterworth")
+    says(PAGE, "corner frequency of a Butterworth filter: {} of the rate", sensor.passed / sensor.rate)
+    says(PAGE, "({} by default), ", vi.Accelerometer(resonance=1e4).damping_ratio)
+    says(PAGE, '"g" is standard gravity, {} m/s^2', to_si("1 g", "m/s^2"))
+    says(PAGE, "({} by default), ", vi.Geophone(natural_frequency=10.0, sensitivity=28.0).damping_ratio)
+
+
+def test_default_of_a_confidence_level() -> None:
+    says(PAGE, "confidence level of the intervals: {}", CalibrateSection.model_fields["confidence"].default)
+
+
+def test_default_of_a_margin() -> None:
+    shape = plate_recipe((0.52, 0.42, 0.008), find_material("steel-paper"), Reduction(modes=20)).shape
+    says(PAGE, "along edges and straight rims: {} thicknesses", shape.margin / 0.008)
+
+
+def test_limits_of_size() -> None:
+    """Each limit itself is tested in tests/unit/test_hostile_input.py."""
+    limits = size_limits
+    says(PAGE, "files larger than {} MB, tables and lists nested more than {} deep", limits.MOST_BYTES / 1e6, limits.DEEPEST)
+    says(PAGE, "more than {} values, strings of more than {} characters", limits.MOST_VALUES, limits.LONGEST_TEXT)
+    says(PAGE, "and keys of more than {}, more than {} sensors or supports", limits.LONGEST_KEY, limits.MOST_ITEMS)
+    says(PAGE, "more than {} values of a parameter, integers beyond {} bits", limits.MOST_OF_A_LIST, limits.LARGEST_WHOLE.bit_length() + 1)
+    says(PAGE, "quantities smaller than {} or larger than {} in SI", quantities.SMALLEST, quantities.LARGEST)
+    says(PAGE, "Names are one line of at most {} printable characters", limits.LONGEST_NAME)
+
+
+@pytest.mark.parametrize("changes", [{"contact.stiffness": 16176}, {"contact.damping_max": 180000}, {"run.duration": 0.001}])
+def test_doubts_about_units(
+    tmp_path: Path, blocks: list[str], changes: dict[str, float], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The page shows the doubt as the case of its beginning gives it, with one value changed."""
+    told = re.findall(r"^Doubt: (.+)$", (ROOT / PAGE).read_text(encoding="utf-8"), re.M)
+    ((key, value),) = changes.items()
+    (tmp_path / "case.toml").write_text(blocks[0], encoding="utf-8")
+    monkeypatch.setattr("sys.argv", ["vibroimpact", "check", str(tmp_path / "case.toml"), "--set", f"{key}={value}", "--json"])
+    with pytest.raises(SystemExit):
+        main()
+    (shown,) = (line for line in told if line.startswith(f"{key}: "))
+    assert shown.removesuffix(".") in json.loads(capsys.readouterr().out)["doubts"]
