@@ -232,3 +232,19 @@ def test_every_way_to_state_a_fall_has_an_estimate(drop: dict[str, Any], speed: 
     estimate = HertzEstimate(resolved)
     assert (estimate.speed, estimate.touch) == (pytest.approx(speed), pytest.approx(touch))
     assert slips(resolved) == []
+
+
+def test_a_value_for_each_impact() -> None:
+    """As of a calibration: such a list is compared with what follows from the bodies, impact by impact."""
+    steel = {
+        "sphere": {"radius": 0.02, "material": "steel"},
+        "plate": {"material": "steel"},
+        "drop": {"height": 0.05},
+        "run": {"impacts": 2},
+    }
+    for contact in ({"law": "thornton", "yield_pressure": [4e8, 5e8]}, {"law": "hertz", "stiffness": [2e10, 1.9e10]}):
+        result = result_of(vi.simulate(vi.read_case({**steel, "contact": contact})))
+        assert not any("was " in doubt for doubt in result.doubts)
+    twice = [HertzEstimate(result.case).stiffness] * 2
+    derived = HertzEstimate({**result.case, "contact": {"law": "hertz", "stiffness": twice}}).derived_parameters
+    assert derived == {"stiffness"}

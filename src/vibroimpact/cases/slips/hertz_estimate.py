@@ -129,4 +129,6 @@ class HertzEstimate:
             "yield_pressure": [1.6 * strength for strength in strengths],
         }
         contact = self.case["contact"]
-        return {name for name, values in given.items() if any(math.isclose(contact.get(name, math.nan), value) for value in values)}
+        # a parameter may have one value for each impact
+        own = {name: np.atleast_1d(contact.get(name, math.nan)) for name in given}
+        return {name for name, values in given.items() if any(np.allclose(own[name], value, rtol=1e-9, atol=0.0) for value in values)}
