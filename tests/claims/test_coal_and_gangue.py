@@ -39,7 +39,11 @@ ROCK = {
 
 def test_contact_times_of_coal_and_gangue() -> None:
     times = {}
-    for name, density, modulus, radius in (("coal", 1380, 2.26e9, 0.025), ("gangue", 2600, 20e9, 0.025), ("large gangue", 2600, 20e9, 0.05)):
+    for name, density, modulus, radius in (
+        ("coal", 1380, 2.26e9, 0.025),
+        ("gangue", 2600, 20e9, 0.025),
+        ("large gangue", 2600, 20e9, 0.05),
+    ):
         material = {"density": density, "youngs_modulus": modulus, "poissons_ratio": 0.28}
         plate = {"material": {"density": 7850.0, "youngs_modulus": 210e9, "poissons_ratio": 0.3}}
         case = {"sphere": {"radius": radius, "material": material}, "plate": plate, "drop": {"speed": 8.8}, "contact": {"law": "hertz"}}
@@ -47,7 +51,8 @@ def test_contact_times_of_coal_and_gangue() -> None:
     says(
         GUIDE,
         "at 8.8 m/s the contact of gangue of 50 mm radius lasts {} µs, that of coal of 25 mm {} µs",
-        times["large gangue"], times["coal"],
+        times["large gangue"],
+        times["coal"],
     )
     says(
         BOUNDS,
@@ -77,8 +82,12 @@ def test_the_table_of_bounds(whole: Bound) -> None:
     impulse, time, near, far = (errors[name] for name in ("impulse", "contact time", "one impact", "one impact, place unknown"))
     says(GUIDE, "the impulse alone | {} to {} % | {} to {} % |", *per_cent(impulse), *per_cent(exact["impulse"]))
     says(GUIDE, "the contact time alone (normalised signals) | {} to {} % | {} to {} % |", *per_cent(time), *per_cent(time))
-    says(GUIDE, "impulse and contact time, position known | {} to {} % | at most {} % |", *per_cent(near), 100.0 * exact["one impact"].upper)
-    says(GUIDE, "impulse and contact time, position unknown | {} to {} % | at most {} % |", *per_cent(far), 100.0 * exact["one impact"].upper)
+    says(
+        GUIDE, "impulse and contact time, position known | {} to {} % | at most {} % |", *per_cent(near), 100.0 * exact["one impact"].upper
+    )
+    says(
+        GUIDE, "impulse and contact time, position unknown | {} to {} % | at most {} % |", *per_cent(far), 100.0 * exact["one impact"].upper
+    )
     says(GUIDE, "is near the bound for impulse and contact time at an unknown position, {} to {} %", *per_cent(far))
     says(GUIDE, "With the position known the bound is {} to {} %", *per_cent(near))
     says(
@@ -87,7 +96,9 @@ def test_the_table_of_bounds(whole: Bound) -> None:
         len(whole.falls),
         *(part for one in (impulse, time, near, far) for part in per_cent(one)),
     )
-    says(BOUNDS, "So of the {} to {} % for an unknown position {} % or less would remain", *per_cent(far), 100.0 * exact["one impact"].upper)
+    says(
+        BOUNDS, "So of the {} to {} % for an unknown position {} % or less would remain", *per_cent(far), 100.0 * exact["one impact"].upper
+    )
     assert exact["one impact"].upper < 0.55 * far.lower  # more than half of the error, beyond doubt of sampling or not, is the scatter
     says(GUIDE, "with a bandwidth of 1 kHz the lowest error is at most {} %, with 8 kHz {} %", *over_bandwidth(whole, 40.0))
     says(GUIDE, "At 20 dB it is {} and {} %", *over_bandwidth(whole, 20.0))
@@ -115,8 +126,8 @@ def test_the_assumed_channel() -> None:
     one = Channel()
     says(
         BOUNDS,
-        "a band of {} kHz, noise {} dB below the peak force of the median fall, and relative standard deviations of {} % for the sensitivity "
-        "and {} % for the amplitude where the position is not known",
+        "a band of {} kHz, noise {} dB below the peak force of the median fall, and relative standard deviations of {} % for the "
+        "sensitivity and {} % for the amplitude where the position is not known",
         1e-3 * one.bandwidth,
         one.signal_to_noise,
         100.0 * one.gain,
@@ -127,7 +138,12 @@ def test_the_assumed_channel() -> None:
         "of the speed ({} %), the radius ({} %) and the time to the next impact ({} %)",
         *(100.0 * part for part in (one.height, one.size, one.interval)),
     )
-    says(GUIDE, "chosen by this program, not measured: {} % of the sensitivity, and {} % where the position is", 100.0 * one.gain, 100.0 * one.place)
+    says(
+        GUIDE,
+        "chosen by this program, not measured: {} % of the sensitivity, and {} % where the position is",
+        100.0 * one.gain,
+        100.0 * one.place,
+    )
     says(GUIDE, "the bound assumes a scatter of {} %", 100.0 * one.place)
     says(RECOGNITION, "That bound assumes a scatter of {} %", 100.0 * one.place)
     says(GUIDE, "at a peak force of {} dB above the noise", one.signal_to_noise)
@@ -188,12 +204,21 @@ def test_published_moduli() -> None:
     says(
         GUIDE,
         "Published moduli of coal are {} GPa (mean of three specimens, Shock Vib. 2021:8854538, Table 5), {} (Adv. Civ. Eng.",
-        COAL["three specimens"], COAL["panel 8939"],
+        COAL["three specimens"],
+        COAL["panel 8939"],
     )
     says(GUIDE, "Table 2), {} (Sci. Rep. 14, article 79523, 2024, Table 1, from bulk and shear modulus) and", COAL["roof cutting"])
     says(GUIDE, "and {} GPa (Shock Vib. 2021:7649459, Table 4)", COAL["Shangwan"])
     mudstone, medium, fine, *others = ROCK.values()
-    says(GUIDE, "sandy mudstone of {}, sandstone of {} and {}, and roof and floor of {} to {} GPa", mudstone, medium, fine, min(others), max(others))
+    says(
+        GUIDE,
+        "sandy mudstone of {}, sandstone of {} and {}, and roof and floor of {} to {} GPa",
+        mudstone,
+        medium,
+        fine,
+        min(others),
+        max(others),
+    )
     ratios = [modulus / COAL[name.split(", ")[1]] for name, modulus in ROCK.items()]
     says(GUIDE, "the rock has {} to {} times the modulus of the coal", min(ratios), max(ratios))
 

@@ -454,7 +454,9 @@ def test_a_classifier_above_the_bound_is_a_leak(tmp_path: Path, found: vi.Recogn
         data["signal_a1"][data["class"] == 1] += 0.05 * np.sin(2 * np.pi * 9500.0 * time).astype(np.float32)
 
     leaky = vi.recognise(write_knocks(tmp_path / "data", leak, rocks=40, falls=6), folds=2, seeds=1)
-    words = "below the Bayes error of 23.10% that the data set states; if the bound counts all that an impact tells, it has used information"
+    words = (
+        "below the Bayes error of 23.10% that the data set states; if the bound counts all that an impact tells, it has used information"
+    )
     assert any(one.startswith(f"possible leak: {leaky.best} errs in") and words in one for one in leaky.doubts)
 
 
@@ -464,11 +466,15 @@ def test_a_computed_bound_names_what_it_counts(found: vi.Recognition) -> None:
     right = np.eye(2)[rocks % 2]
     perfect = {"any": score(right[np.newaxis], rocks % 2, Bootstrap(rocks, rocks % 2))}
     (doubt,) = bound_doubts(perfect, 0.2, 60, "any", "any", "impulse and contact time")
-    assert doubt.startswith("possible leak: any errs in 0.00%, below the Bayes error of 20.00% of classifiers that see only impulse and contact")
+    assert doubt.startswith(
+        "possible leak: any errs in 0.00%, below the Bayes error of 20.00% of classifiers that see only impulse and contact"
+    )
     assert "such as the position of the impact" in doubt
     stated, computed = ("".join(sentences(replace(found, bayes_error_sees=sees))) for sees in (None, "impulse and contact time"))
     assert "The lower bound on the error that the data set states is 23.1 %." in stated
-    assert "The lower bound on the error of a classifier that sees only impulse and contact time, each known better than by real" in computed
+    assert (
+        "The lower bound on the error of a classifier that sees only impulse and contact time, each known better than by real" in computed
+    )
     assert "A classifier that sees more can be better." in computed
     assert "is less than 0.05 %, which excludes nothing." in "".join(sentences(replace(found, bayes_error=0.0)))
 

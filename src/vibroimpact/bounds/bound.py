@@ -171,7 +171,9 @@ def _without_scatter(falls: Falls, channel: Channel, errors: dict[str, BayesErro
     """Return the Bayes errors without scatter of the amplitude, which are not larger than those with it."""
     exact, found = replace(channel, gain=0.0, place=0.0), {}
     for one in OBSERVATIONS:
-        alike = [other for other in OBSERVATIONS if _exact_quantities(other) == _exact_quantities(one)]  # a known position and an unknown one
+        alike = [
+            other for other in OBSERVATIONS if _exact_quantities(other) == _exact_quantities(one)
+        ]  # a known position and an unknown one
         if "impulse" not in _exact_quantities(one):
             found[one.name] = errors[one.name]
         elif alike[0].name in found:

@@ -37,8 +37,8 @@ def headline(bound: Bound) -> str:
     names = np.unique(bound.falls.classes).tolist()
     return (
         f"For {len(bound.falls):,} falls of {' and '.join(names)}, the lowest error of a classifier that sees only the contact time is "
-        f"{error_words(time)}, and that of one that sees only impulse and contact time of one impact at a known position {error_words(impact)}; "
-        f"always naming the more frequent class has an error of {100.0 * bound.majority:.1f} %.{few}"
+        f"{error_words(time)}, and that of one that sees only impulse and contact time of one impact at a known position "
+        f"{error_words(impact)}; always naming the more frequent class has an error of {100.0 * bound.majority:.1f} %.{few}"
     )
 
 
@@ -47,11 +47,11 @@ def scatter_words(bound: Bound) -> str:
     one = bound.channel
     far = "one impact, place unknown"
     return (
-        f"The scatter of the amplitude is assumed, {100.0 * one.gain:g} % of the sensitivity and {100.0 * one.place:g} % where the position "
-        f"is unknown: with it the lowest error from {far}, is {error_words(bound.errors[far])}, and without it "
-        f"{error_words(bound.without_scatter[far])}. Each error holds for classifiers that see only the quantities named, with this scatter. "
-        "A signal contains more, such as the position of the impact, the shape of the pulse and further impacts; a classifier that uses it "
-        "can have a lower error."
+        f"The scatter of the amplitude is assumed, {100.0 * one.gain:g} % of the sensitivity and {100.0 * one.place:g} % where the "
+        f"position is unknown: with it the lowest error from {far}, is {error_words(bound.errors[far])}, and without it "
+        f"{error_words(bound.without_scatter[far])}. Each error holds for classifiers that see only the quantities named, with this "
+        "scatter. A signal contains more, such as the position of the impact, the shape of the pulse and further impacts; a classifier "
+        "that uses it can have a lower error."
     )
 
 
@@ -61,8 +61,8 @@ def heard_words(bound: Bound) -> str:
     return (
         f"Measured up to {one.bandwidth / 1e3:g} kHz, with the peak force of the median fall {one.signal_to_noise:g} dB above the noise in "
         f"10 kHz. Assumed relative standard deviations: sensitivity {100.0 * one.gain:g} %, amplitude at an unknown position "
-        f"{100.0 * one.place:g} %, speed where it is measured {100.0 * one.height:g} %, radius where it is measured {100.0 * one.size:g} %, "
-        f"time to the next impact {100.0 * one.interval:g} %."
+        f"{100.0 * one.place:g} %, speed where it is measured {100.0 * one.height:g} %, radius where it is measured {100.0 * one.size:g} "
+        f"%, time to the next impact {100.0 * one.interval:g} %."
     )
 
 

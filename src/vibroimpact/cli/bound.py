@@ -31,7 +31,8 @@ def bound(
 ) -> None:
     """Compute the Bayes error of a population: the lowest error of a classifier that sees only stated quantities.
 
-    The scatter of the amplitude is assumed; its share in the error is shown. The falls of a study are computed on its plate as a rigid body; those of a data set are read from it.
+    The scatter of the amplitude is assumed; its share in the error is shown. The falls of a study are computed on its plate as
+    a rigid body; those of a data set are read from it.
     """
     from vibroimpact.bounds.bound import bound_of
     from vibroimpact.bounds.folder import bound_document, save_bound

@@ -66,8 +66,8 @@ def bound_doubts(
             if sees is None
             else (
                 f"of classifiers that see only {sees}",
-                "it has used something else, such as the position of the impact or the shape of the pulse, or information that does not come "
-                "from the impact",
+                "it has used something else, such as the position of the impact or the shape of the pulse, or information that does not "
+                "come from the impact",
             )
         )
         found = [
