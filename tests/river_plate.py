@@ -19,13 +19,15 @@ def class_limit(diameter: float) -> float:
 
 
 @cache
-def amplitudes(diameter: float, speed: float = 1.0) -> np.ndarray:
-    """Return the largest voltage of the geophone for impacts of a grain [mm] at six places [V]."""
+def amplitudes(diameter: float, speed: float = 1.0, yield_strength: float | None = None) -> np.ndarray:
+    """Return the largest voltage of the geophone for impacts of a grain [mm] at six places [V]; with a strength [Pa] the contact yields."""
     table: dict[str, Any] = load_table("signals:river-plate")
     del table["sweep"], table["sensors"][0]["amplifier"]
     table["drop"], table["run"] = {"speed": speed}, {"duration": 0.06}
     table["plate"]["damping"] = 0.03
     table["sphere"]["radius"] = 0.5e-3 * diameter
+    if yield_strength is not None:
+        table["contact"] = {"law": "meyer", "yield_strength": yield_strength}
     found = []
     for place in PLACES:
         table["drop"]["position"] = list(place)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import itertools
 import re
 import runpy
 import shlex
@@ -12,15 +13,23 @@ import sys
 import tomllib
 from io import StringIO
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+import tomli_w
 from scipy.io import wavfile
 
+import hammered
 import vibroimpact as vi
 from heard import heard
+from identifying import a_case as an_impact_case
+from identifying import an_impact, records_of
+from vibroimpact.cases.build import resolved_case
 from vibroimpact.cli import main
 from vibroimpact.dynamics.columns import IMPACT_COLUMNS
+from vibroimpact.report import console
+from vibroimpact.report.console import TerminalConsole
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
@@ -31,37 +40,41 @@ LAW_PAGES = sorted(DOCS.glob("laws/*.md"))
 # what blocks of the pages are: these are run or read by the tests below, a text is what is printed, and "sh" has its own list
 LANGUAGES = {"console", "python", "toml", "text", "sh", "math"}
 DIRECTIVES = {"{toctree}", "{eval-rst}", "{include}"}
+SMALLER = {
+    "vibroimpact dataset signals:coal-gangue -o falls": "--samples 320",
+    "vibroimpact recognise falls -o recognised": "--seeds 1 --folds 2",
+    "vibroimpact recognise falls -o new-plates --group plate": "--seeds 1 --folds 2",
+    "vibroimpact recognise today --model recognised -o counted": "",
+    "vibroimpact dataset signals:river-plate -o grains": "--samples 60",
+    "vibroimpact bound grains -o told": "",
+    "vibroimpact recognise grains -o recognised --group rock": "--seeds 1 --folds 2 --force",
+    "vibroimpact identify coal.toml records.csv -o found": "",
+    "vibroimpact correlate plate.toml taps.csv --hammer force -o compared": "",
+}
+"""Commands of the pages that take minutes, or files of the reader, and what makes them small here."""
+
 NOT_RUN = {
     "make demo": "installs, and CI runs each part",
     "make test": "CI runs it",
     "vibroimpact run paper:type1-theory -o theory --json | jq '.impacts[0].max_force_N'": "tests/contract/test_json.py reads it",
     "vibroimpact --install-completion": "changes the settings of a shell; tests/unit/test_completion.py tries it",
     "vibroimpact --show-completion": "tests/unit/test_completion.py tries it",
-    "vibroimpact dataset signals:coal-gangue -o falls": "minutes; tests/unit/test_populations.py runs smaller ones",
-    "vibroimpact recognise falls -o recognised": "tests/unit/test_recognition.py runs it",
-    "vibroimpact recognise falls -o new-plates --group plate": "tests/unit/test_recognition.py runs it",
-    "vibroimpact recognise today --model recognised -o counted": "tests/unit/test_recognition.py runs it",
-    "vibroimpact identify coal.toml records.csv -o found": "tests/unit/test_identification.py runs it",
-    "vibroimpact correlate plate.toml taps.csv --hammer force -o compared": "tests/unit/test_correlation.py runs it",
-    "python3 -m venv .venv": "installs",
+    "python3 -m venv .venv": "installs; tests/project/test_packaging.py tries the package",
     "source .venv/bin/activate": "changes the shell",
-    "python -m pip install .": "installs",
+    "python -m pip install .": "installs; tests/project/test_packaging.py tries the package",
     "pipx install .": "installs",
     "uvx --from . vibroimpact demo": "installs",
     "podman build -t vibroimpact -f packaging/Containerfile .": "builds an image",
     'podman run --rm -v "$PWD":/work vibroimpact demo': "runs that image",
     "vibroimpact serve mine.toml": "runs until it is ended; tests/page tries it",
-    "vibroimpact dataset signals:coal-gangue -o all-falls": "minutes",
-    "vibroimpact recognise all-falls -o recognised": "of what the last one makes",
-    "vibroimpact recognise all-falls -o new-plates --group plate": "of the same",
-    "vibroimpact dataset signals:river-plate -o grains": "minutes",
-    "vibroimpact bound grains -o told": "of what the last one makes",
-    "vibroimpact recognise grains -o recognised --group rock": "of the same",
-    "vibroimpact reproduce -o paper-whole": "minutes; tests/published has the page",
+    "vibroimpact reproduce -o paper-whole": "minutes; tests/published/test_reproduction_page.py has its page",
+    "vibroimpact dataset signals:coal-gangue -o all-falls": "is run with another folder",
+    "vibroimpact recognise all-falls -o recognised": "is run with another folder",
+    "vibroimpact recognise all-falls -o new-plates --group plate": "is run with another folder",
     'pip install "vibroimpact[app]"': "installs",
     "vibroimpact serve": "runs until it is ended; tests/page tries it",
 }
-"""Commands of the pages that no test here runs, and why."""
+"""Commands of the pages that no test here runs, and why: they install, change a shell, or run until they are ended."""
 
 
 def name_of(page: Path) -> str:
@@ -81,6 +94,22 @@ def commands(pages: list[Path]) -> list[str]:
         # a server runs until it is ended: that of the live page is tried in tests/page
         if line.startswith("$ vibroimpact") and not line.startswith("$ vibroimpact serve")
     ]
+
+
+def printed_blocks(page: Path) -> list[str]:
+    """Return the blocks of text that follow a block of commands: what these print, or write into files."""
+    text = page.read_text(encoding="utf-8")
+    sections = re.split(r"^#+ .*$", re.sub(r"^# (?=\S+\.toml$)", "  # ", text, flags=re.M), flags=re.M)
+    every = [re.findall(r"^```(\w+)\n(.*?)^```", section, flags=re.M | re.S) for section in sections]
+    pairs = itertools.chain.from_iterable(map(itertools.pairwise, every))
+    return [block for (before, _), (language, block) in pairs if (before, language) == ("console", "text")]
+
+
+def unsaid(block: str, output: str, folder: Path) -> list[str]:
+    """Return the lines of a block that are neither in an output nor in a file of a folder; spaces and broken lines do not count."""
+    written = [path.read_text(errors="replace") for path in sorted(folder.rglob("*")) if path.suffix in (".py", ".in", ".adm", ".toml")]
+    everything = " ".join("\n".join([output, *written]).split())
+    return [line for line in block.splitlines() for part in line.split("...") if " ".join(part.split()) not in everything]
 
 
 def is_quick(command: str) -> bool:
@@ -105,12 +134,27 @@ def write_cases(folder: Path) -> None:
         (folder / (name[1] if name else "case.toml")).write_text(block)
 
 
+class NarrowAndWide(TerminalConsole):
+    """A terminal of 80 columns that prints once more what a wide one shows: pages show both."""
+
+    def __init__(self, width: int = 80, **options: Any) -> None:
+        super().__init__(width=80, **options)
+
+    def print(self, *objects: Any, **options: Any) -> None:
+        for width in (160, 80):
+            self.width = width
+            super().print(*objects, **options)
+
+
 @pytest.mark.parametrize("all_pages", [False, pytest.param(True, marks=pytest.mark.slow)], ids=["README, quick", "all pages"])
 def test_documented_commands_run(
     all_pages: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     """Those of the README, and in another folder those of all other pages; what was computed once is copied."""
+    monkeypatch.setattr(console, "TerminalConsole", NarrowAndWide)
     made: dict[str, Path | None] = {}
+    printed: dict[str, str] = {}
+    wrong: list[str] = []
     for place, pages in {"readme": PAGES[:1], **({"docs": [*PAGES[1:], *LAW_PAGES]} if all_pages else {})}.items():
         folder = tmp_path / place
         folder.mkdir()
@@ -129,7 +173,55 @@ def test_documented_commands_run(
             monkeypatch.setattr(sys, "argv", shlex.split(command))
             with pytest.raises(SystemExit) as left:
                 main()
-            assert not left.value.code, f"{command}\n{capfd.readouterr().err}"
+            out, err = capfd.readouterr()
+            printed[words] = out + err
+            assert not left.value.code, f"{command}\n{err}"
+        for page in pages if all_pages else ():
+            output = "\n".join(printed[command.partition(" -o ")[0]] for command in commands([page]))
+            wrong += [f"{name_of(page)}: {line}" for block in printed_blocks(page) for line in unsaid(block, output, folder)]
+    assert not wrong, "\n".join(wrong)
+
+
+def write_table(path: Path, columns: dict[str, np.ndarray]) -> None:
+    np.savetxt(path, np.column_stack([*columns.values()]), delimiter=",", header=",".join(columns), comments="")
+
+
+def write_recorded_impacts(folder: Path) -> None:
+    """Write the records of sensors, and their cases, that commands name: a ball of coal on a plate, and taps of a hammer."""
+    (folder / "coal.toml").write_text(tomli_w.dumps(resolved_case(an_impact_case(60))))
+    records = records_of(an_impact(0.02, 3.0, (0.05, 0.03)), 50.0, 1)
+    sensors = {f"{record.name} [m/s^2]": record.value for record in records}
+    write_table(folder / "records.csv", {"time [s]": np.arange(len(records[0].value)) / records[0].rate, **sensors})
+    (folder / "plate.toml").write_text(tomli_w.dumps(hammered.TABLE))
+    force, value = hammered.hammered()
+    taps = {f"{record.name} [m/s^2]": record.value for record in hammered.records(value)}
+    write_table(folder / "taps.csv", {"time [s]": np.arange(len(force)) / hammered.RATE, "force [N]": force, **taps})
+
+
+@pytest.mark.slow
+def test_commands_of_studies_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> None:
+    """Those that take minutes as they stand, on less."""
+    monkeypatch.chdir(tmp_path)
+    write_recorded_impacts(tmp_path)
+    for command in ["vibroimpact dataset signals:coal-gangue --samples 16 -o today", *map(" ".join, SMALLER.items())]:
+        monkeypatch.setattr(sys, "argv", shlex.split(command))
+        with pytest.raises(SystemExit) as left:
+            main()
+        assert not left.value.code, f"{command}\n{capfd.readouterr().err}"
+
+
+def test_reasons_name_what_exists() -> None:
+    for command, reason in NOT_RUN.items():
+        for name in re.findall(r"tests/[\w/]+(?:\.py)?", reason):
+            assert (ROOT / name).exists(), f"{command}: {reason}"
+    shown = {line.split("  #")[0].strip() for page in PAGES for block in blocks(page, "sh") for line in block.splitlines()}
+    shown |= {
+        line.removeprefix("$ ").split("  #")[0].strip()
+        for page in PAGES
+        for block in blocks(page, "console")
+        for line in block.splitlines()
+    }
+    assert set(NOT_RUN) | set(SMALLER) <= shown
 
 
 def test_readme_shows_what_the_demo_prints(variable: vi.Response) -> None:
@@ -187,10 +279,10 @@ def test_every_block_is_run_or_has_a_reason(pages: list[Path]) -> None:
         for language in ("console", "python", "toml"):  # what the tests find is all there is
             assert opened.count(language) == len(blocks(page, language)), name_of(page)
         asked = [line.removeprefix("$ ") for block in blocks(page, "console") for line in block.splitlines() if line.startswith("$ ")]
-        run = {command.split("  #")[0].strip() for command in asked} - set(NOT_RUN)
+        run = {command.split("  #")[0].strip() for command in asked} - {*NOT_RUN, *SMALLER}
         assert run - {command for command in run if command.startswith("vibroimpact serve")} == set(commands([page])), name_of(page)
         typed = {line.split("  #")[0].strip() for block in blocks(page, "sh") for line in block.splitlines() if line.strip()}
-        assert typed <= set(NOT_RUN), name_of(page)
+        assert typed <= {*NOT_RUN, *SMALLER}, name_of(page)
 
 
 def test_links_lead_somewhere() -> None:
@@ -285,8 +377,6 @@ def test_help_is_light() -> None:
 
 def test_schema_accepts_the_shipped_cases() -> None:
     import jsonschema
-
-    from vibroimpact.cases.build import resolved_case
 
     schema = jsonschema.Draft202012Validator(vi.case_schema())
     for name in vi.shipped_cases():

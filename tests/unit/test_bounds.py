@@ -15,7 +15,7 @@ from vibroimpact.bounds.bound import Bound, bound_of
 from vibroimpact.bounds.falls import falls_of_sweep
 from vibroimpact.bounds.folder import save_bound
 from vibroimpact.bounds.observations import Channel
-from vibroimpact.bounds.tables import headline
+from vibroimpact.bounds.tables import headline, scatter_words
 
 
 @pytest.fixture(scope="module")
@@ -48,6 +48,18 @@ def test_noise_and_a_narrow_band_cost(bound: Bound) -> None:
     assert deaf.errors["contact time"].upper == pytest.approx(deaf.majority, abs=0.06)
 
 
+def test_the_share_of_the_assumed_scatter(bound: Bound) -> None:
+    """An unknown position is of no account with an exact amplitude, and without one most of the error is of its scatter."""
+    with_it, without = bound.errors, bound.without_scatter
+    assert without["one impact, place unknown"] == without["one impact"]
+    assert without["one impact, place unknown"].upper < 0.5 * with_it["one impact, place unknown"].lower
+    assert without["contact time"] == with_it["contact time"]
+    assert all(without[name].lower <= without[name].upper <= error.upper for name, error in with_it.items())
+    exact = bound_of(vi.load_sweep("signals:coal-gangue", 1000), Channel(gain=0.0, place=0.0))
+    assert exact.errors["one impact"] == exact.without_scatter["one impact"]
+    assert "Each error holds for classifiers that see only the quantities named, with this scatter." in scatter_words(bound)
+
+
 def test_the_bound_of_a_computed_data_set(tmp_path: Path) -> None:
     table = vi.load_sweep("signals:coal-gangue").whole_table
     plate = {"size": [1.2, 0.8, 0.02], "material": "steel"}
@@ -77,6 +89,7 @@ def test_the_folder(bound: Bound, tmp_path: Path) -> None:
     assert len((folder / "map.csv").read_text(encoding="utf-8").splitlines()) == bound.map.size + 1
     summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     assert summary["falls"] == 4000
+    assert summary["bound"][3]["error_upper_without_scatter"] == bound.without_scatter["one impact"].upper
     page = (folder / "report.html").read_text(encoding="utf-8")
     assert "best possible classifier" in page
     with pytest.raises(vi.InputError, match="is there already"):

@@ -1,1 +1,1 @@
-"""Bounds on recognition: what a stated population lets any classifier tell, whatever it computes from the signal."""
+"""Bounds on recognition: what a classifier can tell of a stated population that sees stated quantities with a stated scatter."""

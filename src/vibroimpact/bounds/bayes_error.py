@@ -1,4 +1,4 @@
-"""Bayes error of a population: the share of wrong answers of the best classifier there can be, from what is measured of each fall."""
+"""Bayes error of a population: the share of wrong answers of the best classifier that sees only what is measured of each fall."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The bound of a population: the Bayes error for what may be measured of a fall, and what is learned of the rock."""
+"""The bound of a population: the Bayes error for what may be measured of a fall, and what it tells of the rock."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _TESTED, _TESTED_OF_MAP, _FALLS_OF_MAP = 2000, 500, 8000
 
 @dataclass(frozen=True, eq=False)
 class Bound:
-    """The Bayes error of a population, the lower bound on the error of any classifier.
+    """The Bayes error of a population: the lowest error of a classifier that sees only the measured quantities, with the stated scatter.
 
     Parameters
     ----------
@@ -48,6 +48,9 @@ class Bound:
         over that before.
     map : array, shape (bandwidths, ratios)
         The Bayes error from one impact over `BANDWIDTHS` and `SIGNAL_TO_NOISE`: the upper bounds.
+    without_scatter : dict of str to BayesError
+        The Bayes error if the assumed scatter of the amplitude is zero, that of sensitivity and of the position: `Channel.gain` and
+        `Channel.place`.
 
     Examples
     --------
@@ -64,22 +67,24 @@ class Bound:
     majority: float
     remaining: dict[str, Floats]
     map: Floats
+    without_scatter: dict[str, BayesError]
 
 
 def bound_of(
     population: Study | Sweep, channel: Channel | None = None, seed: int = 0, progress: Callable[[float], None] | None = None
 ) -> Bound:
-    """Return the Bayes error of a population, the lower bound on the error of any classifier, for sets of measured quantities.
+    """Return the Bayes error of a population for sets of measured quantities: the lowest error of a classifier that sees only these.
 
-    A sensor hears the contact force through the plate, a linear system that is the same whatever falls. What it records of an impact is
-    therefore no better than the force itself, and the force of a sphere is a pulse of an impulse and a duration.
+    A sensor hears the contact force through the plate, a linear system that is the same whatever falls. What it records of an impact
+    therefore tells no more of the rock than the force itself. Of the force impulse and duration are counted. A signal contains more, the
+    shape of the pulse, the position of the impact and further impacts; a classifier that uses it can have a lower error.
 
     Parameters
     ----------
     population : Study or Sweep
         A computed data set, or a stated population, whose falls are then computed on its plate as a rigid body.
     channel : Channel, optional
-        Band, noise and calibration of what hears it.
+        Band, noise and assumed scatter of what hears it.
     seed : int, default 0
         Of the noise.
     progress : callable, optional
@@ -101,7 +106,7 @@ def bound_of(
     names, counts = np.unique(falls.classes, return_counts=True)
     if len(names) < 2:
         raise InputError("falls of one class alone touched the plate, so that there is nothing to classify")
-    heard, steps = channel or Channel(), len(OBSERVATIONS) + BANDWIDTHS.size * SIGNAL_TO_NOISE.size
+    heard, steps = channel or Channel(), len(OBSERVATIONS) + BANDWIDTHS.size * SIGNAL_TO_NOISE.size + 1
 
     def tell(done: int) -> None:
         if progress is not None:
@@ -117,14 +122,20 @@ def bound_of(
         there = replace(heard, bandwidth=float(bandwidth), signal_to_noise=float(ratio))
         found.flat[place] = _error(few, there, _MAPPED, _TESTED_OF_MAP, seed).upper
         tell(len(OBSERVATIONS) + place + 1)
-    return Bound(population.name, falls, heard, errors, 1.0 - counts.max() / counts.sum(), remaining, found)
+    without = _without_scatter(falls, heard, errors, seed)
+    tell(steps)
+    return Bound(population.name, falls, heard, errors, 1.0 - counts.max() / counts.sum(), remaining, found, without)
+
+
+SEEN_AT_BEST = "impulse, contact time and the time to the next impact"
+"""What a classifier sees whose error has the bound `least_error`."""
 
 
 def least_error(falls: Falls, seed: int = 0) -> float:
-    """Return the error below which no classifier of signals of single falls can be, whatever its sensor.
+    """Return the lower bound on the error of a classifier that sees `SEEN_AT_BEST` of single falls.
 
-    It is the lower bound of the Bayes error from impulse, contact time and the time to the next impact, heard far better than sensors do:
-    up to 50 kHz, 80 dB above the noise, with a sensitivity known to 0.1 %.
+    Impulse and contact time are heard far better than by real sensors: up to 50 kHz, 80 dB above the noise, with a sensitivity known to
+    0.1 %. A classifier that sees more, as the shape of the pulse, the position of the impact or further impacts, can have a lower error.
 
     Parameters
     ----------
@@ -139,7 +150,7 @@ def least_error(falls: Falls, seed: int = 0) -> float:
     >>> least_error(falls_of_sweep(vi.load_sweep("signals:coal-gangue", 2000))) < 0.01
     True
     """
-    heard = Channel(bandwidth=50e3, signal_to_noise=80.0, gain=0.001)
+    heard = Channel(bandwidth=50e3, signal_to_noise=80.0, gain=0.001)  # the scatter of the time to the next impact is the default
     return _error(falls, heard, _NAMED["with the bounce"], _TESTED, seed).lower
 
 
@@ -154,6 +165,29 @@ def _error(falls: Falls, channel: Channel, one: Observation, tested: int, seed: 
     classes = np.unique(falls.classes, return_inverse=True)[1]
     measured, deviation = (np.stack([part[name] for name in one.quantities], axis=1) for part in (values, noise))
     return bayes_error(measured, deviation, classes, tested, seed)
+
+
+def _without_scatter(falls: Falls, channel: Channel, errors: dict[str, BayesError], seed: int) -> dict[str, BayesError]:
+    """Return the Bayes errors without scatter of the amplitude, which are not larger than those with it."""
+    exact, found = replace(channel, gain=0.0, place=0.0), {}
+    for one in OBSERVATIONS:
+        alike = [
+            other for other in OBSERVATIONS if _exact_quantities(other) == _exact_quantities(one)
+        ]  # a known position and an unknown one
+        if "impulse" not in _exact_quantities(one):
+            found[one.name] = errors[one.name]
+        elif alike[0].name in found:
+            found[one.name] = found[alike[0].name]
+        else:
+            error = _error(falls, exact, one, _TESTED, seed)
+            upper = min(error.upper, *(errors[other.name].upper for other in alike))
+            found[one.name] = error._replace(lower=min(error.lower, upper), upper=upper)
+    return found
+
+
+def _exact_quantities(one: Observation) -> tuple[str, ...]:
+    """Return the quantities of an observation with an exact amplitude, to which the position does not matter."""
+    return tuple("impulse" if name == "far impulse" else name for name in one.quantities)
 
 
 def _remaining(falls: Falls, channel: Channel, one: Observation) -> Floats:

@@ -47,8 +47,8 @@ def _errors(bound: Bound) -> Chart:
     bars = Bars(np.arange(float(len(names))), upper, "", "detail", lying=True, low=low, high=high, texts=names)
     panel = Panel(Axis("Bayes error", "%", range=(0.0, float("nan"))), Axis(names=names), (bars,))
     caption = (
-        "The Bayes error of the population, the lowest error of any classifier, for each set of measured quantities. Each interval reaches "
-        "from the lower bound to one standard error above the upper one."
+        "The Bayes error of the population: the lowest error of a classifier that sees only these quantities, with the assumed scatter. "
+        "Each interval reaches from the lower bound to one standard error above the upper one."
     )
     return Chart("errors", "Lowest possible classification error", ((panel,),), caption, 4.5)
 
@@ -62,7 +62,7 @@ def _impacts(bound: Bound) -> Chart:
         marks.append(Points(falls.impulse[there], falls.duration[there], name, series(number)))
     panel = Panel(Axis("Impulse", "N s", log=True), Axis("Contact time", "s", log=True), tuple(marks))
     caption = (
-        "Each point is a fall. Falls of different classes with the same impulse and contact time cannot be distinguished by one impact."
+        "Each point is a fall. Falls of different classes with the same impulse and contact time cannot be distinguished by these two."
     )
     return Chart("impacts", "Impulse and contact time of the falls", ((panel,),), caption, 4.5)
 

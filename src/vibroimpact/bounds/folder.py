@@ -11,7 +11,7 @@ from vibroimpact._version import __version__
 from vibroimpact.bounds.bound import BANDWIDTHS, SIGNAL_TO_NOISE, Bound
 from vibroimpact.bounds.charts import bound_charts
 from vibroimpact.bounds.observations import OBSERVATIONS
-from vibroimpact.bounds.tables import HEADERS, bound_rows, error_rows, headline, heard_words
+from vibroimpact.bounds.tables import HEADERS, bound_rows, error_rows, headline, heard_words, sampling_words, scatter_words
 from vibroimpact.report.page import render_page
 from vibroimpact.results.csv_files import write_csv
 from vibroimpact.results.folder import new_folder, write_summary
@@ -59,6 +59,8 @@ def save_bound(bound: Bound, directory: str | PathLike[str], *, force: bool = Fa
             name=f"Bounds on the classification error: {bound.name}",
             headline=headline(bound),
             heard=heard_words(bound),
+            scatter=scatter_words(bound),
+            sampling=sampling_words(bound),
             headers=HEADERS,
             rows=error_rows(bound),
             meanings=[(one.name, one.meaning) for one in OBSERVATIONS],

@@ -36,9 +36,22 @@ def headline(bound: Bound) -> str:
     few = f" {number:,} falls are few: even an error of 0 may in truth be up to {300.0 / number:.1f} % (95 %)." if number < _LEAST else ""
     names = np.unique(bound.falls.classes).tolist()
     return (
-        f"For {len(bound.falls):,} falls of {' and '.join(names)}, the error of the best possible classifier is {error_words(time)} "
-        f"from the contact time alone, and {error_words(impact)} from one impact at a known position; that of the majority class is "
-        f"{100.0 * bound.majority:.1f} %.{few}"
+        f"For {len(bound.falls):,} falls of {' and '.join(names)}, the lowest error of a classifier that sees only the contact time is "
+        f"{error_words(time)}, and that of one that sees only impulse and contact time of one impact at a known position "
+        f"{error_words(impact)}; always naming the more frequent class has an error of {100.0 * bound.majority:.1f} %.{few}"
+    )
+
+
+def scatter_words(bound: Bound) -> str:
+    """Return the share of the assumed scatter of the amplitude in the error, and for whom the bound holds, in sentences."""
+    one = bound.channel
+    far = "one impact, place unknown"
+    return (
+        f"The scatter of the amplitude is assumed, {100.0 * one.gain:g} % of the sensitivity and {100.0 * one.place:g} % where the "
+        f"position is unknown: with it the lowest error from {far}, is {error_words(bound.errors[far])}, and without it "
+        f"{error_words(bound.without_scatter[far])}. Each error holds for classifiers that see only the quantities named, with this "
+        "scatter. A signal contains more, such as the position of the impact, the shape of the pulse and further impacts; a classifier "
+        "that uses it can have a lower error."
     )
 
 
@@ -47,17 +60,32 @@ def heard_words(bound: Bound) -> str:
     one = bound.channel
     return (
         f"Measured up to {one.bandwidth / 1e3:g} kHz, with the peak force of the median fall {one.signal_to_noise:g} dB above the noise in "
-        f"10 kHz. Relative standard deviations: sensitivity {100.0 * one.gain:g} %, amplitude at an unknown position "
-        f"{100.0 * one.place:g} %, speed where it is measured {100.0 * one.height:g} %, radius where it is measured {100.0 * one.size:g} %."
+        f"10 kHz. Assumed relative standard deviations: sensitivity {100.0 * one.gain:g} %, amplitude at an unknown position "
+        f"{100.0 * one.place:g} %, speed where it is measured {100.0 * one.height:g} %, radius where it is measured {100.0 * one.size:g} "
+        f"%, time to the next impact {100.0 * one.interval:g} %."
     )
 
 
+def sampling_words(bound: Bound) -> str:
+    """Return the largest standard error of the upper bounds, in a sentence."""
+    most = max(error.standard_error for error in bound.errors.values())
+    return f"The upper bounds have standard errors of up to {100.0 * most:.1f} %, from the number of falls tested."
+
+
 def error_rows(bound: Bound) -> list[list[str]]:
-    """Return a row for each observation: name, error, and what remains of each property."""
-    return [[one.name, error_words(bound.errors[one.name]), *(_part(value) for value in bound.remaining[one.name])] for one in OBSERVATIONS]
+    """Return a row for each observation: name, error with and without assumed scatter, and what remains of each property."""
+    return [
+        [
+            one.name,
+            error_words(bound.errors[one.name]),
+            error_words(bound.without_scatter[one.name]),
+            *(_part(value) for value in bound.remaining[one.name]),
+        ]
+        for one in OBSERVATIONS
+    ]
 
 
-HEADERS = ["Measured", "Classification error", *(f"{name}, remaining" for name in PROPERTIES)]
+HEADERS = ["Measured", "Classification error", "Without scatter", *(f"{name}, remaining" for name in PROPERTIES)]
 """Headers of these rows."""
 
 
@@ -72,6 +100,8 @@ def bound_rows(bound: Bound) -> list[dict[str, str | float]]:
             "standard_error": bound.errors[one.name].standard_error,
             "neighbours": bound.errors[one.name].neighbours,
             **{f"{name}_remaining": float(value) for name, value in zip(PROPERTIES, bound.remaining[one.name], strict=True)},
+            "error_lower_without_scatter": bound.without_scatter[one.name].lower,
+            "error_upper_without_scatter": bound.without_scatter[one.name].upper,
         }
         for one in OBSERVATIONS
     ]

@@ -1,4 +1,4 @@
-"""The command `bound`, which computes the lowest possible classification error of a population."""
+"""The command `bound`, which computes the lowest error of classifiers that see stated quantities of a population."""
 
 from __future__ import annotations
 
@@ -29,9 +29,10 @@ def bound(
     force: Force = False,
     as_json: Json = False,
 ) -> None:
-    """Compute the Bayes error of a population. It is the lowest possible classification error, for sets of measured quantities.
+    """Compute the Bayes error of a population: the lowest error of a classifier that sees only stated quantities.
 
-    The falls of a study are computed on its plate as a rigid body; those of a data set are read from it.
+    The scatter of the amplitude is assumed; its share in the error is shown. The falls of a study are computed on its plate as
+    a rigid body; those of a data set are read from it.
     """
     from vibroimpact.bounds.bound import bound_of
     from vibroimpact.bounds.folder import bound_document, save_bound

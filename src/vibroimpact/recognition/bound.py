@@ -1,4 +1,4 @@
-"""The best classifier beside the bound that physics sets: one that is better has seen what it may not, a leak."""
+"""Classifiers beside a bound on their error: one that is better has seen more than the bound counts, or what it may not, a leak."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def below_bound(error: Score, bayes_error: float, groups: int) -> bool:
     error : Score
         Error rate with its bootstrap draws.
     bayes_error : float
-        The least error that any classifier can have on the population.
+        The bound: the lowest error of a classifier that sees only what the bound counts.
     groups : int
         Number of independent groups: where no group has an error all draws are zero, and the upper end is that of none in so many.
 
@@ -36,8 +36,10 @@ def below_bound(error: Score, bayes_error: float, groups: int) -> bool:
     return high < bayes_error
 
 
-def bound_doubts(scores: Mapping[str, Scores], bayes_error: float | None, groups: int, probe: str, best: str) -> list[str]:
-    """Return a sentence for each leak: what is better than the bound, and a probe that is better than all features.
+def bound_doubts(
+    scores: Mapping[str, Scores], bayes_error: float | None, groups: int, probe: str, best: str, sees: str | None = None
+) -> list[str]:
+    """Return a sentence for each possible leak: what is better than the bound, and a probe that is better than all features.
 
     Parameters
     ----------
@@ -51,12 +53,25 @@ def bound_doubts(scores: Mapping[str, Scores], bayes_error: float | None, groups
         Name of the classifier of what should tell little.
     best : str
         Name of the best classifier of all features.
+    sees : str, optional
+        The quantities for which the bound was computed; None if the data set states the bound.
     """
     found = []
     if bayes_error is not None:
+        bound, beyond = (
+            (
+                "that the data set states",
+                "if the bound counts all that an impact tells, it has used information that does not come from the impact",
+            )
+            if sees is None
+            else (
+                f"of classifiers that see only {sees}",
+                "it has used something else, such as the position of the impact or the shape of the pulse, or information that does not "
+                "come from the impact",
+            )
+        )
         found = [
-            f"leak: {name} errs in {one.error.value:.2%}, below the Bayes error of {bayes_error:.2%} of this population; it has used "
-            "information that does not come from the impact"
+            f"possible leak: {name} errs in {one.error.value:.2%}, below the Bayes error of {bayes_error:.2%} {bound}; {beyond}"
             for name, one in scores.items()
             if below_bound(one.error, bayes_error, groups)
         ]

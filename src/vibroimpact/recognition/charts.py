@@ -61,9 +61,10 @@ def _scores_chart(found: Recognition) -> Chart:
     if found.bayes_error is not None:
         marks.append(Level(found.bayes_error, "Bayes error", "mark line", upright=True))
     panel = Panel(Axis("Classification error", range=(0.0, np.nan)), Axis(names=_short(names)), tuple(marks))
-    bound = " Line: Bayes error of the population, the lowest possible error; a lower one indicates leakage." * (
-        found.bayes_error is not None
-    )
+    bound = ""
+    if found.bayes_error is not None:
+        counted = f"for {found.bayes_error_sees} alone" if found.bayes_error_sees else "that the data set states"
+        bound = f" Line: the Bayes error {counted}; a lower error means that a classifier has used more, or a leak."
     caption = (
         f"Error on test signals: with all signals of a {found.group} in either the training or the test data, and with signals split at "
         f"random. The difference is the optimistic bias of the random split. Thin lines: 95 % intervals, by bootstrap over {found.group}s."

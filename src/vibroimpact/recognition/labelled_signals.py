@@ -59,11 +59,13 @@ class LabelledSignals:
     truth : mapping of str to array
         What the simulation knows and a sensor does not, such as "first_duration_s".
     bayes_error : float, optional
-        The least error rate that any classifier can have on the population, where it is known.
+        A lower bound on the error rate, where it is known.
     total : int, optional
         Number of signals in the file, of which these are a part.
     check_sum : str, optional
         SHA-256 of the file.
+    bayes_error_sees : str, optional
+        The quantities alone that a classifier sees for which this bound was computed; None if the data set states the bound.
 
     Examples
     --------
@@ -83,6 +85,7 @@ class LabelledSignals:
     bayes_error: float | None = None
     total: int | None = None
     check_sum: str = ""
+    bayes_error_sees: str | None = None
 
     def __len__(self) -> int:
         """Return the number of signals."""

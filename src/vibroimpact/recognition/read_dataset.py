@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.arrays import Floats, Indices
-from vibroimpact.bounds.bound import least_error
+from vibroimpact.bounds.bound import SEEN_AT_BEST, least_error
 from vibroimpact.bounds.falls import falls_of_study
 from vibroimpact.errors import InputError
 from vibroimpact.files.check_sums import DamageError, file_digest, read_sealed, recorded_digest
@@ -123,6 +123,7 @@ def _read(file: h5py.File, path: Path, most: int | None, group: str, seed: int) 
         _bayes_error(path),
         count,
         file_digest(path),
+        SEEN_AT_BEST if _is_computed(path) else None,
     )
     # of a drop that failed there is no sample
     there = np.any([np.isfinite(one).any(axis=1) for one in values.values()], axis=0)
@@ -255,12 +256,17 @@ def _rows(data: h5py.Dataset, kept: Indices) -> NDArray[np.float32]:
     return found
 
 
+def _is_computed(path: Path) -> bool:
+    """Return whether the signals are of a study that this program computed."""
+    return path.name == STUDY and (path.parent / SUMMARY).is_file() and is_study(path.parent)
+
+
 def _bayes_error(path: Path) -> float | None:
-    """Return the least error that any classifier can have: as the summary has it, or of a computed population; None if it is not known."""
+    """Return a lower bound on the error: as the summary states it, or of a computed population; None if it is not known."""
     summary = path.parent / SUMMARY
     if not summary.is_file():
         return None
-    if path.name == STUDY and is_study(path.parent):
+    if _is_computed(path):
         return least_error(falls_of_study(read_study(path.parent)))
     try:
         value = read_sealed(summary).get("bayes_error")

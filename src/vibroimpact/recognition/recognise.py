@@ -71,11 +71,13 @@ class Recognition:
     calibration_error : float
         Mean difference of probability and part in the calibration curve, weighted by the signals.
     bayes_error : float, optional
-        The least error that any classifier can have, where the data set says it.
+        A lower bound on the error, where it is known.
     doubts : tuple of str
         What is doubtful, such as a leak.
     recogniser : Recogniser
         The best, trained on all signals, as it is saved.
+    bayes_error_sees : str, optional
+        The quantities alone that a classifier sees for which this bound was computed; None if the data set states the bound.
 
     Examples
     --------
@@ -107,6 +109,7 @@ class Recognition:
     bayes_error: float | None
     doubts: tuple[str, ...]
     recogniser: Recogniser
+    bayes_error_sees: str | None = None
 
 
 def recognise(
@@ -194,7 +197,7 @@ def recognise(
     best = max((one for one in compared if one.kind == CLASSIFIER), key=lambda one: scores[one.name].balanced_accuracy.value)
     (probe,) = (one.name for one in compared if one.kind == PROBE)
     count, chosen = len(np.unique(groups)), Chosen(best, classes, groups, apart[best.name], seed)
-    doubts += bound_doubts(scores, signals.bayes_error, count, probe, best.name)
+    doubts += bound_doubts(scores, signals.bayes_error, count, probe, best.name, signals.bayes_error_sees)
     held_out = chosen.validated.held_out.mean(axis=0)
     curve = reliability(held_out, classes, signals.class_names, bootstrap)
     return Recognition(
@@ -220,6 +223,7 @@ def recognise(
         signals.bayes_error,
         tuple(doubts),
         _trained(chosen, signals, features.names, features.units, tables[FEATURES], group),
+        signals.bayes_error_sees,
     )
 
 

@@ -150,6 +150,7 @@ def summary_of_recognition(found: Recognition) -> dict[str, Any]:
             "signals": dict(zip(found.class_names, found.counts, strict=True)),
             "best": found.best,
             "bayes_error": found.bayes_error,
+            "bayes_error_sees": found.bayes_error_sees,
             "calibration_error": found.calibration_error,
         },
         "scores": grouped,
@@ -206,12 +207,15 @@ def sentences(found: Recognition) -> Iterator[str]:
         f"{found.group}s not used in training; a random split gives {_percent(found.random[found.best].balanced_accuracy.value)} %."
     )
     if found.bayes_error is not None:
-        least = f"{_percent(found.bayes_error)} %" if found.bayes_error >= _LEAST_SHOWN else "less than 0.05 %"
-        yield (
-            f"The lower bound on the error of any classifier of this population, for any sensor, is {least} (Bayes error; vibroimpact "
-            "bound computes it for a band and a noise); the error of the best one is "
-            f"{_percent(best.error.value)} % ({_percents(best.error)} %)."
+        least = f"{_percent(found.bayes_error)} %" if found.bayes_error >= _LEAST_SHOWN else "less than 0.05 %, which excludes nothing"
+        bound = (
+            f"The lower bound on the error that the data set states is {least}."
+            if found.bayes_error_sees is None
+            else f"The lower bound on the error of a classifier that sees only {found.bayes_error_sees}, each known better than by real "
+            f"sensors, is {least}. A classifier that sees more can be better. For a band, a noise and a scatter of a sensor vibroimpact "
+            "bound computes such bounds."
         )
+        yield f"{bound} The error of the best classifier is {_percent(best.error.value)} % ({_percents(best.error)} %)."
     hardest = [one for one in found.streams if one.impacts == max(row.impacts for row in found.streams)]
     if hardest:
         worst = max(hardest, key=lambda row: row.error)

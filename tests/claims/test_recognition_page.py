@@ -1,0 +1,62 @@
+"""What the page on recognition says of its example and of its settings."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import vibroimpact as vi
+from knocks import BAYES_ERROR, write_knocks
+from stated import says
+from vibroimpact.recognition.bound import _SURE
+from vibroimpact.recognition.recognise import MOST_SIGNALS
+from vibroimpact.recognition.robustness import LEVELS
+from vibroimpact.recognition.scores import Score
+
+PAGE = "docs/recognition.md"
+
+
+@pytest.mark.slow
+def test_the_example_of_a_random_split(tmp_path: Path) -> None:
+    found = vi.recognise(write_knocks(tmp_path / "data", rocks=40, falls=15, tone=0.5), folds=4, seeds=1, workers=1)
+    says(PAGE, "{} simulated impacts of {} rocks", sum(found.counts), found.groups)
+    says(PAGE, "is known in closed form, {} %", 100.0 * BAYES_ERROR)
+    says(PAGE, "no classifier can have a balanced accuracy above {} % on unseen rocks", 100.0 * (1.0 - BAYES_ERROR))
+    rows = {}
+    for name in ("logistic regression", "random forest", "gradient boosting", "support vector machine", "true contact time"):
+        one = found.scores[name].balanced_accuracy
+        rows[name] = [100.0 * part for part in (one.value, one.low, one.high, found.random[name].balanced_accuracy.value)]
+        if name != "true contact time":
+            assert one.low < 100.0 * (1.0 - BAYES_ERROR) < rows[name][3]
+    says(PAGE, "| logistic regression | {} | {} to {} | {} |", *rows["logistic regression"])
+    says(PAGE, "| random forest | {} | {} to {} | {} |", *rows["random forest"])
+    says(PAGE, "| gradient boosting | {} | {} to {} | {} |", *rows["gradient boosting"])
+    says(PAGE, "| support vector machine | {} | {} to {} | {} |", *rows["support vector machine"])
+    says(PAGE, "| true contact time | {} | {} to {} | {} |", *rows["true contact time"])
+
+
+def test_settings_and_population() -> None:
+    says(PAGE, "If there are more than {} signals", MOST_SIGNALS)
+    per_cent = Score(50.0, np.linspace(0.0, 100.0, 1001), np.zeros(1))
+    says(PAGE, "**Intervals** of {} % by bootstrap", per_cent.high - per_cent.low)
+    says(PAGE, "with a confidence of {} %, the way in which", _SURE)
+    says(PAGE, "below the bound in {} % of the bootstrap draws", _SURE)
+    says(PAGE, "white noise from {} to {} dB", max(LEVELS), min(LEVELS))
+    sweep = vi.load_sweep("signals:coal-gangue").whole_table["sweep"]
+    over, classes = sweep["over"], {name: one["over"] for name, one in sweep["classes"].items()}
+
+    def mean(name: str, key: str) -> float:
+        return float(classes[name][f"sphere.material.{key}"]["mean"].split()[0])
+
+    says(
+        PAGE,
+        "coal ({} kg/m^3, {} GPa) and gangue ({} kg/m^3, {} GPa)",
+        *(mean(name, key) for name in ("coal", "gangue") for key in ("density", "youngs_modulus")),
+    )
+    says(PAGE, "{} to {} mm in radius", *(float(over["sphere.radius"][end].split()[0]) for end in ("from", "to")))
+    says(PAGE, "fall from {} to {} m onto", *(float(over["drop.height"][end].split()[0]) for end in ("from", "to")))
+    says(PAGE, "a plate of {} mm with", float(over["plate.size.thickness"]["mean"].split()[0]))
+    ratio = mean("gangue", "youngs_modulus") / mean("coal", "youngs_modulus")
+    assert np.isclose(ratio, 8.0), "the pages say a factor of eight"
