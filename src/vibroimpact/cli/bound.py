@@ -29,8 +29,9 @@ def bound(
     force: Force = False,
     as_json: Json = False,
 ) -> None:
-    """Compute the Bayes error of a population: the lowest error of a classifier that sees only stated quantities.
+    """Compute the lowest error of a classifier of stated quantities.
 
+    This is the Bayes error of a population for a classifier that sees nothing else.
     The scatter of the amplitude is assumed; its share in the error is shown. The falls of a study are computed on its plate as
     a rigid body; those of a data set are read from it.
     """
