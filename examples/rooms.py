@@ -34,7 +34,7 @@ FLOORS = {  # top to bottom: name of a layer, its colour, its subpackages and th
         {
             "identification": "force, position, size\nand speed from records",
             "correlation": "tests compared with\nsimulations",
-            "bounds": "lowest error of\nany classifier",
+            "bounds": "lowest error from\nstated quantities",
             "recognition": "classifiers and their\nvalidation",
         },
     ),

@@ -1,6 +1,6 @@
 """The shipped river plate beside the class limits that are used at Swiss plate geophones, with nothing tuned.
 
-The class limits 4.6e-4 D^1.71 V, D in mm (Wyss and others, Water Resour. Res. 52:7712, 2016), are from grains that water moves over plates,
+The class limits 4.6e-4 D^1.71 V, D in mm (attributed to Wyss and others, 2016), are from grains that water moves over plates,
 at speeds that are not stated; computed are impacts at 1 m/s along the normal. At one speed the amplitude grows as D^3, so the two lines
 cross, between 12 and 17 mm, and are far apart elsewhere: agreement near the crossing confirms nothing.
 
@@ -20,7 +20,8 @@ AGAINST = Against(
     "Swiss plate geophones, amplitude limits of grain-size classes",
     "experiment, speed assumed",
     "sensors and signals",
-    "Wyss et al. 2016, Water Resour. Res. 52, 7712: amplitude 4.6e-4 D^1.71 V, D in mm, of grains whose speeds are not stated; "
+    "limits attributed to Wyss et al. 2016, an article that was not at hand: amplitude 4.6e-4 D^1.71 V, D in mm, of grains whose "
+    "speeds are not stated; "
     "computed at 1 m/s along the normal, where the amplitude grows as D^3: the lines cross",
 )
 PLATE = Against(
