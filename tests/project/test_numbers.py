@@ -25,7 +25,6 @@ PAGES = [
 
 NOT_YET = {
     "README.md",
-    "docs/benchmarks.md",
     "docs/bounds.md",
     "docs/calibration.md",
     "docs/case-file.md",
@@ -33,13 +32,11 @@ NOT_YET = {
     "docs/conventions.md",
     "docs/elastic-bodies.md",
     "docs/elastic-drops.md",
-    "docs/export.md",
     "docs/first-steps.md",
     "docs/glossary.md",
     "docs/hammer.md",
     "docs/how-it-works.md",
     "docs/identification.md",
-    "docs/index.md",
     "docs/instruments.md",
     "docs/laws.md",
     "docs/limits.md",

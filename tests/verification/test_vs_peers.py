@@ -42,7 +42,7 @@ EXUDYN = Against(
     "EXUDYN 1.13 or newer; Dormand-Prince method, tolerance 1e-10",
 )
 MUJOCO = Against(
-    "MuJoCo, simulation of exported drops", "other program", "programs and files", "MuJoCo 3; Euler method, 1,000 steps per contact"
+    "MuJoCo, simulation of exported drops", "other program", "programs and files", "MuJoCo 4.0.0; Euler method, 1,000 steps per contact"
 )
 
 PAIR = ContactPair(effective_modulus=2.4265e9, effective_radius=0.025, effective_mass=MASS, poissons_ratio=0.28)
