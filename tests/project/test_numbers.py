@@ -34,7 +34,6 @@ NOT_YET = {
     "docs/elastic-drops.md",
     "docs/first-steps.md",
     "docs/glossary.md",
-    "docs/hammer.md",
     "docs/how-it-works.md",
     "docs/identification.md",
     "docs/instruments.md",
