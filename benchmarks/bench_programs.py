@@ -48,7 +48,7 @@ PAGE = """# Benchmarks
 <!-- made by benchmarks/bench_programs.py -->
 
 Computing time and error of the same impacts in several programs. Times are CPU times of the computation, medians of {runs} runs in one
-session on one core of a shared machine. From session to session they have differed by up to a factor of two, so ratios near one say little.
+session on one core of a shared machine, {day}. From session to session they have differed by up to a factor of two, so ratios near one say little.
 `python benchmarks/bench_programs.py docs/benchmarks.md` generates this page; programs that are not installed are left out.
 
 Run with Python {python}, {versions}{missing}.

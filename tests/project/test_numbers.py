@@ -46,7 +46,6 @@ NOT_YET = {
     "docs/recognition.md",
     "docs/result-folder.md",
     "docs/shaken.md",
-    "docs/signals.md",
     "docs/studies.md",
     "docs/systems.md",
     "docs/verification.md",
