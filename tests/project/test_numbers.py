@@ -30,7 +30,6 @@ NOT_YET = {
     "docs/case-file.md",
     "docs/command-line.md",
     "docs/conventions.md",
-    "docs/elastic-drops.md",
     "docs/first-steps.md",
     "docs/glossary.md",
     "docs/how-it-works.md",
