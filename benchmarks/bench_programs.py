@@ -48,14 +48,17 @@ PAGE = """# Benchmarks
 <!-- made by benchmarks/bench_programs.py -->
 
 Computing time and error of the same impacts in several programs. Times are CPU times of the computation, medians of {runs} runs in one
-session on one core of a shared machine, {day}. From session to session they have differed by up to a factor of two, so ratios near one say little.
+session on one core of a shared machine, {day}. From session to session they have differed by up to a factor of two, so ratios near
+one say little.
 `python benchmarks/bench_programs.py docs/benchmarks.md` generates this page; programs that are not installed are left out.
 
 Run with Python {python}, {versions}{missing}.
 
 ## One drop, five impacts
 
-Measured {day} on {machine}. The paper's rock sphere dropped from 4 m on steel with Tsuji's law (restitution 0.7), which is available in all of these programs. LAMMPS
+Measured {day} on {machine}.
+
+The paper's rock sphere dropped from 4 m on steel with Tsuji's law (restitution 0.7), which is available in all of these programs. LAMMPS
 and EXUDYN run the files written by `vibroimpact export`; the steps per contact are those of the first contact. The error is that of the
 fifth rebound height, compared with DOP853 with a relative tolerance of 1e-13.
 
@@ -67,7 +70,9 @@ rows of SciPy and EXUDYN are Python functions, which is how these programs take 
 
 ## {drops:,} drops, one impact
 
-Measured {day} on {machine}. Heights from 0.5 to 4 m. numba's loop is compiled beforehand ({compile:.1f} s, not included); it represents a simple program
+Measured {day} on {machine}.
+
+Heights from 0.5 to 4 m. numba's loop is compiled beforehand ({compile:.1f} s, not included); it represents a simple program
 with Runge-Kutta steps of fixed size.
 
 {many}
