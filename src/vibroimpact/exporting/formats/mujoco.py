@@ -147,7 +147,8 @@ FORMAT = ExportFormat(
     name="mujoco",
     program="MuJoCo",
     files="a model (.xml, MJCF)",
-    tested="run with MuJoCo 4.0.0, the first impact compared with vibroimpact's between rigid bodies, an oblique one without friction too",
+    tested="run with MuJoCo 3.2.7 and 4.0.0, the first impact compared with vibroimpact's between rigid bodies, an oblique one without "
+    "friction too",
     write=_write,
     notes=_notes,
     prepare=as_rigid,
