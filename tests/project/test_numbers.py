@@ -33,7 +33,6 @@ NOT_YET = {
     "docs/first-steps.md",
     "docs/glossary.md",
     "docs/how-it-works.md",
-    "docs/identification.md",
     "docs/instruments.md",
     "docs/laws.md",
     "docs/limits.md",
