@@ -2,7 +2,7 @@
 
 Programs that are not installed are left out, with a note.
 
-    python benchmarks/bench_programs.py [docs/benchmarks.md]
+    python benchmarks/bench_programs.py [docs/benchmarks.md ["a virtual machine, two cores of an AMD EPYC"]]
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable
+from datetime import date
 from pathlib import Path
 from typing import NamedTuple
 
@@ -47,12 +48,15 @@ PAGE = """# Benchmarks
 <!-- made by benchmarks/bench_programs.py -->
 
 Computing time and error of the same impacts in several programs. Times are CPU times of the computation, medians of {runs} runs in one
-session on one core of a shared, loaded machine, and therefore approximate. `python benchmarks/bench_programs.py docs/benchmarks.md`
-generates this page; programs that are not installed are left out.
+session on one core of a shared machine, {day}. From session to session they have differed by up to a factor of two, so ratios near
+one say little.
+`python benchmarks/bench_programs.py docs/benchmarks.md` generates this page; programs that are not installed are left out.
 
 Run with Python {python}, {versions}{missing}.
 
 ## One drop, five impacts
+
+Measured {day} on {machine}.
 
 The paper's rock sphere dropped from 4 m on steel with Tsuji's law (restitution 0.7), which is available in all of these programs. LAMMPS
 and EXUDYN run the files written by `vibroimpact export`; the steps per contact are those of the first contact. The error is that of the
@@ -62,12 +66,11 @@ fifth rebound height, compared with DOP853 with a relative tolerance of 1e-13.
 
 The time of vibroimpact includes the energy ledger, the located peaks and the table of impacts; those of the others are for the motion
 alone. LAMMPS and EXUDYN are designed for many bodies: the time is that of five impacts, less the start of the program. The forces in the
-rows of SciPy and EXUDYN are Python functions, as is usual with these programs; compiled ones would be faster.
-
-Times of a few milliseconds vary with the load of the machine: in all fourteen sessions, SciPy at 1e-9 took 1.3 to 2.6 times
-vibroimpact's time, and at 1e-6 0.7 to 1.3 times.
+rows of SciPy and EXUDYN are Python functions, which is how these programs take them most simply; compiled ones would be faster.
 
 ## {drops:,} drops, one impact
+
+Measured {day} on {machine}.
 
 Heights from 0.5 to 4 m. numba's loop is compiled beforehand ({compile:.1f} s, not included); it represents a simple program
 with Runge-Kutta steps of fixed size.
@@ -81,7 +84,7 @@ integrates the losses, and stores a table of columns.
 Other measurements are printed by the other scripts in `benchmarks/`: elastic bodies, modes, studies, calibration, features,
 pages.
 
-**Next:** [validation](validation.md), the comparisons with theory, experiments and other programs.
+**Next:** [validation](validation.md), every comparison of results with its numbers.
 """
 
 
@@ -290,6 +293,8 @@ def main() -> None:
     floor = least_ms(runs)
     page = PAGE.format(
         runs=runs,
+        day=date.today().isoformat(),
+        machine=sys.argv[2] if len(sys.argv) > 2 else platform.processor() or platform.machine(),
         python=platform.python_version(),
         versions=", ".join(there),
         missing=f"; without {', '.join(missing)}" if missing else "",

@@ -42,7 +42,7 @@ EXUDYN = Against(
     "EXUDYN 1.13 or newer; Dormand-Prince method, tolerance 1e-10",
 )
 MUJOCO = Against(
-    "MuJoCo, simulation of exported drops", "other program", "programs and files", "MuJoCo 3; Euler method, 1,000 steps per contact"
+    "MuJoCo, simulation of exported drops", "other program", "programs and files", "MuJoCo 4.0.0; Euler method, 1,000 steps per contact"
 )
 
 PAIR = ContactPair(effective_modulus=2.4265e9, effective_radius=0.025, effective_mass=MASS, poissons_ratio=0.28)
@@ -386,6 +386,23 @@ class TestMujoco:
             against=MUJOCO,
             relative=1e-3,
         )
+
+    @pytest.mark.parametrize("name", ["hertz", "tsuji, 0.3", "linear", "flores"])
+    def test_largest_force_is_that_of_the_file(self, name: str) -> None:
+        """The comment of the file states it beside that of the law, which is another."""
+        mujoco = pytest.importorskip("mujoco")
+        drop = told(EXACT_IN_EXUDYN[name], number=1)
+        (text,) = find_export_format("mujoco").write(drop).values()
+        stated, own = map(float, re.search(r"largest force (\S+) N, where the law has (\S+) N", text.decode()).groups())
+        assert own == pytest.approx(drop.impacts["max_force_N"][0], rel=1e-3)
+        model = mujoco.MjModel.from_xml_string(text.decode())
+        data = mujoco.MjData(model)
+        data.qpos[0], data.qvel[0] = drop.radius, -drop.impacts["approach_speed_m_s"][0]
+        largest = 0.0
+        while not (data.qpos[0] > drop.radius and data.qvel[0] > 0.0):
+            mujoco.mj_step(model, data)
+            largest = max(largest, *data.efc_force, 0.0)
+        assert largest == pytest.approx(stated, rel=5e-3)
 
     def test_whole_drop(self, agrees: Agrees) -> None:
         """The flight too, from the height of the key frame to the top of the first rebound."""

@@ -69,7 +69,7 @@ def _motion(drop: Drop) -> _Motion:
         return _Motion(joint, repr(height), repr(rising), "0 0", meaning)
     if drop.oblique.friction is not None:
         raise InputError(
-            f"{drop.oblique.friction.name} can't be written for MuJoCo, whose friction is viscous up to its cone, and lowers the "
+            f"{drop.oblique.friction.name} can't be written for MuJoCo, whose friction is viscous up to its cone, and changes the "
             "restitution of what slides; a drop without friction can",
             "contact.friction",
         )
@@ -147,8 +147,8 @@ FORMAT = ExportFormat(
     name="mujoco",
     program="MuJoCo",
     files="a model (.xml, MJCF)",
-    tested="run with MuJoCo 3.2.7 and 3.17.0, the first impact compared with vibroimpact's between rigid bodies; an oblique one "
-    "with 3.17.0",
+    tested="run with MuJoCo 3.2.7 and 4.0.0, the first impact compared with vibroimpact's between rigid bodies, an oblique one without "
+    "friction too",
     write=_write,
     notes=_notes,
     prepare=as_rigid,
