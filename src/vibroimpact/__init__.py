@@ -1,4 +1,4 @@
-"""What happens when a particle hits a plate: contact, energy and vibration, in a second.
+"""What happens when a particle hits a plate: contact, energy and vibration.
 
 >>> import vibroimpact as vi
 >>> response = vi.simulate(vi.load_case("paper:type1-theory"))
