@@ -2,9 +2,9 @@
 Tangential restitution against impact angle, measured and computed
 ==================================================================
 
-Kharaz, Gorham and Salman dropped alumina spheres on thick glass at eight angles and measured their tangential restitution. The friction law
-``mdr``, which models the microslip at the rim of the contact, agrees with the measurements within a hundredth; the single springs of most
-discrete-element programs do not.
+Kharaz, Gorham and Salman dropped alumina spheres on thick glass and measured their tangential
+restitution; eight points were read off their figure. The friction law ``mdr``, which models the microslip at the rim of the contact, agrees
+with them within some hundredths; single springs, as many discrete-element programs have them, do not.
 """
 
 # %%

@@ -313,3 +313,16 @@ def test_faults_of_the_case(tmp_path: Path) -> None:
     file = table(tmp_path, STEEP, tangential_restitution=0.8, restitution=0.8)
     with pytest.raises(vi.InputError, match="hertz has no parameter to meet it with"):
         calibrated(file, {"law": "coulomb"}, contact={"law": "hertz"})
+
+
+@pytest.mark.parametrize(("law", "reached"), [("lankarani-nikravesh", False), ("flores", True)])
+def test_a_rebound_that_the_contact_law_does_not_reach(law: str, reached: bool) -> None:
+    """Lankarani and Nikravesh's law has no restitution below 0.66."""
+    stated = vi.read_case(case({"law": "coulomb", "coefficient": 0.1}, contact={"law": law, "restitution": 0.8}))
+    along = {"separation_velocity_x": np.array([3.92, 4.93, 5.91])}
+    seen = vi.Observations(
+        speeds=np.full(3, 3.0), wanted=along, speed_noise=np.zeros((3, 3)), noise={name: 0.02 * np.eye(3) for name in along}
+    )
+    measured = vi.ObliqueImpacts(seen, np.array([5.0, 6.0, 7.0]), np.zeros(3), along, separation_speed=np.array([1.8, 1.8, 2.4]))
+    doubts = " ".join(vi.calibrate_friction(stated, measured, ["friction.coefficient"]).doubts)
+    assert ("does not reach the normal rebound of 2 of 3 impacts" in doubts) is not reached

@@ -220,7 +220,9 @@ def test_a_computed_value_has_one_digit_more(text: str, computed: float, digits:
 def test_a_difference_has_its_sign_and_a_bound_has_none() -> None:
     assert difference_text(row(3.0)) == "+20\u00a0%"
     assert difference_text(row(2.0)) == "\u221220\u00a0%"
-    assert difference_text(row(2.5 * (1.0 + 1e-12))) == "0"
+    assert difference_text(row(2.5)) == "0"
+    assert difference_text(row(2.5 * (1.0 + 1e-12))) == "below 1·10⁻⁷\u00a0%"
+    assert difference_text(row(2.5 * (1.0 + 1e-12), tolerance=2.5e-11)) == "below 1·10⁻⁹\u00a0%"
     assert difference_text(row(-1.0, "-0.5")) == "+100\u00a0%"
     assert allowed_text(row(3.0)) == allowed_text(row(3.0, "-2.5")) == "±\u00a02\u00a0%"
     assert allowed_text(row(3.0, tolerance=0.25)) == "±\u00a010\u00a0%"

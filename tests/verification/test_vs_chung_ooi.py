@@ -37,8 +37,8 @@ SPHERES = Against(
     "Chung and Ooi, test 8, results digitized from their figure",
     "published computation",
     "oblique impact and friction",
-    f"{PAPER}; inputs and digitized points of Kratos' DEM benchmarks, case A; where spheres stick in part, the tangential model "
-    "of the article differs from those of this package",
+    f"{PAPER}; inputs and digitized points of Kratos' DEM benchmarks, case A; where spheres stick in part the results differ; the "
+    "article was not at hand, a different tangential model is presumed",
 )
 SLIDING = Against("gross sliding, closed form", "closed form", "oblique impact and friction", PAPER)
 SYMMETRY = Against("symmetry of two equal spheres", "closed form", "oblique impact and friction", PAPER)

@@ -1,7 +1,6 @@
 """Oblique impacts of an alumina sphere on glass, against the measurements of Kharaz, Gorham and Salman (Powder Technol. 120:281, 2001).
 
-The measured values are those of the points that the example "oblique wall impact" of the program Lethe has of their figure, to .001 and
-0.3 degrees.
+The measured values are read off their figure, by others: they are those of the test DEM05 of MFiX, rounded.
 """
 
 from __future__ import annotations

@@ -21,7 +21,7 @@ AGAINST = Against(
     "measuring chain sampled at 2 MHz, shaken supports",
     "own independent computation",
     "sensors and signals",
-    "tests/oracles/measuring_chain.py: Kirchhoff modes in closed form, SciPy filters",
+    "tests/oracles/measuring_chain.py: contact force and kept modes of the package, the modes above in closed form, SciPy filters",
 )
 
 pytestmark = pytest.mark.slow

@@ -130,7 +130,7 @@ VIBRATION_HISTORY_COLUMNS: dict[str, Column] = {
 
 SHAKEN_IMPACT_COLUMNS: dict[str, Column] = {
     "plate_velocity_m_s": Column("m/s", "velocity of the plate's surface at first touch, upwards, of its own motion"),
-    "plate_work_J": Column("J", "work of the moving plate on the sphere, from first touch to release"),
+    "plate_work_J": Column("J", "work of the prescribed motion of the plate by the contact force, from first touch to release"),
 }
 """Further columns of the impact table, where the plate is shaken."""
 

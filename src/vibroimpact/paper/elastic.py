@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from vibroimpact.cases.build import resolved_case
@@ -164,9 +166,10 @@ def _force_and_fall(runs: Runs) -> str:
     speed = float(runs.response("type1-variable").impacts["approach_speed_m_s"][0])
     least = 1e3 * ((force - float(law.damping_max) * speed) / float(law.stiffness)) ** (1.0 / float(law.exponent))
     deep = 1e3 * fall_beyond_touch(2, float(problem.gravity))
+    lower_bound = math.floor(100.0 * least) / 100.0
     return (
         f"The energies printed for Type 2 imply a fall of {deep:.2f} mm beyond first touch. IMPACT gives the printed {force:g} N at no "
-        f"indentation of less than {least:.2f} mm, even at the full approach speed and the full damping: the two are contradictory."
+        f"indentation of less than {lower_bound:.2f} mm, even at the full approach speed and the full damping: the two are contradictory."
     )
 
 

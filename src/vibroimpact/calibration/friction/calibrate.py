@@ -9,7 +9,7 @@ import numpy as np
 
 from vibroimpact.arrays import Bools, Floats, Indices
 from vibroimpact.calibration.fitting import half_width, misfits
-from vibroimpact.calibration.friction.doubts import friction_doubts
+from vibroimpact.calibration.friction.doubts import friction_doubts, rebound_doubts
 from vibroimpact.calibration.friction.intervals import bootstrap_intervals, profile_intervals
 from vibroimpact.calibration.friction.least_squares import Bounds, Minimum, Residuals, minimize
 from vibroimpact.calibration.friction.measured import ObliqueImpacts
@@ -227,6 +227,8 @@ def calibrate_friction(
             start = np.where(idle, parameters.given, least.values)
             least = minimize(measured, start, bounds, idle)
     values, given = least.values[0], parameters.given
+    outcomes = _one(model, values)
+    doubts = friction_doubts(parameters, values, intervals, seen, confidence, freedom, scatter, known=known)
     return FrictionCalibration(
         problem=stated,
         parameters=parameters,
@@ -235,14 +237,14 @@ def calibrate_friction(
         model=model,
         values=values,
         intervals=intervals,
-        outcomes=_one(model, values),
+        outcomes=outcomes,
         given=given,
         as_given=_one(model, given),
         freedom=np.inf if known else freedom,
         scatter=scatter,
         confidence=confidence,
         bootstrap=bootstrap,
-        doubts=tuple(friction_doubts(parameters, values, intervals, seen, confidence, freedom, scatter, known=known)),
+        doubts=(*rebound_doubts(impacts, outcomes["separation_speed"], stated.laws[0].name), *doubts),
     )
 
 

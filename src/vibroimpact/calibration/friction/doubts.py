@@ -1,4 +1,4 @@
-"""Warnings about calibrated friction: what the impacts do not determine, and a law that does not follow them."""
+"""Warnings about calibrated friction: what the impacts do not determine, and laws that do not follow them."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from vibroimpact.arrays import Floats
+from vibroimpact.calibration.friction.measured import ObliqueImpacts
 from vibroimpact.calibration.friction.parameters import FrictionParameters
 from vibroimpact.calibration.observations import Observations
 from vibroimpact.calibration.section import FRICTION
@@ -20,6 +21,36 @@ _WOULD_TELL = {
     "slip_restitution": "; impacts at smaller angles from the normal, which do not slip throughout, would determine it",
     "effective_shear_modulus": "; impacts at smaller angles from the normal, which do not slip throughout, would determine it",
 }
+
+
+_MISSED = 1e-3
+"""Relative deviation of a separation speed above which the contact law counts as not reaching it."""
+
+
+def rebound_doubts(impacts: ObliqueImpacts, separation_speed: Floats, law: str) -> Iterator[str]:
+    """Yield a warning about measured normal rebounds that the contact law does not reach with any value of its parameter.
+
+    Parameters
+    ----------
+    impacts : ObliqueImpacts
+        The measured impacts.
+    separation_speed : array, shape (n,)
+        Separation speeds along the normal that the contact law achieves [m/s].
+    law : str
+        Name of the contact law.
+    """
+    if impacts.separation_speed is None:
+        return
+    off = np.abs(separation_speed - impacts.separation_speed)
+    missed = off > _MISSED * impacts.seen.speeds
+    if missed.any():
+        worst = int(np.argmax(np.where(missed, off / impacts.seen.speeds, -1.0)))
+        label = impacts.seen.labels[worst] if impacts.seen.labels else f"impact {worst + 1}"
+        yield (
+            f"{law} does not reach the normal rebound of {int(missed.sum())} of {len(off)} impacts, by most that of {label}: "
+            f"{text(float(separation_speed[worst]), 'm/s')} for "
+            f"{text(float(impacts.separation_speed[worst]), 'm/s')}; take another contact law, as friction is fitted with this impulse"
+        )
 
 
 def friction_doubts(

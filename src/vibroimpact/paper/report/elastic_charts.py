@@ -44,7 +44,8 @@ def _figure_14_note(runs: Runs) -> str:
 def _first_touch_note(runs: Runs) -> str:
     response = runs.treated(2, "consistent")
     released = digits(float(history_of(response)["potential_J"][0]), 5)
-    return f"The fall to first touch releases {released} J; the rest is compression."
+    beyond = "the rest is the fall beyond it, by compression and, in Type 3, by deflection of the plate."
+    return f"The fall to first touch releases {released} J; {beyond}"
 
 
 def _strain_energy_note(runs: Runs) -> str:

@@ -82,8 +82,11 @@ def difference_text(row: ComparedValue) -> str:
     if row.printed.relation != "=":
         return MISSING
     part = 100.0 * row.difference
-    if abs(part) < _ROUNDING:
+    least = min(_ROUNDING, 100.0 * row.allowed / abs(row.printed.value))
+    if part == 0.0:
         return "0"
+    if abs(part) < least:
+        return f"below {digits(least, 1)}{_NO_BREAK}%"
     return f"{'+' if part > 0 else ''}{digits(part, 2)}{_NO_BREAK}%"
 
 

@@ -40,7 +40,7 @@ FAMILY = Family(
         Feature(
             name="impulses",
             meaning="upward crossings of the threshold by the signal",
-            equation="sum(x[i-1] < threshold <= x[i])",
+            equation="sum(x[i-1] < threshold <= x[i]), x = 0 before the first sample",
             source="Rickenmann & McArdell 2007, Earth Surf. Process. Landforms 32:1362",
         ),
         Feature(
