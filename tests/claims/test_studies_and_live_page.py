@@ -31,7 +31,7 @@ def test_sizes_of_studies() -> None:
     assert "the maximum is ten million" in page_text(STUDIES)
     assert MOST_DROPS == 10_000_000
     says(STUDIES, "static problems of {} contact points at a time", _TOGETHER)
-    says(STUDIES, "drops of elastic bodies are computed in batches of {}", _ELASTIC_CHUNK)
+    says(STUDIES, "and drops of elastic bodies, are computed in batches of {}", _ELASTIC_CHUNK)
 
 
 def test_drafts() -> None:

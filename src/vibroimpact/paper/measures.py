@@ -138,8 +138,10 @@ def values_by_treatment(
         Range of the value in unresolved runs of the superposed model.
     """
     words = {
-        "consistent": "elastic bodies with this contact law give another value, and no setting that was tried gives the printed one",
-        "superposed": "the resolved superposed model gives another value, and no setting that was tried gives the printed one",
+        "consistent": "elastic bodies with this contact law give another value, and "
+        "no setting of this treatment that was tried keeps what is printed",
+        "superposed": "the resolved superposed model gives another value, and "
+        "no setting of this treatment that was tried keeps what is printed",
         "identified": "a prediction from Type 2" if kind == 3 else "fitted to force and rebound alone",
     }
     if unresolved is not None:

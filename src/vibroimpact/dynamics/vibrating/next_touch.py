@@ -16,10 +16,10 @@ _SAMPLES = np.linspace(0.0, 1.0, 33)[1:]
 def next_touch(motion: FreeMotion, level: float, until: float, contact: int = 0) -> float:
     r"""Return when the indentation first rises to a level [s since the start]; infinite if not before `until`.
 
-    No touch is stepped over. With a bound M of the acceleration from here on, a gap G that opens at the rate :math:`\dot G` can't close
-    before :math:`\tau = (\dot G + \sqrt{\dot G^2 + 2 M G}) / M`, so the search advances by these bounds; near the touch they converge as
-    fast as Newton's method. Far away, the displacement of the vibrating surface is bounded by its energy, and the parabola of the rigid
-    motion gives the time until it is that near.
+    From an open gap no touch is stepped over. With a bound M of the acceleration from here on, a gap G that opens at the rate
+    :math:`\dot G` can't close before :math:`\tau = (\dot G + \sqrt{\dot G^2 + 2 M G}) / M`, so the search advances by these bounds;
+    near the touch they converge as fast as Newton's method. Far away, the displacement of the vibrating surface is bounded by its
+    energy, and the parabola of the rigid motion gives the time until it is that near.
 
     Parameters
     ----------
