@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
+from scipy.linalg import solve_triangular
 
 from vibroimpact.arrays import Floats
 from vibroimpact.calibration.flights import Flights
@@ -63,7 +64,7 @@ class JointFlights:
         Time on the clock of the record at which the zero is stated [s].
     free : tuple of int
         The unknowns that are determined, as columns of `root`.
-    root : array, shape (n + m, n + m)
+    root : array, shape (k, k)
         Contribution of each independent source of unit variance to each free unknown.
     noise, scatter : float
         Standard deviation of a sample, and of the level of one impact about the line of the zero [m].
@@ -210,11 +211,12 @@ def _solved(
         if _CONTACT in shared and meetings is not None:
             rows.append(_prior_row(_CONTACT, meetings.contact - at.contact, meetings.contact_deviation, number))
         every = np.concatenate(rows)
-        slopes, left = every[:, list(free)], every[:, -1]
-        sizes = np.linalg.norm(slopes, axis=0)
-        inverse = np.linalg.pinv(slopes / sizes)
+        sizes = np.linalg.norm(every[:, list(free)], axis=0)
+        # the last column, of what is left, ends in the norm of the residuals
+        triangle = np.linalg.qr(np.column_stack([every[:, list(free)] / sizes, every[:, -1]]), mode="r")
+        square = triangle[: len(free), : len(free)]
         step = np.zeros(_SHARED + 2 * number)
-        step[list(free)] = inverse @ left / sizes
+        step[list(free)] = solve_triangular(square, triangle[: len(free), -1]) / sizes
         tops, moved = at.tops + step[_SHARED::2], step[_SHARED::2]
         at = replace(
             at,
@@ -228,8 +230,8 @@ def _solved(
         if not (np.all(np.isfinite(step)) and at.clock > 0.0):
             break
         if np.all(np.abs(moved) <= _SETTLED * np.abs(tops)):
-            misfit = float(np.sum((left - slopes @ step[list(free)]) ** 2))
-            return replace(at, free=free, root=inverse / sizes[:, None], noise=noise, misfit=misfit)
+            root = solve_triangular(square, np.eye(len(free))) / sizes[:, None]
+            return replace(at, free=free, root=root, noise=noise, misfit=float(triangle[-1, -1] ** 2))
     raise ComputationError("the flights in the record can't be fitted together; look at the unit of its time and position")
 
 
