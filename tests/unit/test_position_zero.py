@@ -248,12 +248,13 @@ def test_no_dependence_on_speed_appears() -> None:
     assert 0.91 <= np.mean(inside) <= 0.98
 
 
-def calibrated(folder: Path, made: Track, noise: Floats | float = 0.0) -> tuple[Calibration, dict]:
+def calibrated(folder: Path, made: Track, noise: Floats | float = 0.0, height: float = 0.5) -> tuple[Calibration, dict]:
     rows = "".join(f"{at:.9g},{value:.9g}\n" for at, value in zip(made.time, made.position + noise, strict=True))
     (folder / "track.csv").write_text("time_s,position_m\n" + rows)
     case = plain_case(
         sphere={"radius": RADIUS, "material": "steel"},
         plate={"material": "steel"},
+        drop={"height": height},
         contact={"law": "newton", "restitution": 0.5},
         calibrate={"target": str(folder / "track.csv"), "degree": 0, "air": False},
     )
@@ -273,6 +274,28 @@ def test_calibration_to_a_record_whose_zero_is_off(tmp_path: Path) -> None:
     assert "meet 1.000" in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
     apart = found.overlays[0].measured[1] - found.overlays[0].simulated[1]
     assert np.nanmax(np.abs(apart)) < 1e-6, "what is drawn over the simulation is the corrected record"
+
+
+def test_what_remains_is_of_the_drop_that_was_measured(tmp_path: Path) -> None:
+    """The first touch is at 1.40 m/s, and the case says 0.3 m: up to 165 % remained of a record without a flaw."""
+    found, document = calibrated(tmp_path, track(height=0.108), height=0.3)
+    assert found.observations.speeds[0] == pytest.approx(1.4005, abs=1e-4)
+    off = document["differences"]["rebound_height_m"]
+    assert set(off) == {"constant", "variable", "function"}
+    assert all(len(values) == 4 and np.max(np.abs(values)) < 1e-6 for values in off.values())
+    (doubt,) = (doubt for doubt in found.doubts if "first impact that was measured" in doubt)
+    assert "is at 1.4 m/s, and that of the drop at 2.393 m/s" in doubt
+    speeds = [row["approach_speed_m_s"] for row in document["impacts"]]
+    assert speeds[0] == pytest.approx(2.393, abs=1e-3), "the case that is written is the drop of the case"
+
+
+def test_what_remains_of_the_same_drop(tmp_path: Path) -> None:
+    """A record of the drop of the case, with noise, is of that drop."""
+    made = track()
+    found, document = calibrated(tmp_path, made, 3e-4 * np.random.default_rng(5).normal(size=len(made.time)))
+    assert not any("first impact that was measured" in doubt for doubt in found.doubts)
+    assert [row["value"] for row in document["impacts"]] == found.values.tolist()
+    assert np.max(np.abs(document["differences"]["rebound_height_m"]["variable"])) < 1e-6
 
 
 def test_calibration_on_the_command_line(tmp_path: Path, command: Callable[..., tuple[int, str, str]]) -> None:
