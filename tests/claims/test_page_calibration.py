@@ -14,7 +14,7 @@ from heard import heard
 from oblique_measured import ALL, ALUMINA, ANGLES, FRICTION, GLASS, MEASURED, SLIPPING, fitted_friction
 from stated import says
 from support import blocks, module_at, plain_case
-from vibroimpact.calibration import joint_flights, position_record
+from vibroimpact.calibration import force_pulses, force_record, joint_flights, position_record
 from vibroimpact.calibration.evaluate_measurement import _MATTERS
 from vibroimpact.calibration.noise import standard_deviations
 from vibroimpact.calibration.section import _MEASURED
@@ -77,6 +77,11 @@ def test_drifting_forces() -> None:
     parts = [covered(drift) for drift in (drifts.ramp, drifts.settling, drifts.discharge, drifts.wander)]
     says(PAGE, "noise of {} % and drifts of {} %", 100.0 * 20.0 / float(force.max()), 100.0 * drifts.PART)
     says(PAGE, "hum), {} of each kind, the 95 % interval contains the true rebound in {} to {} %", drifts.TIMES, min(parts), max(parts))
+
+
+def test_edges_of_forces() -> None:
+    says(PAGE, "the sampling interval and {} % of the contact", 100.0 * force_pulses._EDGE)
+    says(PAGE, "fewer than {} samples in a contact", force_record._COARSE)
 
 
 def test_zero_of_a_record_of_positions() -> None:

@@ -213,7 +213,7 @@ def _solved(
         every = np.concatenate(rows)
         sizes = np.linalg.norm(every[:, list(free)], axis=0)
         # the last column, of what is left, ends in the norm of the residuals
-        triangle = np.linalg.qr(np.column_stack([every[:, list(free)] / sizes, every[:, -1]]), mode="r")
+        triangle = np.asarray(np.linalg.qr(np.column_stack([every[:, list(free)] / sizes, every[:, -1]]), mode="r"))
         square = triangle[: len(free), : len(free)]
         step = np.zeros(_SHARED + 2 * number)
         step[list(free)] = solve_triangular(square, triangle[: len(free), -1]) / sizes
