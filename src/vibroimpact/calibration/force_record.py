@@ -114,8 +114,8 @@ def impacts_in_force(
             )
     if clipped:
         doubts += (
-            f"the force is clipped in {len(clipped)} impact{'s' if len(clipped) > 1 else ''}, first at {clipped[0]}: the largest forces and "
-            "the impulses are not known, and rebounds follow from the times of flight alone; record again with a larger range",
+            f"the force is clipped in {len(clipped)} impact{'s' if len(clipped) > 1 else ''}, first at {clipped[0]}: the largest forces "
+            "and the impulses are not known, and rebounds follow from the times of flight alone; record again with a larger range",
         )
     elif (fewest := min(pulses, key=lambda pulse: pulse.length)).length < _COARSE:
         doubts += (
