@@ -14,6 +14,7 @@ from heard import heard
 from oblique_measured import ALL, ALUMINA, ANGLES, FRICTION, GLASS, MEASURED, SLIPPING, fitted_friction
 from stated import says
 from support import blocks, module_at, plain_case
+from vibroimpact.calibration import force_pulses, force_record, joint_flights, position_record
 from vibroimpact.calibration.evaluate_measurement import _MATTERS
 from vibroimpact.calibration.noise import standard_deviations
 from vibroimpact.calibration.section import _MEASURED
@@ -76,6 +77,37 @@ def test_drifting_forces() -> None:
     parts = [covered(drift) for drift in (drifts.ramp, drifts.settling, drifts.discharge, drifts.wander)]
     says(PAGE, "noise of {} % and drifts of {} %", 100.0 * 20.0 / float(force.max()), 100.0 * drifts.PART)
     says(PAGE, "hum), {} of each kind, the 95 % interval contains the true rebound in {} to {} %", drifts.TIMES, min(parts), max(parts))
+
+
+def test_edges_of_forces() -> None:
+    says(PAGE, "the sampling interval and {} % of the contact", 100.0 * force_pulses._EDGE)
+    says(PAGE, "fewer than {} samples in a contact", force_record._COARSE)
+
+
+def test_zero_of_a_record_of_positions() -> None:
+    """What a wrong zero would do follows from the heights above it."""
+    zeros = module_at("tests/unit/test_position_zero.py")
+    rises = 0.7 ** (2.0 * np.arange(5)) * (0.5 - zeros.RADIUS)
+    wrong = [float(np.sqrt((rises[4] + off) / (rises[3] + off))) for off in (1e-3, -1e-3)]
+    says(PAGE, "a restitution of {} and a sphere of {} mm radius that falls from {} m, a zero", 0.7, 1e3 * zeros.RADIUS, 0.5)
+    says(PAGE, "a zero that is 1 mm too high would make the fourth restitution {}", wrong[0])
+    right = [float(zeros.restitutions(zeros.seen_in(zeros.track(zero=off)))[0][3]) for off in (1e-3, -1e-3)]
+    says(PAGE, "and one that is 1 mm too low {}. With the zero estimated both are {}", wrong[1], right[0])
+    assert right[1] == pytest.approx(right[0], abs=1e-6)
+    says(PAGE, "an elastic Hertzian impact within {} %", 100.0 * joint_flights._CONTACT_DEVIATION)
+    says(PAGE, "or a clock by more than {} %, is refused", 100.0 * position_record._CLOCK_OFF)
+    says(PAGE, "a tenth of the radius, the clock by more than {} %", 100.0 * position_record._LARGE_CLOCK)
+    assert position_record._LARGE_ZERO == 0.1
+    assert position_record._FAR == 0.5
+
+
+@pytest.mark.slow
+def test_intervals_of_records_of_positions() -> None:
+    zeros = module_at("tests/unit/test_position_zero.py")
+    inside = 100.0 * float(np.mean(np.abs(zeros.deviates()) <= 1.96))
+    says(PAGE, "In {} random records with zeros up to {} mm and drifts up to {} mm/s", zeros.TIMES, 2.0, 1.0)
+    says(PAGE, "noise of {} to {} mm, and clocks that are off by {} % (standard", 0.03, 0.4, 0.3)
+    says(PAGE, "the {} % interval contains the true restitution in {} %.", 95.0, inside)
 
 
 def test_a_contact_in_a_flight() -> None:

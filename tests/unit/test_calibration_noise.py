@@ -19,6 +19,7 @@ from vibroimpact.bodies.rigid import rigid_plate
 from vibroimpact.calibration.calibrate import calibrate
 from vibroimpact.calibration.calibration import Calibration
 from vibroimpact.calibration.force_record import impacts_in_force
+from vibroimpact.calibration.joint_flights import _CONTACT_DEVIATION
 from vibroimpact.calibration.noise import standard_deviations
 from vibroimpact.calibration.observations import Observations, from_heights, from_table
 from vibroimpact.calibration.position_record import impacts_in_position
@@ -235,12 +236,15 @@ def response() -> vi.Response:
 
 @pytest.mark.parametrize(("rate", "size"), [(1000.0, 1e-4), (200.0, 1e-3)])
 def test_position_records(response: vi.Response, rate: float, size: float) -> None:
-    """The tops of three flights, and the speed of the first impact."""
+    """The tops of three flights, and the speed of the first impact; the duration of contact is expected with the error that is assumed."""
     record, impacts, inside = response.sample(rate), response.impacts, []
     given = {"radius": RADIUS, "gravity": float(response.problem.gravity), "first_speed": 1.0}
+    contact = float(impacts["duration_s"][0] * impacts["approach_speed_m_s"][0] ** 0.2)
     for seed in range(TIMES):
-        noisy = record["position_m"] + size * np.random.default_rng(seed).normal(size=len(record["time_s"]))
-        seen = impacts_in_position(record["time_s"], noisy, **given)
+        random = np.random.default_rng(seed)
+        noisy = record["position_m"] + size * random.normal(size=len(record["time_s"]))
+        expected = contact / max(1.0 + _CONTACT_DEVIATION * random.normal(), 0.2)
+        seen = impacts_in_position(record["time_s"], noisy, **given, contact_duration=expected)
         found = np.append(seen.speeds[0], seen.wanted["rebound_height"][:3])
         noise = np.vstack([seen.speed_noise.toarray()[0], seen.noise["rebound_height"].toarray()[:3]])
         exact = np.append(impacts["approach_speed_m_s"][0], impacts["rebound_height_m"][:3])

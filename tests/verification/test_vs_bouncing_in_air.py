@@ -78,7 +78,7 @@ def test_a_position_record(seen: Bounces, tmp_path: Path) -> None:
     right = evaluated(file, True)
     assert len(right.values) == 4
     assert np.all((right.intervals[:, 0] <= TRUE) & (right.intervals[:, 1] >= TRUE))
-    assert np.diff(right.intervals).max() < 2e-3
+    assert np.diff(right.intervals).max() < 4e-3  # at 99.9 %, with zero, drift, clock and the duration of contact estimated as well
     wrong = evaluated(file, None)
     assert wrong.values[0] < TRUE - 3e-3
     assert doubts(wrong)

@@ -7,15 +7,16 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.calibration.calibrated_drops import impact_tables, limited_to, values_by_function
+from vibroimpact.calibration.calibrated_drops import impact_count, impact_tables, is_other_drop, limited_to, values_by_function
 from vibroimpact.calibration.calibration import Calibration
 from vibroimpact.calibration.match_target import match_drop, match_measurement
 from vibroimpact.calibration.matchable import REBOUND, REBOUNDS, check_weights
 from vibroimpact.calibration.matching import Tunable
 from vibroimpact.calibration.observations import Observations
 from vibroimpact.calibration.overlay import overlays
+from vibroimpact.calibration.single_impacts import first_approach_speed
 from vibroimpact.calibration.tunables import law_parameter
-from vibroimpact.calibration.uncertainty import fit_doubts
+from vibroimpact.calibration.uncertainty import fit_doubts, other_drop_doubts
 from vibroimpact.calibration.unreachable import other_parameters
 from vibroimpact.dynamics.problem import Problem, StatesProblem
 from vibroimpact.dynamics.simulate import simulate
@@ -90,8 +91,8 @@ def calibrate(
     tell = progress or (lambda done: None)
     stated = problem.to_problem()
     if weights is None:
-        seen = target.wanted if isinstance(target, Observations) else REBOUND
-        weights = REBOUND if set(REBOUNDS) & set(seen) else dict.fromkeys(seen, 1.0)
+        known = target.wanted if isinstance(target, Observations) else REBOUND
+        weights = REBOUND if set(REBOUNDS) & set(known) else dict.fromkeys(known, 1.0)
     if isinstance(target, Observations) and "separation_speed" not in target.wanted and "rebound_height" in target.wanted:
         # both describe the rebound; match the one that was measured
         weights = {name.replace("separation_speed", "rebound_height"): weight for name, weight in weights.items()}
@@ -106,19 +107,25 @@ def calibrate(
         found = match_drop(tuned, stated, target.to_problem(), weights, degree, speeds, tell)
     tell(0.9)
     # the whole drop with the values found, and with those given, for comparison with the target
-    along, values = values_by_function(tuned, stated, found.fit.function, found.seen)
-    chain = (found.seen.speeds, found.values) if found.seen.of_the_drop else (along, values)
-    drops = impact_tables(tuned, chain[1], values, found.seen)
+    seen, function = found.seen, found.fit.function
+    first = first_approach_speed(stated) if seen.flights is None else float(seen.speeds[0])
+    along, values = values_by_function(tuned, function, impact_count(stated), first, seen.flights)
+    each, by_speed = values, values
+    if seen.of_the_drop:  # compared with the target as it was measured, from its own first speed on
+        each = found.values
+        _, by_speed = values_by_function(tuned, function, len(each), float(seen.speeds[0]), seen.flights)
+    chain = (seen.speeds, each) if seen.of_the_drop and not is_other_drop(stated, seen) else (along, values)
+    drops = impact_tables(tuned, each, by_speed, seen)
     along = along[: len(drops["function"]["impact"])]
     if not isinstance(target, Observations):
-        drops = {"target": simulate(limited_to(target.to_problem(), len(chain[1]))).impacts, **drops}
-    rows = found.seen.which
+        drops = {"target": simulate(limited_to(target.to_problem(), len(each))).impacts, **drops}
+    rows = seen.which
     given = tuned.given[np.minimum(rows, len(tuned.given) - 1)]
-    as_given = {} if np.isnan(given).any() else tuned.respond(found.seen.speeds, given, rows)
-    missed = bool(as_given) and any(not np.allclose(as_given[name], found.seen.wanted[name], rtol=_MET, atol=0.0) for name in weights)
+    as_given = {} if np.isnan(given).any() else tuned.respond(seen.speeds, given, rows)
+    missed = bool(as_given) and any(not np.allclose(as_given[name], seen.wanted[name], rtol=_MET, atol=0.0) for name in weights)
     computed = all(np.isfinite(as_given[name][0]) for name in weights) if as_given else False
-    outcomes = tuned.respond(found.seen.speeds, found.values, rows)
-    overlaid = overlays(tuned, found.seen, found.values, outcomes)
+    outcomes = tuned.respond(seen.speeds, found.values, rows)
+    overlaid = overlays(tuned, seen, found.values, outcomes)
     tell(1.0)
     return Calibration(
         problem=stated,
@@ -126,13 +133,13 @@ def calibrate(
         unit=tuned.unit,
         allowed=tuned.allowed,
         weights=dict(weights),
-        observations=found.seen,
+        observations=seen,
         values=found.values,
         intervals=found.intervals,
         outcomes=outcomes,
         given=given,
         as_given=as_given,
-        others=other_parameters(stated, tuned, found.seen, weights) if missed and computed else {},
+        others=other_parameters(stated, tuned, seen, weights) if missed and computed else {},
         fit=found.fit,
         curve=found.curve,
         impacts=chain,
@@ -140,7 +147,7 @@ def calibrate(
         confidence=confidence,
         bootstrap=found.draws,
         overlays=overlaid,
-        doubts=(*found.doubts, *fit_doubts(stated, tuned, found.seen, found.fit, found.curve, along)),
+        doubts=(*found.doubts, *other_drop_doubts(stated, seen), *fit_doubts(stated, tuned, seen, found.fit, found.curve, along)),
     )
 
 

@@ -11,6 +11,7 @@ from vibroimpact.arrays import Floats
 from vibroimpact.calibration.flights import Flights
 from vibroimpact.calibration.matchable import MATCHABLE
 from vibroimpact.calibration.matching import Tunable
+from vibroimpact.calibration.noise import standard_deviations
 from vibroimpact.calibration.observations import Observations
 from vibroimpact.calibration.single_impacts import first_approach_speed, return_speeds
 from vibroimpact.calibration.speed_function import SpeedFunction
@@ -20,28 +21,46 @@ from vibroimpact.dynamics.simulate import simulate
 MOST_IMPACTS = 20
 """The largest number of impacts that are calibrated."""
 
+_ANOTHER, _SURE = 0.005, 3.0
+"""Deviation of the first speed that was measured from that of the drop above which it was another drop: a fraction, and a number of
+standard deviations.
+"""
+
 
 def impact_count(problem: Problem) -> int:
     """Return the number of impacts of a drop to be calibrated."""
     return min(problem.impacts or MOST_IMPACTS, MOST_IMPACTS)
 
 
-def values_by_function(tunable: Tunable, problem: Problem, function: SpeedFunction, seen: Observations) -> tuple[Floats, Floats]:
-    """Return approach speeds [m/s] and values of the impacts of a drop whose value is a function of the approach speed."""
-    first = first_approach_speed(problem) if seen.flights is None else float(seen.speeds[0])
-    table = _impact_sequence(tunable, lambda _, speed: function(speed), impact_count(problem), first, seen.flights)
+def is_other_drop(problem: Problem, seen: Observations) -> bool:
+    """Return whether measured successive impacts begin at another speed than the drop, by more than noise and half a per cent."""
+    if not (seen.measured and seen.of_the_drop) or seen.flights is not None:
+        return False
+    first, noise = float(seen.speeds[0]), float(standard_deviations(seen.speed_noise)[0])
+    return abs(first - first_approach_speed(problem)) > max(_ANOTHER * first, _SURE * noise)
+
+
+def values_by_function(
+    tunable: Tunable, function: SpeedFunction, number: int, first: float, flights: Flights | None
+) -> tuple[Floats, Floats]:
+    """Return approach speeds [m/s] and values of impacts, from a first speed on, whose value is a function of the approach speed."""
+    table = _impact_sequence(tunable, lambda _, speed: function(speed), number, first, flights)
     return table["approach_speed_m_s"], table["value"]
 
 
 def impact_tables(tunable: Tunable, values: Floats, by_speed: Floats, seen: Observations) -> dict[str, Mapping[str, Floats]]:
     """Return the impact tables of the drop: "constant" (first value), "variable" (one value per impact), "function" (`by_speed`).
 
-    If the flights have drag, the impacts are computed one by one and connected by those flights.
+    What was measured successively begins at its own first speed. If the flights have drag, the impacts are computed one by one and
+    connected by those flights.
     """
     found: dict[str, Mapping[str, Floats]] = {}
     for name, given in (("constant", values[:1]), ("variable", values), ("function", by_speed)):
         if seen.flights is None:
-            found[name] = simulate(limited_to(tunable.drop(given), len(values))).impacts
+            drop = limited_to(tunable.drop(given), len(values))
+            if seen.measured and seen.of_the_drop:
+                drop = replace(drop, height=None, speed=float(seen.speeds[0]))
+            found[name] = simulate(drop).impacts
         else:
             found[name] = _impact_sequence(tunable, _one_each(given), len(values), float(seen.speeds[0]), seen.flights)
     return found

@@ -48,7 +48,7 @@ def calibration_charts(found: Calibration | FrictionCalibration) -> list[Chart]:
     makers = {"parameter": partial(_parameter_chart, found)}
     if found.overlays:
         makers["record"] = partial(record_chart, found.overlays)
-    if differences(found) and len(found.impacts[1]) > 1:
+    if differences(found) and len(found.drops["variable"]["impact"]) > 1:
         makers["differences"] = partial(_differences_chart, found)
     return made_charts(makers)
 

@@ -61,6 +61,10 @@ def calibration_table(case: Case, found: Calibration) -> dict[str, Any]:
         "curve": curve,
         "differences": {column: {way: _plain(values) for way, values in ways.items()} for column, ways in differences(found).items()},
         "other_parameters": dict(found.others),
+        "corrections": {
+            name: {"value": one.value, "standard_deviation": one.deviation, "unit": one.unit}
+            for name, one in found.observations.corrections.items()
+        },
         "doubts": list(found.doubts),
         "case": resolved_case(case),
     }

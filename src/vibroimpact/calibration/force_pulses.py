@@ -7,10 +7,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibroimpact.arrays import Bools, Floats, Indices
+from vibroimpact.arrays import Bools, Floats
 from vibroimpact.calibration.force_baseline import baseline_under_impact, record_baseline
 from vibroimpact.calibration.record_noise import ABOVE_NOISE, record_noise
 from vibroimpact.errors import InputError
+from vibroimpact.signals.inverse.hertz_pulse import hertz_rise
 
 _FEWEST = 5
 
@@ -21,6 +22,24 @@ _UPSIDE_DOWN = 3.0  # ratio of negative to positive excursion above which the si
 
 _PASSES, _MARGIN = 3, 0.25
 """Number of passes of detection and baseline, and the margin on either side of a pulse as a fraction of its duration."""
+
+_EDGE, _STEP = 0.03, 0.25
+"""Standard deviation of the begin and the end of a contact: as a fraction of its duration, since its force does not rise as Hertz's, and
+of the sampling interval.
+"""
+
+_ABOVE, _FOOT, _SHOULDER = 3.0, 0.05, 0.8
+"""Part of a flank from which the begin is extrapolated: above a multiple of the noise and a fraction of the largest force, and below
+another fraction.
+"""
+
+_FINE, _BETWEEN, _COARSE = 50, 0.2, 0.3
+"""Points of a spline per sample; standard deviation of its largest value: a fraction of what it is above the samples, and a multiple of the
+inverse square of the number of samples.
+"""
+
+_FLAT, _FLAT_PART = 3, 0.1
+"""Number of successive samples with the same largest value, and fraction of the pulse, from which it is clipped."""
 
 _PEAK, _TOP = 0.003, 0.8
 """Relative standard deviation of the largest force, and the fraction of it above which samples enter its parabola."""
@@ -38,18 +57,24 @@ class DetectedPulses(NamedTuple):
 
 
 class Pulse(NamedTuple):
-    """A force pulse: start and duration [s]; largest force [N] and impulse [N s] with standard deviations; scatter of the baseline beside
-    it in excess of the noise [N]; times and forces above the baseline around it.
+    """A force pulse: start and duration [s], with the standard deviations of start and end.
+
+    Largest force [N] and impulse [N s] with standard deviations; scatter of the baseline beside it in excess of the noise [N]; times and
+    forces above the baseline around it; number of its samples, and whether it is clipped: then largest force and impulse are too small.
     """
 
     begin: float
+    begin_deviation: float
     duration: float
+    end_deviation: float
     largest: float
     largest_deviation: float
     impulse: float
     impulse_deviation: float
     excess_scatter: float
     samples: tuple[Floats, Floats]
+    length: int
+    clipped: bool
 
 
 def find_pulses(time: Floats, force: Floats) -> DetectedPulses:
@@ -105,29 +130,73 @@ def _pulse(time: Floats, seen: DetectedPulses, run: tuple[int, int], segment: tu
     coarse = [np.trapezoid(force[first::2], at[first::2]) for first in (0, 1)]
     between = 0.5 * max(0.0, float(np.abs(impulse - np.array(coarse)).max()) - 2.0 * noise)
     unsure = float(np.linalg.norm([noise, level.impulse_deviation, between]))
-    inside = force[begin - part.start : end - part.start]
-    largest, deviation = _largest(np.arange(len(inside)), inside), np.hypot(seen.noise, level.deviation)
+    inside, deviation = force[begin - part.start : end - part.start], np.hypot(seen.noise, level.deviation)
+    largest, between_samples = _largest(force, slice(begin - part.start, end - part.start))
+    top = int(np.argmax(inside)) + begin - part.start
+    start, start_deviation = _edge(at[: top + 1], force[: top + 1], largest, deviation)
+    back, end_deviation = _edge(-at[top:][::-1], force[top:][::-1], largest, deviation)
+    lasting = -back - start
+    unsure_edge = np.hypot(_EDGE * lasting, _STEP * step)
     return Pulse(
-        begin=float(time[begin]),
-        duration=float(time[end - 1] - time[begin]),
+        begin=start,
+        begin_deviation=float(np.hypot(start_deviation, unsure_edge)),
+        duration=lasting,
+        end_deviation=float(np.hypot(end_deviation, unsure_edge)),
         largest=largest,
-        largest_deviation=float(np.hypot(deviation, _PEAK * largest)),
+        largest_deviation=float(np.linalg.norm([deviation, _PEAK * largest, between_samples])),
         impulse=impulse,
         impulse_deviation=unsure,
         excess_scatter=level.excess_scatter,
         samples=(at, force),
+        length=end - begin,
+        clipped=_clipped(seen.force[begin:end]),
     )
 
 
-def _largest(number: Indices, force: Floats) -> float:
-    """Return the apex of a parabola through the samples near the maximum; the largest sample if they are few."""
-    largest = float(force.max())
-    top = np.flatnonzero(force > _TOP * largest)
+def _clipped(force: Floats) -> bool:
+    """Return whether the largest value as recorded is held for longer than by the steps of a converter."""
+    (longest,) = np.diff(max(_runs(force >= force.max()), key=lambda run: run[1] - run[0]))
+    return bool(longest >= max(_FLAT, _FLAT_PART * len(force)))
+
+
+def _edge(time: Floats, force: Floats, largest: float, noise: float) -> tuple[float, float]:
+    """Return when a force that rises to its largest value, at the end of the samples, has begun [s], and its standard deviation by noise.
+
+    The samples of the flank are placed on the rise of Hertz's force, over a time that is fitted with the begin.
+    """
+    below = np.flatnonzero(force < max(_ABOVE * noise, _FOOT * largest))
+    first = int(below[-1]) + 1 if below.size else 0
+    flank = np.arange(first, len(force))[force[first:] < _SHOULDER * largest]
+    if len(flank) < 2:  # between two samples, of which one is not above the noise
+        step = float(np.median(np.diff(time)))
+        return float(time[first]) - 0.5 * step, 0.5 * step
+    place, slope = hertz_rise(force[flank] / largest)
+    middle, weights = float(time[flank].mean()), 1.0 / slope
+    across = np.stack([np.ones(len(flank)), time[flank] - middle], axis=1)
+    inverse = np.linalg.inv((across * weights[:, None] ** 2).T @ across)
+    level, rate = inverse @ (across.T @ (weights**2 * place))
+    shift = level / rate
+    by_noise = noise / largest / rate * np.sqrt(np.array([1.0, -shift]) @ inverse @ np.array([1.0, -shift]))
+    return middle - float(shift), float(by_noise)
+
+
+def _largest(force: Floats, pulse: slice) -> tuple[float, float]:
+    """Return the largest value of a force between its samples, and the standard deviation by sampling.
+
+    It is the apex of a parabola through the samples near the maximum, or if they are few of a spline through all samples.
+    """
+    inside = force[pulse]
+    largest = float(inside.max())
+    top = np.flatnonzero(inside > _TOP * largest)
     if len(top) > _FEWEST:
-        across = number[top] - number[top].mean()
-        a, b, c = np.linalg.lstsq(np.vander(across, 3), force[top], rcond=None)[0]
-        largest = float(c - b * b / (4.0 * a)) if a < 0.0 else largest
-    return largest
+        across = top - top.mean()
+        a, b, c = np.linalg.lstsq(np.vander(across, 3), inside[top], rcond=None)[0]
+        return (float(c - b * b / (4.0 * a)) if a < 0.0 else largest), 0.0
+    from scipy.interpolate import CubicSpline  # imported late: few records need it
+
+    fine = np.linspace(pulse.start, pulse.stop - 1, _FINE * len(inside))
+    between = float(np.max(CubicSpline(np.arange(len(force)), force)(fine)))
+    return between, _BETWEEN * (between - largest) + _COARSE * between / len(inside) ** 2
 
 
 def _margin(begin: int, end: int) -> int:

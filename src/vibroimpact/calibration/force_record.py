@@ -18,10 +18,11 @@ from vibroimpact.errors import InputError
 _FEWEST = 5
 """Minimum number of samples of an impact."""
 
+_COARSE = 10
+"""Number of samples of a contact below which the largest force is doubted."""
+
 _MOST, _GAIN = 1.2, 0.03
 """Restitution above which a record is rejected, and the deviation of impulses from times of flight above which a warning is given."""
-
-_EDGE = 0.03  # uncertainty of the start and end of an impact, as a fraction of its duration
 
 
 def impacts_in_force(
@@ -74,9 +75,9 @@ def impacts_in_force(
     ([1.18], [100.0])
     """
     at, step, seen = sample_label(lines), float(np.median(np.diff(time))), find_pulses(time, force)
-    runs, ends = list(seen.runs), []
+    runs, cut = list(seen.runs), []
     if len(runs) > 1 and runs[-1][1] == len(force):  # cut off by the end of the record; its start still ends a flight
-        ends = [float(time[runs.pop()[0]])]
+        cut = [runs.pop()]
     for begin, end in runs:
         if begin == 0 or end == len(force):
             raise InputError(f"the record {'begins' if begin == 0 else 'ends'} in the middle of an impact, at {at(begin)}")
@@ -85,12 +86,24 @@ def impacts_in_force(
                 f"the impact at {at(begin)} has only {end - begin} samples, and it takes {_FEWEST}; sample faster, or smooth less"
             )
     pulses = evaluate_pulses(time, seen, runs)
-    begins = np.array([*(pulse.begin for pulse in pulses), *ends])
+    begins = np.array([pulse.begin for pulse in pulses])
+    unsure = np.array([pulse.begin_deviation for pulse in pulses])
+    if cut:  # its force stands out of the noise as late as that of the impact before
+        late = float(time[runs[-1][0]]) - pulses[-1].begin
+        begins, unsure = np.append(begins, time[cut[0][0]] - late), np.append(unsure, np.hypot(step, 0.5 * late))
+    clipped = [at(begin) for pulse, (begin, _) in zip(pulses, runs, strict=True) if pulse.clipped]
+    if clipped and len(pulses) == len(begins):  # the impulse of the last one is not known; its start still ends a flight
+        del pulses[-1], runs[-1]
+    if clipped and not pulses:
+        raise InputError(
+            f"the force is clipped at {clipped[0]}: its largest value is held, so that neither it nor the impulse is known; "
+            "record again with a larger range, or up to the next impact, from whose time the rebound follows"
+        )
     gaps = begins[1:] - np.array([pulse.begin + pulse.duration for pulse in pulses])[: len(begins) - 1]
     if gravity == 0.0 and len(gaps):
-        raise InputError(f"without gravity the sphere does not come back, and the record shows {len(runs) + len(ends)} impacts")
+        raise InputError(f"without gravity the sphere does not come back, and the record shows {len(runs) + len(cut)} impacts")
     flown = (flights or VacuumFlights(gravity)).end_speeds(gaps)
-    separation, deviation, doubts = _separations(pulses, flown, mass, gravity, first_speed, step)
+    separation, deviation, doubts = _separations(pulses, flown, unsure, mass, gravity, first_speed)
     number = len(pulses)
     speeds = np.append(first_speed, flown.end)[:number]
     for row, (before, after) in enumerate(zip(speeds, separation, strict=True)):
@@ -99,11 +112,23 @@ def impacts_in_force(
                 f"the impact at {at(runs[row][0])}: from {before:.4g} m/s the sphere would leave at {after:.4g} m/s; the force, "
                 "the mass or the drop can't be right"
             )
+    if clipped:
+        doubts += (
+            f"the force is clipped in {len(clipped)} impact{'s' if len(clipped) > 1 else ''}, first at {clipped[0]}: the largest forces "
+            "and the impulses are not known, and rebounds follow from the times of flight alone; record again with a larger range",
+        )
+    elif (fewest := min(pulses, key=lambda pulse: pulse.length)).length < _COARSE:
+        doubts += (
+            f"a contact of {1e3 * fewest.duration:.2g} ms has {fewest.length} samples: the largest force between them is known to "
+            f"{100.0 * fewest.largest_deviation / fewest.largest:.1g} % (one standard deviation); sample faster",
+        )
+    wanted = {"separation_speed": separation, "max_force": np.array([pulse.largest for pulse in pulses])}
     noises = own_noise({"separation_speed": deviation, "max_force": np.array([pulse.largest_deviation for pulse in pulses])})
+    if clipped:
+        del wanted["max_force"], noises["max_force"]
     back = np.zeros(number)
     back[:-1] = (flown.end_slope / flown.start_slope)[: number - 1]  # an error of the duration of a flight changes both of its speeds
     before_noise = of_the_impact_before(scaled(back, noises["separation_speed"]))
-    wanted = {"separation_speed": separation, "max_force": np.array([pulse.largest for pulse in pulses])}
     labels = tuple(f"impact {row + 1}, {at(begin)}" for row, (begin, _) in enumerate(runs))
     record = Record("force", tuple(pulse.samples for pulse in pulses))
     found = Observations(speeds, wanted, before_noise, noises, True, labels, noise_from="the noise of the record", doubts=doubts)
@@ -111,9 +136,9 @@ def impacts_in_force(
 
 
 def _separations(
-    pulses: list[Pulse], flown: EndSpeeds, mass: float, gravity: float, first_speed: float, step: float
+    pulses: list[Pulse], flown: EndSpeeds, begins: Floats, mass: float, gravity: float, first_speed: float
 ) -> tuple[Floats, Floats, tuple[str, ...]]:
-    """Return separation speeds [m/s], their standard deviations, and warnings.
+    """Return separation speeds [m/s], their standard deviations, and warnings; `begins` are the standard deviations of the touches [s].
 
     A speed before another impact follows from the time of flight, the last one from its impulse.
     """
@@ -121,12 +146,12 @@ def _separations(
     timed = len(flown.start)  # equal to the number of impacts if the record ends within a further one
     before, pairs = np.append(first_speed, flown.end)[:number], list(zip(pulses, flown.start, strict=False))
     expected = np.array([mass * (came + left + gravity * pulse.duration) for (pulse, left), came in zip(pairs, before, strict=False)])
-    edges = np.array([np.hypot(0.5 * step, _EDGE * pulse.duration) for pulse in pulses])
+    ends = np.array([pulse.end_deviation for pulse in pulses])
     doubts, scale, unsure = [], 1.0, 0.0
     if timed:
-        scales = expected / np.array([pulse.impulse for pulse, _ in pairs])
+        scales = np.array([come / pulse.impulse for come, (pulse, _) in zip(expected, pairs, strict=True) if not pulse.clipped] or [1.0])
         scale = float(scales.mean())
-        unsure = float(scales.std(ddof=1)) / np.sqrt(timed) if timed > 1 else 0.0
+        unsure = float(scales.std(ddof=1)) / np.sqrt(len(scales)) if len(scales) > 1 else 0.0
         if abs(scale - 1.0) > _GAIN:
             words = f"the impulses are {100.0 * (1.0 / scale - 1.0):+.1f} % off from those computed from the times of flight"
             more = "" if timed == number else " (the rebound of the last impact is corrected)"
@@ -137,7 +162,7 @@ def _separations(
             f"one impact alone: its rebound follows from the impulse, and 1 % in the scale of the force makes {per_cent:.2g} m/s of it"
         )
     # the start of a flight and its end are both uncertain; in a vacuum the derivative of the initial speed is g / 2
-    deviation = 2.0 * flown.start_slope * edges[:timed]
+    deviation = flown.start_slope * np.hypot(ends[:timed], begins[1 : timed + 1])
     if timed == number:
         return flown.start, deviation, tuple(doubts)
     last = pulses[-1]
@@ -149,4 +174,4 @@ def _separations(
             f"the force at rest wanders by {part:.2g} % of the largest beside the last impact, more than its noise does, which makes "
             f"{last.impulse_deviation / mass:.2g} m/s of the rebound uncertain"
         )
-    return np.append(flown.start, after), np.append(deviation, np.hypot(of_last, gravity * edges[-1])), tuple(doubts)
+    return np.append(flown.start, after), np.append(deviation, np.hypot(of_last, gravity * ends[-1])), tuple(doubts)

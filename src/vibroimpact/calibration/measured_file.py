@@ -23,6 +23,7 @@ from vibroimpact.calibration.section import FileTarget
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.pair import contact_pair
 from vibroimpact.cases.rigid import mass_of_sphere
+from vibroimpact.contact.power_law import HERTZ_TIME
 from vibroimpact.errors import InputError
 from vibroimpact.measurements.record_file import SPHERE_ACCELERATION, is_universal, read_universal_record
 from vibroimpact.measurements.table_file import TableFile, read_table_file, strictly_increasing
@@ -136,13 +137,14 @@ def _record_measurement(case: Case, record: Recorded, by_rebound: bool) -> Measu
     if "position" in values and (by_rebound or len(values) == 1):
         if case.drop.gravity == 0.0:
             raise InputError("without gravity a sphere rises for ever; a record of its position does not determine a rebound")
-        radius, gravity, position = case.sphere.radius, case.drop.gravity, values["position"]
+        radius, position, pair = case.sphere.radius, values["position"], contact_pair(case)
+        depth = (1.25 * pair.effective_mass / pair.hertz_stiffness) ** 0.4  # of an elastic impact at 1 m/s
+        sphere = {"radius": radius, "gravity": case.drop.gravity, "contact_duration": HERTZ_TIME * float(depth)}
 
         def in_position(flights: Flights | None) -> Observations:
-            speed = speed_at_touch(case, flights)
-            return impacts_in_position(time, position, radius=radius, gravity=gravity, first_speed=speed, lines=lines, flights=flights)
+            return impacts_in_position(time, position, **sphere, first_speed=speed_at_touch(case, flights), lines=lines, flights=flights)
 
-        return Measurement(in_position, float(position.max()) - radius)
+        return Measurement(in_position, float(np.ptp(position)))
     mass = float(contact_pair(case).effective_mass)
     force = values["force"] if "force" in values else mass_of_sphere(case) * values["sphere_acceleration"]
 

@@ -13,14 +13,22 @@ from vibroimpact.calibration.flights import Flights, VacuumFlights, vacuum_heigh
 from vibroimpact.calibration.noise import Noise, as_noise, no_noise, of_the_impact_before, own_noise, scaled
 
 
+class Correction(NamedTuple):
+    """What a record itself determines, and is corrected by: its value, standard deviation (0 if it is not estimated), and their unit."""
+
+    value: float
+    deviation: float
+    unit: str
+
+
 class Record(NamedTuple):
-    """A record over time: times [s] and forces above the baseline [N], one piece per impact; or positions [m] in one piece, with the time
-    at which the first flight from the plate begins [s].
+    """A record over time: times [s] and forces above the baseline [N], one piece per impact; or positions [m] in one piece, with the times
+    at which the flights from the plate begin [s]. It is corrected by what it determines itself.
     """
 
     quantity: Literal["force", "position"]
     pieces: tuple[tuple[Floats, Floats], ...]
-    begin: float = 0.0
+    begins: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -56,6 +64,9 @@ class Observations:
         The record in which they were found.
     notes : tuple of str
         How they were evaluated, as sentences.
+    corrections : mapping of str to Correction
+        What the record itself determines: of a position its "zero" [m], the "drift" of that [m/s], and its "clock", in seconds of the
+        record per second.
 
     Examples
     --------
@@ -78,6 +89,7 @@ class Observations:
     flights: Flights | None = None
     record: Record | None = None
     notes: tuple[str, ...] = ()
+    corrections: Mapping[str, Correction] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "speed_noise", as_noise(self.speed_noise))

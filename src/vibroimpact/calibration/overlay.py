@@ -88,16 +88,18 @@ def _middle(time: Floats, force: Floats) -> float:
 
 
 def _position(drop: Problem, seen: Observations, outcomes: Mapping[str, Floats]) -> Overlay:
-    """Return the record with the flights after each simulated impact, separated by the contact durations."""
+    """Return the record with the flight after each simulated impact, from when it begins in the record.
+
+    One after the other, they would show errors of their durations that add up.
+    """
     assert seen.record is not None
     radius, gravity = float(drop.sphere.contact_offset), float(drop.gravity)
     flying = seen.flights or VacuumFlights(gravity)
     time, position = seen.record.pieces[0]
-    simulated, begin, flights = np.full_like(time, np.nan), seen.record.begin, []
-    for rebound, lasting in zip(outcomes["rebound_height"], np.append(outcomes["duration"][1:], 0.0), strict=True):
+    simulated, flights = np.full_like(time, np.nan), []
+    for rebound, begin in zip(outcomes["rebound_height"], seen.record.begins, strict=True):
         flown = flying.flight(np.asarray(np.sqrt(2.0 * gravity * max(float(rebound) - radius, 0.0))))
         inside = (time >= begin) & (time <= begin + flown.duration)
         simulated[inside] = radius + flown.height - flying.depth_at(time[inside] - begin - flown.rise_time)[0]
         flights.append((begin, begin + float(flown.duration)))
-        begin = flights[-1][1] + float(lasting)
     return Overlay("", "position", (time, position), (time, simulated), flights=tuple(flights))

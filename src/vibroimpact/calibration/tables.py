@@ -60,7 +60,7 @@ def differences_tables(found: Calibration) -> dict[str, Cells]:
         cells = np.reshape(_off(np.concatenate([ways[way] for way in WAYS])), (len(WAYS), number))
         rows = [[str(impact + 1), *cells[:, impact].tolist()] for impact in range(number)]
         tables[COMPARED[name]] = ([("Impact", ""), *((way, "%") for way in WAYS)], shortened(rows))
-    return tables if len(found.impacts[1]) > 1 else {}
+    return tables if len(found.drops["variable"]["impact"]) > 1 else {}
 
 
 def function_words(found: Calibration) -> str:

@@ -9,10 +9,11 @@ import numpy as np
 from numpy.polynomial import polynomial
 
 from vibroimpact.arrays import Floats, Indices
-from vibroimpact.calibration.calibrated_drops import impact_count
+from vibroimpact.calibration.calibrated_drops import impact_count, is_other_drop
 from vibroimpact.calibration.fitting import Fit
 from vibroimpact.calibration.matching import Tunable, match
 from vibroimpact.calibration.observations import Observations
+from vibroimpact.calibration.single_impacts import first_approach_speed
 from vibroimpact.dynamics.problem import Problem
 
 _DRAWN_VALUES = 2000  # values computed by the default bootstrap, so that it takes seconds
@@ -146,6 +147,17 @@ def undetermined_doubts(
         known = f"the highest coefficient is {highest:.3g}, known to {half:.2g} at {percent}"
         told.append(f"the measurement does not justify degree {fit.function.degree}: {known}; use a lower degree")
     return told
+
+
+def other_drop_doubts(problem: Problem, seen: Observations) -> list[str]:
+    """Return a warning if successive impacts were measured of another drop than that of the case."""
+    if not is_other_drop(problem, seen):
+        return []
+    own = first_approach_speed(problem)
+    return [
+        f"the first impact that was measured is at {seen.speeds[0]:.4g} m/s, and that of the drop at {own:.4g} m/s: the calibrated case "
+        f"has the values of the polynomial at its own speeds; drop.speed = {seen.speeds[0]:.4g} makes it the drop measured"
+    ]
 
 
 def fit_doubts(

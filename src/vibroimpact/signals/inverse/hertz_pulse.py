@@ -46,6 +46,28 @@ def hertz_pulse(time: Floats) -> Floats:
     return np.asarray(np.where(inside, 0.5 * beta(0.4, 0.5) * depth**0.6, 0.0))
 
 
+def hertz_rise(part: Floats) -> tuple[Floats, Floats]:
+    """Return the time at which an elastic Hertzian force has risen to a part of its largest value, over the duration, and the derivative.
+
+    Parameters
+    ----------
+    part : array
+        Force over the largest force, in (0, 1).
+
+    Examples
+    --------
+    >>> time, _ = hertz_rise(np.array([0.5]))
+    >>> top = hertz_pulse(np.array([0.5]))
+    >>> round(float(time[0]), 4), round(float((hertz_pulse(time) / top)[0]), 6)
+    (0.2061, 0.5)
+    """
+    from scipy.special import beta, betainc
+
+    depth = part ** (5.0 / 3.0)
+    slope = 5.0 / 6.0 / beta(0.4, 0.5) / (np.cbrt(part) * np.sqrt(1.0 - depth))
+    return np.asarray(0.5 * betainc(0.4, 0.5, depth)), np.asarray(slope)
+
+
 def hertz_impulses(duration: float) -> tuple[Floats, Floats]:
     r"""Return times since first touch [s] and impulses, of sum one, that stand for a Hertzian pulse.
 
