@@ -40,7 +40,8 @@ def table_records(path: Path) -> Iterator[Record]:
         raise InputError(f"{path}: there is no column time [s] in the header; the rate follows from the times of the samples")
     if len(names) < 2:
         raise InputError(f"{path}: there is no column beside the time; each other one is a channel, such as geophone [V]")
-    table = read_table_file(path, {name: "" if unit == "1" else unit.replace("s2", "s^2") for name, unit in names.items()})
+    doubts: list[str] = []
+    table = read_table_file(path, {name: "" if unit == "1" else unit.replace("s2", "s^2") for name, unit in names.items()}, doubts)
     time = table.columns[_TIME]
     try:
         rate = rate_of(time)
@@ -48,4 +49,4 @@ def table_records(path: Path) -> Iterator[Record]:
         raise with_path(path, error) from None
     for name, unit in names.items():
         if name != _TIME:
-            yield Record(name, table.columns[name], rate, unit, float(time[0]))
+            yield Record(name, table.columns[name], rate, unit, float(time[0]), doubts=tuple(doubts))
