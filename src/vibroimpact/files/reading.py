@@ -8,7 +8,7 @@ from __future__ import annotations
 import os
 import stat
 from codecs import register_error
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from contextlib import contextmanager
 from hashlib import sha256
 from io import BufferedReader, FileIO, TextIOWrapper
@@ -114,7 +114,7 @@ def read_text_bytes(path: str | PathLike[str], kind: FileKind) -> bytes:
     return b"".join(blocks)
 
 
-def text_lines(path: str | PathLike[str], kind: FileKind, longest: int, doubts: list[str] | None = None) -> Iterator[str]:
+def text_lines(path: str | PathLike[str], kind: FileKind, longest: int, doubts: list[str] | None = None) -> Generator[str, None, None]:
     """Yield the lines of a text file in blocks; of a line `longest` + 1 characters at most.
 
     It is UTF-8, with or without byte-order mark, or UTF-16 with one. A byte that is not UTF-8 but a printable character of Latin-1, as
