@@ -13,6 +13,7 @@ import vibroimpact as vi
 from vibroimpact.signals import registry as module
 from vibroimpact.signals.block import Block
 from vibroimpact.signals.feature import Family, Feature
+from vibroimpact.signals.feature_table import features_at_rest
 from vibroimpact.signals.reasons import Reason
 
 FEATURES = vi.features()
@@ -79,11 +80,29 @@ def test_amplitudes_scale_and_shapes_do_not(factor: float) -> None:
 
 def test_features_without_offset_do_not_feel_it() -> None:
     signals = np.stack([ringing(seed) for seed in range(5)])
-    before, after = described(signals), described(signals + 5.0)
+    before, after = at_rest(signals), at_rest(signals + 5.0)
     changed = {name for name in FEATURES if not np.allclose(before[name], after[name], rtol=1e-9, equal_nan=True)}
     assert changed.isdisjoint(name for name, feature in FEATURES.items() if feature.offset_free)
     # and what is said to feel it does, but for what no offset of this signal changes
     assert {name for name, feature in FEATURES.items() if not feature.offset_free} - changed <= {"clipped_part"}
+
+
+def at_rest(signals: np.ndarray) -> dict[str, np.ndarray]:
+    values, _ = features_at_rest(signals, signals, RATE, FEATURES, None, 5e-3)
+    return dict(zip(FEATURES, values.T, strict=True))
+
+
+@pytest.mark.parametrize("baseline", [5.0, -0.3, np.linspace(-2.0, 2.0, SAMPLES), 3.0 * np.exp(-TIME / 0.02) - 1.0])
+@pytest.mark.parametrize("feature", FEATURES)
+def test_no_feature_feels_a_baseline(feature: str, baseline: float | np.ndarray) -> None:
+    quiet = np.stack([ringing(seed) for seed in range(5)])
+    before, after = described(quiet, threshold=0.05), described(quiet + baseline, threshold=0.05)
+    assert not before.offset.any()
+    np.testing.assert_allclose(after.offset, np.mean(baseline), atol=5e-3)
+    np.testing.assert_allclose(after.drift, np.ptp(baseline), atol=0.05)
+    scale = np.abs(before[feature]).max()
+    loose = {"zero_crossing_rate": 0.5, "skewness": 0.1, "mean": 3.0}.get(feature, 0.06)
+    np.testing.assert_allclose(after[feature], before[feature], atol=loose * scale + 1e-3, err_msg=feature)
 
 
 def test_time_counts_from_the_onset() -> None:

@@ -139,7 +139,7 @@ FILES = [
     ("", "the file is empty"),
     ("# only a comment\n\n", "the file is empty"),
     ("approach_speed_m_s,restitution\n", "there are no rows under the header"),
-    ("1,0.7\n2,0.6\n", "line 1: no column is known among 1, 0.7; known are time [s], position [m], force [N]"),
+    ("1,0.7\n2,0.6\n", "line 1: it has 2 numbers, and no header is above them; write a header, such as time [s],force [N]"),
     ("restitutoin\n0.7\n", 'Did you mean "restitution"?'),
     ("approach_speed,restitution\n1,0.7\n", 'line 1, column "approach_speed": the unit is missing; write it in brackets, such as'),
     ("approach_speed [m],restitution\n1,0.7\n", 'line 1, column "approach_speed [m]"'),
@@ -194,7 +194,9 @@ def test_one_of_two_deviations(tmp_path: Path) -> None:
 
 def test_files_that_are_none(tmp_path: Path) -> None:
     assert "this is a directory; a table is a CSV file" in refused({"target": {"file": str(tmp_path)}})
-    assert "the file is not UTF-8 text" in refused({"target": {"file": file_with(tmp_path, ROWS, "utf-16")}})
+    assert "the file is not UTF-8 text" in refused({"target": {"file": file_with(tmp_path, "# \u00b5\n" + ROWS, "latin-1")}})
+    # UTF-16 is read
+    assert '"x" is not a number' in refused({"target": {"file": file_with(tmp_path, ROWS.replace("0.7", "x"), "utf-16")}})
 
 
 # --- records that do not show what they should -------------------------------------------------------------------------------------------

@@ -53,7 +53,8 @@ def test_a_table_is_written(call, taps: Path, tmp_path: Path) -> None:
     assert (right["peak"], right["kurtosis"]) == ("0.0", "")
     assert right["lacking"].startswith("all samples are the same: crest_factor ")
     header = list(left)
-    assert [name.startswith(one) for name, one in zip(header[6:-1], vi.features(), strict=True)] == len(vi.features()) * [True]
+    assert [left[name] for name in header[-3:-1]] == ["0.0", "0.0"]
+    assert [name.startswith(one) for name, one in zip(header[6:-3], vi.features(), strict=True)] == len(vi.features()) * [True]
 
 
 def test_an_existing_file_stays(call, taps: Path, tmp_path: Path) -> None:
@@ -64,7 +65,7 @@ def test_an_existing_file_stays(call, taps: Path, tmp_path: Path) -> None:
     assert "exists; take another name, or --force" in err
     assert target.read_text() == "mine"
     assert call(taps, "-o", target, "--force", "--only", "rms")[0] == 0
-    assert target.read_text().startswith("file,channel,signal,start_s,rate_Hz,unit,rms,lacking\n")
+    assert target.read_text().startswith("file,channel,signal,start_s,rate_Hz,unit,rms,offset,drift,lacking\n")
 
 
 def test_json_is_the_table(call, taps: Path, tmp_path: Path) -> None:

@@ -63,6 +63,8 @@ def table_document(table: RecordTable) -> dict[str, Any]:
                 "rate_Hz": one.rate,
                 "unit": one.unit,
                 **dict(zip(table.columns, values, strict=True)),
+                "offset": table.offset[row],
+                "drift": table.drift[row],
                 "lacking": table.lacking(row),
             }
             for row, (one, number, values) in enumerate(zip(table.records, table.numbers, table.values.tolist(), strict=True))
@@ -80,6 +82,10 @@ def table_summary(table: RecordTable) -> RenderableType:
         shown = [digits(float(one)) for one in np.percentile(there, (0, 50, 100), method="nearest")] if there.size else [""] * 3
         lacking = "; ".join(f"{count}: {Reason(code).text}" for code, count in Counter(reasons[reasons > 0].tolist()).items())
         cells.append((name, features()[name].unit_for(unit), *(shown if len(table.records) > 1 else shown[:1]), lacking))
+    for name, removed in (("offset", table.offset), ("drift", table.drift)):
+        if any(removed):
+            shown = [digits(float(one)) for one in np.percentile(removed, (0, 50, 100), method="nearest")]
+            cells.append((f"{name} removed", unit, *(shown if len(table.records) > 1 else shown[:1]), ""))
     heads = ("least", "median", "largest") if len(table.records) > 1 else ("value",)
     names, of_units, *numbers, lacking_cells = zip(*cells, strict=True)
     columns = [TerminalColumn("feature", names, text=True), *(TerminalColumn(head, one) for head, one in zip(heads, numbers, strict=True))]

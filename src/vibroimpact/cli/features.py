@@ -15,6 +15,9 @@ from vibroimpact.errors import InputError
 if TYPE_CHECKING:
     from vibroimpact.signals.record import Record
 
+_TOLD = 10
+"""Doubts about records that are told one by one."""
+
 
 @app.command()
 def features(
@@ -90,17 +93,18 @@ def features(
 def _records(paths: list[Path], threshold: float | None, dead_time: float, window: float | None, *, packets: bool) -> Iterator[Record]:
     """Yield the records of files and folders, or their windows from the onset, or their packets."""
     from vibroimpact.files.reading import with_path
+    from vibroimpact.signals.baseline import without_baseline
     from vibroimpact.signals.onset import from_onset
     from vibroimpact.signals.packets import packet_records
     from vibroimpact.signals.read_records import read_records
 
     told: set[str] = set()
     for path in paths:
-        for record in read_records(path):
+        for record in map(without_baseline, read_records(path)):
             for doubt in record.named_doubts:
-                if doubt not in told:
-                    told.add(doubt)
+                if doubt not in told and len(told) < _TOLD:
                     note(f"doubt: {doubt}")
+                told.add(doubt)
             try:
                 if packets:
                     yield from packet_records(record, threshold, dead_time)
@@ -108,3 +112,5 @@ def _records(paths: list[Path], threshold: float | None, dead_time: float, windo
                     yield record if window is None else from_onset(record, window, threshold=threshold)
             except InputError as error:
                 raise with_path(record.source, error) from None
+    if len(told) > _TOLD:
+        note(f"doubt: there are {len(told) - _TOLD:,} further doubts of this kind; the columns offset and drift have all of them")

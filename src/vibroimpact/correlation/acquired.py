@@ -13,9 +13,10 @@ from vibroimpact.dynamics.sensors.sensor import Sensor
 from vibroimpact.errors import InputError
 from vibroimpact.identification.measured import on_common_time, sensors_of
 from vibroimpact.shown import shown
+from vibroimpact.signals.baseline import without_baseline
 from vibroimpact.signals.onset import onset_time
 from vibroimpact.signals.packets import find_packets
-from vibroimpact.signals.record import Record
+from vibroimpact.signals.record import Record, Removed
 
 _SAME_HIT = 0.05
 """Pulses of force that follow each other within so long are one hit [s]."""
@@ -47,6 +48,10 @@ class Acquired:
         The sample after which the force of each hit is over; empty without a force.
     pulses : int
         Pulses of force: more than there are hits, if a hammer hit twice.
+    recorded : array, shape (S or S + 1, samples)
+        The samples with their baselines, as they were recorded; those of the force last.
+    removed : tuple of Removed
+        The baselines that were removed, in the same order.
     """
 
     sensors: tuple[Sensor, ...]
@@ -56,6 +61,8 @@ class Acquired:
     onsets: tuple[int, ...]
     ends: tuple[int, ...]
     pulses: int
+    recorded: Floats
+    removed: tuple[Removed, ...]
 
     @property
     def rate(self) -> float:
@@ -94,7 +101,7 @@ def acquired_of(sensors: Sequence[Sensor], records: Sequence[Record], force: Rec
         if not np.isfinite(one.value).all():
             raise InputError(f"a sample of the record {shown(one.name)} is not a finite number; give it without gaps")
     rate = every[0].rate if every else 1.0
-    every = [replace(one, rate=rate) for one in every]
+    every = [without_baseline(replace(one, rate=rate)) for one in every]
     used = sensors_of([replace(sensor, rate=rate) for sensor in sensors], every[: len(records)])
     if force is not None and force.unit != "N":
         raise InputError(f"the record {shown(force.name)} is in {force.unit}; the force of a hammer is in N")
@@ -104,15 +111,15 @@ def acquired_of(sensors: Sequence[Sensor], records: Sequence[Record], force: Rec
     for one, value in zip(every, whole, strict=True):
         if np.ptp(value) == 0.0:
             raise InputError(f"the record {shown(one.name)} is constant where it overlaps with the others; it has no onset")
-    # without the offset of an amplifier; a median, since the plate is at rest or rings about it
-    whole = whole - np.median(whole, axis=1, keepdims=True)
+    recorded, _ = on_common_time([one if one.recorded is None else replace(one, value=one.recorded) for one in every])
+    removed = tuple(one.removed or Removed(0.0, 0.0) for one in every)
     value = whole[: len(records)]
     if force is None:
-        onset = min(onset_time(Record(one.name, part, rate, one.unit)) for one, part in zip(records, value, strict=True))
-        return Acquired(used, value, None, start, (round(onset * rate),), (), 0)
+        onset = min(onset_time(Record(one.name, part, rate, one.unit, removed=one.removed)) for one, part in zip(every, value, strict=True))
+        return Acquired(used, value, None, start, (round(onset * rate),), (), 0, recorded, removed)
     push = whole[-1]
-    pulses = Record(force.name, push, rate, "N")
+    pulses = Record(force.name, push, rate, "N", removed=removed[-1])
     hits = find_packets(pulses, dead_time=_SAME_HIT)
     number = len(find_packets(pulses, dead_time=_APART).first)
     onsets, ends = (tuple(part.tolist()) for part in (hits.first, hits.last))
-    return Acquired(used, value, push, start, onsets, ends, number)
+    return Acquired(used, value, push, start, onsets, ends, number, recorded, removed)

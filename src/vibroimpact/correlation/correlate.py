@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,11 +19,12 @@ from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.sensors.antialias import HALF_LENGTH
 from vibroimpact.dynamics.sensors.sensor import Sensor
 from vibroimpact.errors import InputError
+from vibroimpact.signals.baseline import without_baseline
 from vibroimpact.signals.decay.find import DecayMode, modes_in_decay
 from vibroimpact.signals.delay import Delay, band_limited, delay_between
 from vibroimpact.signals.frac import frac
 from vibroimpact.signals.onset import onset_time
-from vibroimpact.signals.record import Record
+from vibroimpact.signals.record import Record, Removed
 
 _ALIGNED = 5e-3
 """Time from the first touch on by which records are aligned [s]: later, small errors of frequencies have added up."""
@@ -70,6 +71,8 @@ class Correlation:
         Frequency response assurance criterion over the band, and over each octave; NaN with fewer than four frequencies in it.
     modes : tuple of ModePair
         The modes of the case and of the records.
+    removed : dict of str to Removed
+        The baseline that was removed from each record, that of the force last.
     doubts : tuple of str
         What is not sure, and why.
 
@@ -106,6 +109,7 @@ class Correlation:
     frac: Floats
     octave_frac: Floats
     modes: tuple[ModePair, ...]
+    removed: Mapping[str, Removed]
     doubts: tuple[str, ...]
 
     @property
@@ -178,6 +182,7 @@ def correlate(
     (True, 1.0)
     """
     problem = plate_problem(case, progress)
+    records, force = [without_baseline(one) for one in records], None if force is None else without_baseline(force)
     acquired = acquired_of(problem.sensors, records, force)
     used = _band(problem, acquired, band)
     rate, samples = acquired.rate, acquired.value.shape[1]
@@ -219,6 +224,7 @@ def correlate(
         frac=frac(*both),
         octave_frac=np.stack([frac(both[0][:, part], both[1][:, part]) if part.sum() >= _FEW else untold for part in parts], axis=1),
         modes=pairs_of(problem, acquired.sensors, decays, used),
+        removed={one.name: part for one, part in zip(heard, acquired.removed, strict=True)},
         doubts=(*of_files, *doubts_about(problem, acquired, delay, used, acting.over)),
     )
 

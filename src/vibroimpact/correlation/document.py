@@ -143,6 +143,7 @@ def summary_of_correlation(found: Correlation) -> dict[str, Any]:
             }
             for sensor, sign, alike, scale, part, of, octaves in records
         },
+        "removed": {name: {"offset": one.offset, "drift": one.drift} for name, one in found.removed.items()},
         "modes": mode_table(found),
         "damping": damping_field(found.modes),
         "doubts": list(found.doubts),

@@ -42,13 +42,15 @@ def doubts_about(problem: Problem, acquired: Acquired, delay: Delay, band: tuple
         others = ", ".join(f"{rate:g}" for rate in sorted(rates))
         words = "it was simulated at the rate of the records"
         yield f"the records have {acquired.rate:g} samples per second, and the case specifies {others}: {words}"
-    for sensor, value, sign, alike in zip(acquired.sensors, acquired.value, delay.polarity, delay.correlation, strict=True):
+    of_sensors = acquired.recorded[: len(acquired.sensors)]
+    parts = zip(acquired.sensors, acquired.value, of_sensors, delay.polarity, delay.correlation, strict=True)
+    for sensor, value, recorded, sign, alike in parts:
         name = shown(sensor.name)
         if sign < 0.0:
             yield f"the record {name} has inverted polarity; its sign is changed"
         if alike < _ALIKE:
             yield f"the first parts of {name} and of its simulation differ (correlation {alike:.2f}): the delay may be wrong by a period"
-        yield from _clipped(f"the record {name}", value, acquired.rate)
+        yield from _clipped(f"the record {name}", value, recorded, acquired.rate)
     if acquired.force is not None:
         yield from _of_force(acquired, delay, band, over)
     assert problem.plate.modes is not None
@@ -57,8 +59,8 @@ def doubts_about(problem: Problem, acquired: Acquired, delay: Delay, band: tuple
         yield f"the modes of the case end at {highest:.5g} Hz, and the band at {band[1]:.5g} Hz: ask for more modes"
 
 
-def _clipped(what: str, value: np.ndarray, rate: float) -> Iterator[str]:
-    part = float(CLIPPING.of(Block(value[None], rate))[0, 0])
+def _clipped(what: str, value: np.ndarray, recorded: np.ndarray, rate: float) -> Iterator[str]:
+    part = float(CLIPPING.of(Block(value[None], rate, recorded=recorded[None]))[0, 0])
     if part > 0.0:
         yield f"{what} is clipped: {max(1, round(part * len(value)))} samples lie at its extremes; damping is estimated from what follows"
 
@@ -66,7 +68,7 @@ def _clipped(what: str, value: np.ndarray, rate: float) -> Iterator[str]:
 def _of_force(acquired: Acquired, delay: Delay, band: tuple[float, float], over: float) -> Iterator[str]:
     """Yield the doubts about the force of a hammer."""
     assert acquired.force is not None
-    yield from _clipped("the force", acquired.force, acquired.rate)
+    yield from _clipped("the force", acquired.force, acquired.recorded[-1], acquired.rate)
     if (delay.polarity < 0.0).all():
         yield "all records have inverted polarity: the sign of the force may be wrong"
     samples = delay.time * acquired.rate

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import os
 import stat
-from collections.abc import Iterator
+from codecs import register_error
+from collections.abc import Generator, Iterator
 from contextlib import contextmanager
 from hashlib import sha256
 from io import BufferedReader, FileIO, TextIOWrapper
@@ -113,8 +114,20 @@ def read_text_bytes(path: str | PathLike[str], kind: FileKind) -> bytes:
     return b"".join(blocks)
 
 
-def text_lines(path: str | PathLike[str], kind: FileKind, longest: int) -> Iterator[str]:
-    """Yield the lines of a UTF-8 file, with or without byte-order mark, in blocks; of a line `longest` + 1 characters at most.
+def text_lines(path: str | PathLike[str], kind: FileKind, longest: int, doubts: list[str] | None = None) -> Generator[str, None, None]:
+    """Yield the lines of a text file in blocks; of a line `longest` + 1 characters at most.
+
+    It is UTF-8, with or without byte-order mark, or UTF-16 with one. A byte that is not UTF-8 but a printable character of Latin-1, as
+    older programs write units, is read as that.
+
+    Parameters
+    ----------
+    path, kind
+        As those of `read_text`.
+    longest : int
+        Characters of a line.
+    doubts : list of str, optional
+        A sentence on the first byte that is read as Latin-1 is added to it; without it such a byte is refused.
 
     Raises
     ------
@@ -123,10 +136,9 @@ def text_lines(path: str | PathLike[str], kind: FileKind, longest: int) -> Itera
     """
     with opened(path, kind) as file:
         buffered = BufferedReader(file, _BLOCK)
-        if buffered.peek(2).startswith(_UTF16):
-            raise InputError(_SAVE_AS_UTF8)
-        text = TextIOWrapper(buffered, encoding="utf-8-sig", newline=None)
-        left = kind.largest
+        encoding = "utf-16" if buffered.peek(2).startswith(_UTF16) else "utf-8-sig"
+        text = TextIOWrapper(buffered, encoding=encoding, errors="strict" if doubts is None else _OR_LATIN_1, newline=None)
+        left, number = kind.largest, 0
         try:
             while line := text.readline(longest + 1):
                 left -= len(line)
@@ -134,9 +146,35 @@ def text_lines(path: str | PathLike[str], kind: FileKind, longest: int) -> Itera
                     raise _too_large(kind)
                 if "\0" in line:
                     raise InputError(f"this is not a text file; {kind.what}")
+                number += 1
+                if doubts is not None and not line.isascii() and (place := _latin_1_in(line)) is not None:
+                    line, byte = line.translate(_FROM_LATIN_1), ord(line[place]) - _PRIVATE
+                    if not doubts:
+                        words = f'line {number} has the byte {byte:02X}, which is not UTF-8: it is read as "{chr(byte)}" of Latin-1'
+                        doubts.append(f"{words}; save the file as UTF-8 if it should be another")
                 yield line
-        except UnicodeDecodeError:
+        except UnicodeError:
+            if encoding == "utf-16":
+                raise InputError("the file begins as UTF-16 text and is damaged; save it as UTF-8") from None
             raise _not_utf8(kind) from None
+
+
+def _or_latin_1(error: UnicodeError) -> tuple[str, int]:
+    """Decode a byte that is not UTF-8 to a mark of its own, if it is a printable character of Latin-1."""
+    if not isinstance(error, UnicodeDecodeError) or error.object[error.start] < _FIRST_PRINTABLE:
+        raise error
+    return chr(_PRIVATE + error.object[error.start]), error.start + 1
+
+
+def _latin_1_in(line: str) -> int | None:
+    """Return the place of the first byte of Latin-1 in a line."""
+    return next((place for place, one in enumerate(line) if ord(one) in _FROM_LATIN_1), None)
+
+
+_OR_LATIN_1, _PRIVATE, _FIRST_PRINTABLE = "vibroimpact-or-latin-1", 0x10FF00, 0xA0
+"""Name of the decoding, and the characters for private use that mark its bytes until a line is complete."""
+_FROM_LATIN_1 = {_PRIVATE + byte: byte for byte in range(_FIRST_PRINTABLE, 0x100)}
+register_error(_OR_LATIN_1, _or_latin_1)
 
 
 def decoded(data: bytes, kind: FileKind) -> str:

@@ -50,8 +50,16 @@ def summary_of_identification(found: Identification) -> dict[str, Any]:
         "estimates": {name: {"value": one.value, "low": one.interval[0], "high": one.interval[1]} for name, one in found.estimates.items()},
         "other_places_m": [list(one.place) for one in found.search.candidates[1:]],
         "records": {
-            sensor.name: {"noise": float(noise), "left": float((part**2).mean() ** 0.5), "rms": float((value**2).mean() ** 0.5)}
-            for sensor, noise, part, value in zip(measured.sensors, measured.noise, left, measured.value, strict=True)
+            sensor.name: {
+                "noise": float(noise),
+                "left": float((part**2).mean() ** 0.5),
+                "rms": float((value**2).mean() ** 0.5),
+                "offset": removed.offset,
+                "drift": removed.drift,
+            }
+            for sensor, noise, part, value, removed in zip(
+                measured.sensors, measured.noise, left, measured.value, measured.removed, strict=True
+            )
         },
         "doubts": list(found.doubts),
     }

@@ -17,6 +17,7 @@ from vibroimpact.identification.measured import Measured, measured_of
 from vibroimpact.identification.plate import Place, Plate, plate_of
 from vibroimpact.identification.pulses import Search, search_place
 from vibroimpact.identification.sphere import SphereFit, fit_sphere
+from vibroimpact.signals.baseline import without_baseline
 from vibroimpact.signals.estimate import Estimate
 from vibroimpact.signals.record import Record
 
@@ -168,6 +169,7 @@ def identify_on(plate: Plate, records: Sequence[Record], place: Place | None = N
     InputError
         As `identify`.
     """
+    records = [without_baseline(record) for record in records]
     measured, search = _started(plate, records, place)
     sphere = fit_sphere(plate, measured, search.candidates[0], place)
     force = force_behind(plate, measured, sphere.problem, float(sphere.parameters[4]), float(sphere.force.facts[2]))

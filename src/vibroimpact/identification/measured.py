@@ -12,8 +12,9 @@ from vibroimpact.dynamics.sensors.antialias import HALF_LENGTH
 from vibroimpact.dynamics.sensors.sensor import Sensor
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.shown import shown
+from vibroimpact.signals.baseline import without_baseline
 from vibroimpact.signals.onset import onset_time
-from vibroimpact.signals.record import Record
+from vibroimpact.signals.record import Record, Removed
 
 _LEAST = 64
 """Least number of samples from first touch on."""
@@ -47,6 +48,8 @@ class Measured:
         Standard deviation of the noise of each.
     quiet : bool
         Whether the noise is that before first touch; else it is a guess.
+    removed : tuple of Removed
+        The baselines that were removed from the records.
     """
 
     sensors: tuple[Sensor, ...]
@@ -56,6 +59,7 @@ class Measured:
     onset: float
     noise: Floats
     quiet: bool
+    removed: tuple[Removed, ...]
 
     @property
     def band(self) -> float:
@@ -64,7 +68,7 @@ class Measured:
 
 
 def measured_of(sensors: Sequence[Sensor], records: Sequence[Record], window: float) -> Measured:
-    """Return records around their first touch, for the sensors that they are named after.
+    """Return records around their first touch, without their baselines, for the sensors that they are named after.
 
     Parameters
     ----------
@@ -83,6 +87,7 @@ def measured_of(sensors: Sequence[Sensor], records: Sequence[Record], window: fl
     """
     used = sensors_of(sensors, records)
     rate = used[0].rate
+    records = [without_baseline(record) for record in records]
     whole, start = on_common_time(records)
     end = start + whole.shape[1] / rate
     onset = min(onset_time(record) for record in records)
@@ -96,7 +101,9 @@ def measured_of(sensors: Sequence[Sensor], records: Sequence[Record], window: fl
     noise = np.std(whole[:, :first], axis=1) if quiet else np.zeros(len(whole))
     rms = np.sqrt(np.mean(value**2, axis=1))
     quiet = bool(quiet and np.all(noise > 1e-9 * rms))
-    return Measured(used, value, rate, start + first / rate, onset - start - first / rate, noise if quiet else _UNKNOWN * rms, quiet)
+    removed = tuple(record.removed or Removed(0.0, 0.0) for record in records)
+    deviation = noise if quiet else _UNKNOWN * rms
+    return Measured(used, value, rate, start + first / rate, onset - start - first / rate, deviation, quiet, removed)
 
 
 def sensors_of(sensors: Sequence[Sensor], records: Sequence[Record]) -> tuple[Sensor, ...]:

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import csv
 import re
 from array import array
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import closing
 from dataclasses import dataclass
-from io import StringIO
 from math import isfinite
 from os import PathLike
 from pathlib import Path
@@ -16,7 +15,8 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError, did_you_mean
-from vibroimpact.files.reading import FileKind, beginning, decoded, read_text_bytes, text_lines, with_path
+from vibroimpact.files.reading import FileKind, text_lines, with_path
+from vibroimpact.measurements.table_layout import fields_of, table_layout
 from vibroimpact.shown import shortened, shown
 from vibroimpact.units.reading import to_si
 
@@ -28,7 +28,6 @@ MOST_LINES = 10_000_000
 
 _LARGEST_NUMBER = 1e30  # so that powers of the values do not overflow
 _LONGEST = 100_000  # characters of a line
-_MOST_COLUMNS = 1000
 _MOST_NAMED = 12  # columns that a message names
 _LONG_NAME = 40  # characters of a name in a message
 _ENDINGS = {
@@ -60,11 +59,12 @@ class TableFile:
     empty: Sequence[int] = ()
 
 
-def read_table_file(path: str | PathLike[str], units: Mapping[str, str]) -> TableFile:
+def read_table_file(path: str | PathLike[str], units: Mapping[str, str], doubts: list[str] | None = None) -> TableFile:
     """Read the known columns of a CSV file.
 
-    The first line that is not a comment (#) is the header, with column names and units: `time_s`, `time [ms]`, `force (kN)`. Fields are
-    separated by commas, semicolons or tabs; with semicolons or tabs a comma may be the decimal point.
+    The first line that is not a comment (#) is the header, with column names and units: `time_s`, `time [ms]`, `force (kN)`; how other
+    headers are found says `table_layout`. Fields are separated by commas, semicolons or tabs, or by blanks; a comma that does not separate
+    them may be the decimal point.
 
     Parameters
     ----------
@@ -72,6 +72,8 @@ def read_table_file(path: str | PathLike[str], units: Mapping[str, str]) -> Tabl
         The file.
     units : mapping of str to str
         The SI unit of each known column; "" for a plain number.
+    doubts : list of str, optional
+        Where sentences are told that are added to it; without it a file that is read only with a doubt is refused.
 
     Raises
     ------
@@ -89,11 +91,7 @@ def read_table_file(path: str | PathLike[str], units: Mapping[str, str]) -> Tabl
     """
     file = Path(path)
     try:
-        rows = _rows(text_lines(file, TABLE, _LONGEST))
-        number, first = next(rows, (0, ""))
-        if not first:
-            raise InputError("the file is empty")
-        header, mark = _header(number, first)
+        number, header, mark, rows = table_layout(_numbered(text_lines(file, TABLE, _LONGEST, doubts)))
         places, factors = _places(number, header, units)
         found: list[array[float]] = [array("d") for _ in places]
         lines, empty, last = array("q"), array("q"), number
@@ -101,7 +99,7 @@ def read_table_file(path: str | PathLike[str], units: Mapping[str, str]) -> Tabl
             if not line:
                 empty.append(number)
                 continue
-            cells = line.split(mark) if '"' not in line else next(csv.reader([line], delimiter=mark))
+            cells = fields_of(line, mark)
             if len(cells) > len(header):
                 hint = "; where a comma is the decimal point, semicolons separate the fields" if mark == "," else ""
                 raise InputError(f"line {number}: there are {len(cells)} fields, and the header has {len(header)}{hint}")
@@ -128,11 +126,8 @@ def header_of(path: str | PathLike[str]) -> list[str]:
     """
     file = Path(path)
     try:
-        text = decoded(beginning(file, TABLE, _LONGEST).rpartition(b"\n")[0] or read_text_bytes(file, TABLE), TABLE)
-        number, first = next(_rows(StringIO(text, newline=None)), (0, ""))
-        if not first:
-            raise InputError("the file is empty")
-        return _header(number, first)[0]
+        with closing(text_lines(file, TABLE, _LONGEST, [])) as lines:
+            return table_layout(_numbered(lines)).header
     except InputError as error:
         raise with_path(file, error) from None
 
@@ -158,29 +153,14 @@ def strictly_increasing(table: TableFile, column: str) -> TableFile:
     return TableFile(table.path, {name: values[kept] for name, values in table.columns.items()}, lines)
 
 
-def _rows(text: Iterable[str]) -> Iterator[tuple[int, str]]:
-    """Yield number and text of each line from the first non-empty one, without comments; an empty line gives ""."""
-    begun = False
+def _numbered(text: Iterable[str]) -> Iterator[tuple[int, str]]:
+    """Yield number and text of each line."""
     for number, whole in enumerate(text, 1):
         if number > MOST_LINES:
             raise InputError(f"the file has more than {MOST_LINES:,} lines; keep the part with the impacts, or fewer samples a second")
         if len(whole) > _LONGEST:
             raise InputError(f"line {number}: it has more than {_LONGEST:,} characters; this is not a table")
-        line = whole.partition("#")[0].rstrip()
-        if not line.strip(" ,;\t"):
-            line = ""
-        begun = begun or bool(line)
-        if begun:
-            yield number, line
-
-
-def _header(number: int, line: str) -> tuple[list[str], str]:
-    """Return the cells of the header line, and the field separator."""
-    mark = next((mark for mark in ("\t", ";", ",") if mark in line), ",")
-    header = [cell.strip() for cell in next(csv.reader([line], delimiter=mark))]
-    if len(header) > _MOST_COLUMNS:
-        raise InputError(f"line {number}: there are {len(header)} columns; a table has {_MOST_COLUMNS} at most")
-    return header, mark
+        yield number, whole
 
 
 def _places(number: int, header: Sequence[str], units: Mapping[str, str]) -> tuple[dict[str, int], list[float]]:
@@ -246,7 +226,7 @@ def _factor(line: int, cell: str, unit: str | None, wanted: str) -> float:
         raise InputError(f"{where}: {error.message}") from None
 
 
-def _number(line: int, column: str, row: list[str], place: int, mark: str) -> float:
+def _number(line: int, column: str, row: list[str], place: int, mark: str | None) -> float:
     if place >= len(row):
         raise InputError(f"line {line}, column {shown(column)}: the cell is missing; the line has {len(row)}")
     text = row[place]

@@ -19,6 +19,7 @@ from vibroimpact.recognition.fraction import Estimate
 from vibroimpact.recognition.labelled_signals import LabelledSignals
 from vibroimpact.recognition.read_dataset import read_labelled_signals
 from vibroimpact.recognition.recogniser import Recogniser, doubts_of_version, load_recogniser
+from vibroimpact.recognition.signal_features import baseline_doubts
 from vibroimpact.results.csv_files import write_csv
 from vibroimpact.results.folder import new_folder, write_summary
 
@@ -98,7 +99,7 @@ def apply_recogniser(model: Recogniser | str | PathLike[str], dataset: str | Pat
     except InputError as error:
         raise error if isinstance(model, Recogniser) else with_path(model, error) from None
     guessed, names = found.argmax(axis=1), recogniser.class_names
-    doubts = doubts_of_version(recogniser)
+    doubts = doubts_of_version(recogniser) + baseline_doubts(signals)
     if signals.check_sum and signals.check_sum == recogniser.card["data"]["sha256"]:
         doubts.append("the model was trained on these signals, so it recognises them better than others")
     return Recognised(

@@ -29,7 +29,7 @@ from vibroimpact.recognition.recogniser import Recogniser, graph_of
 from vibroimpact.recognition.reliability import Reliable, reliability
 from vibroimpact.recognition.robustness import Noisy, score_in_noise
 from vibroimpact.recognition.scores import Bootstrap, Score, Scores, score
-from vibroimpact.recognition.signal_features import FEATURES, features_of, tables_of
+from vibroimpact.recognition.signal_features import FEATURES, baseline_doubts, features_of, tables_of
 from vibroimpact.recognition.unseen_bins import Unseen, score_unseen
 
 MOST_SIGNALS, FOLDS, SEEDS = 4000, 5, 5
@@ -179,7 +179,7 @@ def recognise(
     check_settings(folds, seeds, most)
     signals = dataset if isinstance(dataset, LabelledSignals) else read_labelled_signals(dataset, most=most, group=group, seed=seed)
     signals = signals.of_present_classes()
-    doubts = check_signals(signals, group, folds)
+    doubts = check_signals(signals, group, folds) + baseline_doubts(signals)
     assert signals.classes is not None  # checked
     classes, groups = signals.classes, signals.groups[group]
     progress("features", 0, 1)

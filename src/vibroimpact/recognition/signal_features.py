@@ -11,6 +11,8 @@ from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError
 from vibroimpact.recognition.input_faults import DURATION
 from vibroimpact.recognition.labelled_signals import LabelledSignals, SensorSignals, lengths
+from vibroimpact.shown import shown
+from vibroimpact.signals.baseline import is_large
 from vibroimpact.signals.feature_table import feature_table
 
 FEATURES, PEAK, CONTACT_TIME, TRUE_TIME, EDGES = "features", "peak", "contact time", "true contact time", "edges"
@@ -64,6 +66,19 @@ def features_of(signals: LabelledSignals) -> Features:
     if np.isnan(values).all():
         raise InputError(f"{signals.name}: no signal has a feature; are they all constant or not finite?")
     return Features(tuple(names), tuple(units), values)
+
+
+def baseline_doubts(signals: LabelledSignals) -> list[str]:
+    """Return doubts about sensors whose signals have large baselines: `features_of` removes them."""
+    doubts = []
+    for sensor, one in signals.sensors.items():
+        found = feature_table(_continued(one), one.rate, [_PEAK])
+        large = is_large(np.abs(found.offset) + found.drift, found[_PEAK])
+        if large.any():
+            most = float(np.abs(found.offset[large]).max())
+            words = f"from {large.sum():,} of {len(large):,} signals of {shown(sensor)} offsets of up to {most:.4g} {one.unit} were removed"
+            doubts.append(f"{words}, more than a tenth of their peaks: check that it rests at zero, and alike in all classes")
+    return doubts
 
 
 def tables_of(signals: LabelledSignals, features: Features) -> dict[str, Floats]:

@@ -27,12 +27,15 @@ class Block:
         Given threshold of each envelope; by default a tenth of its largest value.
     dead_time : float, default 5e-3
         Dead time of packets [s].
+    recorded : array, shape (n, samples), optional
+        The signals as they were recorded, at any scale, if a baseline was removed from them.
     """
 
     value: Floats
     rate: float
     given: Floats | None = None
     dead_time: float = DEAD_TIME
+    recorded: Floats | None = None
 
     @property
     def samples(self) -> int:

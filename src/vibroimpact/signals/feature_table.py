@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 from vibroimpact.arrays import Bools, Floats, Integers
 from vibroimpact.errors import InputError
 from vibroimpact.registry import find_named
+from vibroimpact.signals.baseline import baseline_of, removed_of
 from vibroimpact.signals.block import Block
-from vibroimpact.signals.feature import Family, Feature
+from vibroimpact.signals.feature import Feature
 from vibroimpact.signals.packets import DEAD_TIME, check_settings
 from vibroimpact.signals.reasons import Reason
 from vibroimpact.signals.record import checked_rate, real_numbers
@@ -37,6 +38,8 @@ class FeatureTable:
         The values; NaN where there is none.
     reasons : array of int, shape (signals, features)
         Why there is none, as members of `Reason`; 0 where there is one.
+    offset, drift : array, shape (signals,)
+        Mean and span of the baseline that was removed, in the unit of the signals; 0 where none stands out.
 
     Examples
     --------
@@ -51,6 +54,8 @@ class FeatureTable:
     units: tuple[str, ...]
     values: Floats
     reasons: NDArray[np.int8]
+    offset: Floats
+    drift: Floats
 
     def __getitem__(self, name: str) -> Floats:
         """Return the values of a feature, (signals,)."""
@@ -71,7 +76,7 @@ def feature_table(
     dead_time: float = DEAD_TIME,
     progress: Callable[[int, int], None] | None = None,
 ) -> FeatureTable:
-    """Return the features of signals, a row each.
+    """Return the features of signals, a row each, once their baselines are removed.
 
     Parameters
     ----------
@@ -114,19 +119,50 @@ def feature_table(
         raise InputError(f"the signals are an array of {signals.ndim} dimensions; give a table of shape (signals, samples)")
     check_settings(threshold, dead_time)
     wanted = {name: find_feature(name) for name in (features() if names is None else names)}
-    chosen = [family for family in families() if any(feature.name in wanted for feature in family.features)]
     found, reasons = np.empty((len(signals), len(wanted))), np.zeros((len(signals), len(wanted)), dtype=np.int8)
-    step = max(1, _AT_ONCE // max(1, signals.shape[1]))
+    removed = np.zeros((len(signals), 2))
+    step = _step(signals.shape[1])
     for first in range(0, len(signals), step):
         part = slice(first, first + step)
-        found[part], reasons[part] = _features_of(signals[part].astype(np.float64), frequency, wanted, chosen, threshold, dead_time)
+        recorded = signals[part].astype(np.float64)
+        baseline = np.stack([baseline_of(one) for one in recorded])
+        removed[part] = [removed_of(one) for one in baseline]
+        found[part], reasons[part] = features_at_rest(recorded - baseline, recorded, frequency, wanted, threshold, dead_time)
         if progress is not None:
             progress(min(first + step, len(signals)), len(signals))
-    return FeatureTable(tuple(wanted), tuple(one.unit_for(unit) for one in wanted.values()), found, reasons)
+    units = tuple(one.unit_for(unit) for one in wanted.values())
+    return FeatureTable(tuple(wanted), units, found, reasons, removed[:, 0], removed[:, 1])
+
+
+def features_at_rest(
+    signals: Floats, recorded: Floats, rate: float, wanted: Mapping[str, Feature], threshold: float | None, dead_time: float
+) -> tuple[Floats, NDArray[np.int8]]:
+    """Return values and reasons, each of the shape (signals, features), of signals that rest at zero; a few at once.
+
+    Parameters
+    ----------
+    signals, recorded : array, shape (signals, samples)
+        The signals, and as they were recorded, with their baselines.
+    rate, threshold, dead_time
+        As those of `feature_table`.
+    wanted : mapping of str to Feature
+        The features that are wanted, by name.
+    """
+    values, reasons = np.empty((len(signals), len(wanted))), np.zeros((len(signals), len(wanted)), dtype=np.int8)
+    step = _step(signals.shape[1])
+    for first in range(0, len(signals), step):
+        part = slice(first, first + step)
+        values[part], reasons[part] = _features_of(signals[part], recorded[part], rate, wanted, threshold, dead_time)
+    return values, reasons
+
+
+def _step(samples: int) -> int:
+    """Return the number of signals of a block."""
+    return max(1, _AT_ONCE // max(1, samples))
 
 
 def _features_of(
-    signals: Floats, rate: float, wanted: dict[str, Feature], chosen: Sequence[Family], threshold: float | None, dead_time: float
+    signals: Floats, recorded: Floats, rate: float, wanted: Mapping[str, Feature], threshold: float | None, dead_time: float
 ) -> tuple[Floats, NDArray[np.int8]]:
     """Return values and reasons of a block of signals (n, samples), each of the shape (n, features)."""
     count, samples = signals.shape
@@ -139,8 +175,9 @@ def _features_of(
     if not finite.any():
         return values, reasons
     # a number without a value is NaN, and no warning
+    chosen = [family for family in families() if any(feature.name in wanted for feature in family.features)]
     with np.errstate(all="ignore"):
-        block, exponent = _scaled(signals[finite], rate, threshold, dead_time)
+        block, exponent = _scaled(signals[finite], recorded[finite], rate, threshold, dead_time)
         constant = np.ptp(block.value, axis=1) == 0.0
         place = {name: column for column, name in enumerate(wanted)}
         for family in chosen:
@@ -155,7 +192,7 @@ def _features_of(
     return values, reasons
 
 
-def _scaled(signals: Floats, rate: float, threshold: float | None, dead_time: float) -> tuple[Block, Integers]:
+def _scaled(signals: Floats, recorded: Floats, rate: float, threshold: float | None, dead_time: float) -> tuple[Block, Integers]:
     """Return signals with largest magnitudes of 1/2 to 1, and the powers of two that they were divided by; such a division is exact."""
     exponent = np.frexp(np.abs(signals).max(axis=1))[1].astype(np.int64)
     # in two steps, since the power of two itself may be out of range
@@ -163,7 +200,7 @@ def _scaled(signals: Floats, rate: float, threshold: float | None, dead_time: fl
     value = np.ldexp(np.ldexp(signals, -half[:, None]), (half - exponent)[:, None])
     # a threshold that is nothing beside a signal is still above zero
     given = None if threshold is None else np.maximum(np.ldexp(np.ldexp(threshold, -half), half - exponent), np.finfo(float).tiny)
-    return Block(value, rate, given, dead_time), exponent
+    return Block(value, rate, given, dead_time, recorded), exponent
 
 
 def _told(feature: Feature, number: Floats, exponent: Integers, constant: Bools, samples: int) -> tuple[Floats, NDArray[np.int8]]:

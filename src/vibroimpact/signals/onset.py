@@ -6,14 +6,16 @@ from dataclasses import replace
 
 import numpy as np
 
+from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError
 from vibroimpact.shown import shown
+from vibroimpact.signals.baseline import without_baseline
 from vibroimpact.signals.packets import find_packets
 from vibroimpact.signals.record import Record
 
 
 def from_onset(record: Record, duration: float, before: float = 0.0, threshold: float | None = None) -> Record:
-    """Return a window of a record around its first touch: where its magnitude first reaches a threshold.
+    """Return a window of a record around its first touch: where its magnitude first reaches a threshold, once its baseline is removed.
 
     Windows of equal duration and rate have equal numbers of samples. Before the record and after it, they are filled with zeros.
 
@@ -50,16 +52,21 @@ def from_onset(record: Record, duration: float, before: float = 0.0, threshold: 
         raise InputError(f"a window of {duration:g} s has {samples} samples at {record.rate:g} Hz; it needs 1 to 2^31")
     if not 0.0 <= before <= duration:
         raise InputError(f"{before:g} s before the onset do not lie in a window of {duration:g} s")
-    packets = find_packets(record, threshold)
+    clean = without_baseline(record)
+    packets = find_packets(clean, threshold)
     onset = int(packets.onset[0]) if len(packets.onset) else 0
     first = onset - round(before * record.rate)
-    value = record.value[max(first, 0) : max(first + samples, 0)]
-    lead = max(-first, 0)
-    return replace(record, value=np.pad(value, (lead, samples - lead - len(value))), start=record.start + first / record.rate)
+
+    def cut(whole: Floats) -> Floats:
+        part, lead = whole[max(first, 0) : max(first + samples, 0)], max(-first, 0)
+        return np.pad(part, (lead, samples - lead - len(part)))
+
+    recorded = None if clean.recorded is None else cut(clean.recorded)
+    return replace(clean, value=cut(clean.value), recorded=recorded, start=clean.start + first / clean.rate)
 
 
 def onset_time(record: Record, threshold: float | None = None) -> float:
-    """Return the time at which the magnitude of a record first reaches a threshold [s].
+    """Return the time at which the magnitude of a record, without its baseline, first reaches a threshold [s].
 
     That is within the first of its `Packets`: the envelope tells that there is one, the signal when it begins.
 

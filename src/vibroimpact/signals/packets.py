@@ -16,6 +16,7 @@ import numpy as np
 
 from vibroimpact.arrays import Floats, Integers
 from vibroimpact.errors import InputError
+from vibroimpact.signals.baseline import without_baseline
 from vibroimpact.signals.envelope import hilbert_envelope
 from vibroimpact.signals.record import Record
 
@@ -60,7 +61,7 @@ class Packets(NamedTuple):
 
 
 def find_packets(record: Record, threshold: float | None = None, dead_time: float = DEAD_TIME) -> Packets:
-    """Return the packets of a record.
+    """Return the packets of a record, of which the baseline is removed.
 
     Parameters
     ----------
@@ -89,14 +90,14 @@ def find_packets(record: Record, threshold: float | None = None, dead_time: floa
     check_settings(threshold, dead_time)
     if not len(record.value):
         return packets_in(record.value[None], record.value[None], np.ones(1), record.rate, dead_time)
-    value = record.value[None]
+    value = without_baseline(record).value[None]
     envelope = hilbert_envelope(value)
     level = THRESHOLD * float(envelope.max()) if threshold is None else threshold
     return packets_in(value, envelope, np.array([level]), record.rate, dead_time)
 
 
 def packet_records(record: Record, threshold: float | None = None, dead_time: float = DEAD_TIME) -> list[Record]:
-    """Return the packets of a record as records of their own, each from its first sample to its last.
+    """Return the packets of a record, without its baseline, as records of their own, each from its first sample to its last.
 
     Parameters
     ----------
@@ -114,9 +115,15 @@ def packet_records(record: Record, threshold: float | None = None, dead_time: fl
     >>> [round(one.start, 6) for one in packet_records(taps, threshold=2.0)]
     [1.0, 1.0203]
     """
-    found = find_packets(record, threshold, dead_time)
+    clean = without_baseline(record)
+    found = find_packets(clean, threshold, dead_time)
     return [
-        replace(record, value=record.value[first : last + 1], start=record.start + first / record.rate)
+        replace(
+            clean,
+            value=clean.value[first : last + 1],
+            recorded=None if clean.recorded is None else clean.recorded[first : last + 1],
+            start=clean.start + first / clean.rate,
+        )
         for first, last in zip(found.first.tolist(), found.last.tolist(), strict=True)
     ]
 

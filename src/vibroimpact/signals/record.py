@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +11,13 @@ from numpy.typing import NDArray
 from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError
 from vibroimpact.shown import shown
+
+
+class Removed(NamedTuple):
+    """The baseline that was removed from a record: its mean, and its span from the least to the largest, in the unit of the record."""
+
+    offset: float
+    drift: float
 
 
 @dataclass(frozen=True)
@@ -33,6 +40,10 @@ class Record:
         The file that it was read from.
     doubts : tuple of str, default ()
         Warnings about the file, as sentences, such as that it is cut off.
+    removed : Removed, optional
+        The baseline that was removed from the samples; None if none was sought yet.
+    recorded : array, shape (samples,), optional
+        The samples as they were recorded, if a baseline was removed.
 
     Raises
     ------
@@ -52,6 +63,8 @@ class Record:
     start: float = 0.0
     source: str = ""
     doubts: tuple[str, ...] = ()
+    removed: Removed | None = None
+    recorded: Floats | None = None
 
     def __post_init__(self) -> None:
         value = real_numbers(self.value).astype(np.float64, copy=False)

@@ -15,8 +15,9 @@ from numpy.typing import NDArray
 
 from vibroimpact.arrays import Floats
 from vibroimpact.registry import find_named
-from vibroimpact.signals.feature_table import feature_table
-from vibroimpact.signals.packets import DEAD_TIME
+from vibroimpact.signals.baseline import without_baseline
+from vibroimpact.signals.feature_table import features_at_rest
+from vibroimpact.signals.packets import DEAD_TIME, check_settings
 from vibroimpact.signals.reasons import Reason
 from vibroimpact.signals.record import Record
 from vibroimpact.signals.registry import features, find_feature
@@ -39,6 +40,8 @@ class RecordTable:
         The values, in the units `features()[name].unit_for(record.unit)`; NaN where there is none.
     reasons : array of int, shape (records, features)
         Why there is none, as members of `Reason`; 0 where there is one.
+
+    The mean and the span of the baseline that was removed from a record are in its `removed`.
 
     Examples
     --------
@@ -76,6 +79,16 @@ class RecordTable:
         )
 
     @property
+    def offset(self) -> list[float]:
+        """Mean of the baseline that was removed from each record, in its unit."""
+        return [0.0 if one.removed is None else one.removed.offset for one in self.records]
+
+    @property
+    def drift(self) -> list[float]:
+        """Span of the baseline that was removed from each record, in its unit."""
+        return [0.0 if one.removed is None else one.removed.drift for one in self.records]
+
+    @property
     def numbers(self) -> list[int]:
         """Number of each record among those of its file and channel, from 1."""
         counts: Counter[tuple[str, str]] = Counter()
@@ -87,7 +100,7 @@ class RecordTable:
 
     def csv_text(self) -> Iterator[bytes]:
         """Yield the table as CSV, many rows at a time: an empty cell where there is no value, and the reasons in the last one."""
-        header = ("file", "channel", "signal", "start_s", "rate_Hz", "unit", *self.columns, "lacking")
+        header = ("file", "channel", "signal", "start_s", "rate_Hz", "unit", *self.columns, "offset", "drift", "lacking")
         yield (",".join(header) + "\n").encode()
         numbers = self.numbers
         for first in range(0, len(self.records), 1000):
@@ -95,7 +108,8 @@ class RecordTable:
             writer = csv.writer(text, lineterminator="\n")
             for row, one in enumerate(self.records[first : first + 1000], first):
                 cells = ["" if math.isnan(value) else repr(value) for value in self.values[row].tolist()]
-                writer.writerow((one.source, one.name, numbers[row], one.start, one.rate, one.unit, *cells, self.lacking(row)))
+                removed = [repr(value) for value in (self.offset[row], self.drift[row])]
+                writer.writerow((one.source, one.name, numbers[row], one.start, one.rate, one.unit, *cells, *removed, self.lacking(row)))
             yield text.getvalue().encode()
 
 
@@ -119,7 +133,7 @@ def record_table(
     dead_time: float = DEAD_TIME,
     progress: Callable[[int], None] | None = None,
 ) -> RecordTable:
-    """Return the features of records, a row each; neighbours of one length and rate are computed together.
+    """Return the features of records without their baselines, a row each; neighbours of one length and rate are computed together.
 
     Parameters
     ----------
@@ -141,18 +155,22 @@ def record_table(
     >>> table.values.round(2).tolist(), table.lacking(1)
     ([[0.71, 1.5], [nan, nan]], 'there are no samples: all')
     """
-    wanted = tuple(features() if names is None else dict.fromkeys(names))
+    wanted = {name: find_feature(name) for name in (features() if names is None else names)}
+    check_settings(threshold, dead_time)
     rows: list[Record] = []
     values, reasons = [np.empty((0, len(wanted)))], [np.empty((0, len(wanted)), dtype=np.int8)]
-    for (length, rate), alike in groupby(records, key=lambda one: (len(one.value), one.rate)):
+    clean = (without_baseline(one) for one in records)
+    for (length, rate), alike in groupby(clean, key=lambda one: (len(one.value), one.rate)):
         for some in _parts(alike, max(1, _AT_ONCE // max(1, length))):
-            table = feature_table(np.array([one.value for one in some]), rate, wanted, threshold=threshold, dead_time=dead_time)
-            values.append(table.values)
-            reasons.append(table.reasons)
-            rows += [replace(one, value=np.empty(0)) for one in some]
+            signals = np.array([one.value for one in some])
+            recorded = np.array([one.value if one.recorded is None else one.recorded for one in some])
+            found, why = features_at_rest(signals, recorded, rate, wanted, threshold, dead_time)
+            values.append(found)
+            reasons.append(why)
+            rows += [replace(one, value=np.empty(0), recorded=None) for one in some]
             if progress is not None:
                 progress(len(rows))
-    return RecordTable(rows, wanted, np.concatenate(values), np.concatenate(reasons))
+    return RecordTable(rows, tuple(wanted), np.concatenate(values), np.concatenate(reasons))
 
 
 def _parts(records: Iterator[Record], most: int) -> Iterator[list[Record]]:

@@ -9,11 +9,12 @@ import numpy as np
 
 from vibroimpact.arrays import Floats, Indices
 from vibroimpact.errors import InputError
+from vibroimpact.signals.baseline import without_baseline
 from vibroimpact.signals.bounces.alignment import aligned
 from vibroimpact.signals.bounces.chain import HIGHEST, LOWEST, longest_chain
 from vibroimpact.signals.bounces.touches import FEWEST, WINDOW, Touches, find_touches, without_hum
-from vibroimpact.signals.feature_table import feature_table
 from vibroimpact.signals.record import Record
+from vibroimpact.signals.record_table import record_table
 
 _CLEAR = 3.0
 """Rise, in thresholds, from which on a touch is as clear as can be."""
@@ -139,6 +140,7 @@ def find_bounces(record: Record, contact: float = 0.0) -> Bounces:
     >>> found.restitution.round(4).tolist(), found.others.round(3).tolist()
     ([0.5, 0.5], [0.43])
     """
+    record = without_baseline(record)
     doubts = _checked(record)
     value = without_hum(replace(record, value=record.value / np.abs(record.value).max()))
     found = find_touches(value, record.rate)
@@ -180,7 +182,7 @@ def _checked(record: Record) -> tuple[str, ...]:
     shortest = 3 * max(FEWEST, round(WINDOW * record.rate))
     if len(value) < shortest:
         raise InputError(f"it is too short: it has {len(value)} samples, and at {record.rate:g} Hz three touches take {shortest} at least")
-    clipped = float(feature_table([value], record.rate, ["clipped_part"])["clipped_part"][0])
+    clipped = float(record_table([record], ["clipped_part"])["clipped_part"][0])
     if clipped > _OVERDRIVEN:
         part = f"{100.0 * clipped:.2g} % of its samples are at its largest or lowest value"
         raise InputError(f"it is clipped: {part}; record it at a lower gain")

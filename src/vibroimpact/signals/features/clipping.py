@@ -10,13 +10,18 @@ from vibroimpact.signals.feature import Family, Feature
 
 _RUN = 3
 """Samples in a row that make a clipping: a sampled tone can touch its extreme twice."""
+_AT_REST = 1e-6
+"""Part of the largest magnitude up to which a signal rests: the level of a force between impacts is no end of a converter's range."""
 
 
 def _of(block: Block) -> Floats:
     part = np.zeros(len(block.value))
-    for side in (block.value, -block.value):
-        extreme = side.max(axis=1, keepdims=True)
-        at_extreme = (side == extreme) & (extreme > 0.0)
+    # without a drift samples at the end of a converter's range would no longer be the same
+    recorded = block.value if block.recorded is None else block.recorded
+    rest = _AT_REST * block.peak[:, None]
+    for sign in (1.0, -1.0):
+        side = sign * recorded
+        at_extreme = (side == side.max(axis=1, keepdims=True)) & (sign * block.value > rest)
         if block.samples >= _RUN:
             run = np.lib.stride_tricks.sliding_window_view(at_extreme, _RUN, axis=1).all(axis=2)
             clipped = np.zeros_like(at_extreme)
@@ -31,7 +36,7 @@ FAMILY = Family(
         Feature(
             name="clipped_part",
             meaning="part of the samples in runs of three or more at the largest positive or the most negative value",
-            equation="sum(x[i] = max(x) > 0 or x[i] = min(x) < 0, in runs of 3 and more) / samples",
+            equation="sum(x[i] = max(x) > 0 or x[i] = min(x) < 0, in runs of 3 and more) / samples, extremes of what was recorded",
             source="of this program",
         ),
     ),

@@ -9,7 +9,7 @@ from vibroimpact.errors import InputError
 from vibroimpact.files.reading import with_path
 from vibroimpact.measurements.table_file import header_of, name_and_unit, read_table_file
 from vibroimpact.shown import shown
-from vibroimpact.signals.reading.equal_steps import rate_of
+from vibroimpact.signals.reading.equal_steps import at_equal_steps
 from vibroimpact.signals.reading.si_units import in_si
 from vibroimpact.signals.record import Record
 
@@ -40,12 +40,13 @@ def table_records(path: Path) -> Iterator[Record]:
         raise InputError(f"{path}: there is no column time [s] in the header; the rate follows from the times of the samples")
     if len(names) < 2:
         raise InputError(f"{path}: there is no column beside the time; each other one is a channel, such as geophone [V]")
-    table = read_table_file(path, {name: "" if unit == "1" else unit.replace("s2", "s^2") for name, unit in names.items()})
-    time = table.columns[_TIME]
+    doubts: list[str] = []
+    table = read_table_file(path, {name: "" if unit == "1" else unit.replace("s2", "s^2") for name, unit in names.items()}, doubts)
+    channels = [name for name in names if name != _TIME]
     try:
-        rate = rate_of(time)
+        sampled = at_equal_steps(table.columns[_TIME], [table.columns[name] for name in channels])
     except InputError as error:
         raise with_path(path, error) from None
-    for name, unit in names.items():
-        if name != _TIME:
-            yield Record(name, table.columns[name], rate, unit, float(time[0]))
+    for name, value, doubt in zip(channels, sampled.values, sampled.doubts, strict=True):
+        of_times = (f"{shown(name)}: {doubt}",) if doubt else ()
+        yield Record(name, value, sampled.rate, names[name], sampled.start, doubts=(*doubts, *of_times))
