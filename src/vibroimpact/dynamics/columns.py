@@ -146,8 +146,8 @@ SHAKEN_HISTORY_COLUMNS: dict[str, Column] = {
 """Further columns of a history, where the plate is shaken."""
 
 OBLIQUE_IMPACT_COLUMNS: dict[str, Column] = {
-    "position_x_m": Column("m", "position of the sphere's centre at first touch, along x"),
-    "position_y_m": Column("m", "position of the sphere's centre at first touch, along y"),
+    "position_x_m": Column("m", "position of the sphere's centre at first touch, along x, from the mean position of the plate's centre"),
+    "position_y_m": Column("m", "position of the sphere's centre at first touch, along y, from the mean position of the plate's centre"),
     "approach_velocity_x_m_s": Column("m/s", "velocity of the centre at first touch, along x"),
     "approach_velocity_y_m_s": Column("m/s", "velocity of the centre at first touch, along y"),
     "separation_velocity_x_m_s": Column("m/s", "velocity of the centre at release, along x"),
@@ -176,6 +176,12 @@ OBLIQUE_IMPACT_COLUMNS: dict[str, Column] = {
 }
 """Further columns of the impact table, where motion is not along the normal alone."""
 
+CARRIED_IMPACT_COLUMNS: dict[str, Column] = {
+    "place_on_plate_x_m": Column("m", "place of first touch on the moving plate, along x from the plate's centre then"),
+    "place_on_plate_y_m": Column("m", "place of first touch on the moving plate, along y from the plate's centre then"),
+}
+"""Further columns of the impact table, where motion is not along the normal alone and the plate is shaken."""
+
 FLUID_IMPACT_COLUMNS: dict[str, Column] = {
     "air_lost_J": Column("J", "energy lost to air drag in the flight before the impact", "Lost to the air", "air"),
     "liquid_lost_J": Column("J", "energy lost to the drag of the liquid in the flight before the impact", "Lost to the liquid", "liquid"),
@@ -183,10 +189,16 @@ FLUID_IMPACT_COLUMNS: dict[str, Column] = {
 """Further columns of the impact table, one of which it has where the sphere flies through air or a liquid."""
 
 VIBRATING_IMPACT_COLUMNS = {**IMPACT_COLUMNS, **VIBRATION_IMPACT_COLUMNS}
-ALL_IMPACT_COLUMNS = {**VIBRATING_IMPACT_COLUMNS, **SHAKEN_IMPACT_COLUMNS, **OBLIQUE_IMPACT_COLUMNS, **FLUID_IMPACT_COLUMNS}
+ALL_IMPACT_COLUMNS = {
+    **VIBRATING_IMPACT_COLUMNS,
+    **SHAKEN_IMPACT_COLUMNS,
+    **OBLIQUE_IMPACT_COLUMNS,
+    **CARRIED_IMPACT_COLUMNS,
+    **FLUID_IMPACT_COLUMNS,
+}
 OBLIQUE_HISTORY_COLUMNS: dict[str, Column] = {
-    "position_x_m": Column("m", "position of the sphere's centre along x, from the centre of the plate"),
-    "position_y_m": Column("m", "position of the sphere's centre along y, from the centre of the plate"),
+    "position_x_m": Column("m", "position of the sphere's centre along x, from the mean position of the plate's centre"),
+    "position_y_m": Column("m", "position of the sphere's centre along y, from the mean position of the plate's centre"),
     "velocity_x_m_s": Column("m/s", "velocity of the centre along x"),
     "velocity_y_m_s": Column("m/s", "velocity of the centre along y"),
     "spin_x_rad_s": Column("rad/s", "angular velocity about x"),

@@ -12,7 +12,7 @@ from vibroimpact.contact.law import CompliantLaw, ContactLaw, InstantaneousLaw
 from vibroimpact.contact.static import static_indentation
 from vibroimpact.dynamics.air import density_of
 from vibroimpact.dynamics.bodies import Bodies
-from vibroimpact.dynamics.columns import OBLIQUE_IMPACT_COLUMNS, SHAKEN_IMPACT_COLUMNS
+from vibroimpact.dynamics.columns import CARRIED_IMPACT_COLUMNS, OBLIQUE_IMPACT_COLUMNS, SHAKEN_IMPACT_COLUMNS
 from vibroimpact.dynamics.contact import CAPTURED, FAILED, RIDING
 from vibroimpact.dynamics.encounter import Encounter, encounter_of
 from vibroimpact.dynamics.energy import CLOSURE_LIMIT, WRITE_OFF_LIMIT, close_ledger
@@ -64,6 +64,7 @@ class Run:
         further = (
             *(() if problem.motion is None else SHAKEN_IMPACT_COLUMNS),
             *(() if self.oblique is None else OBLIQUE_IMPACT_COLUMNS),
+            *(() if self.oblique is None or problem.motion is None else CARRIED_IMPACT_COLUMNS),
             *(() if problem.fluid is None else [f"{problem.fluid.key}_lost_J"]),
         )
         self.rows = ImpactRows((*self.bodies.columns, *further), self.size)
@@ -193,6 +194,8 @@ class Run:
         row["restitution_asked"][drops] = _nominal_restitution(law)
         if self.problem.motion is not None:
             row["plate_velocity_m_s"][drops] = self.problem.surface(touch)[1]
+            if self.oblique is not None:
+                row["place_on_plate_x_m"][drops], row["place_on_plate_y_m"][drops] = self.oblique.seen_from_plate(drops, touch)
         if isinstance(law, InstantaneousLaw):
             (place, velocity, _), separation = self.problem.surface(touch), law.separation_speed(speed, self.mass[drops])
             self.time[drops], self.gap[drops], self.velocity[drops] = touch, place, velocity + separation
