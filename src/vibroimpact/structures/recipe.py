@@ -348,7 +348,7 @@ def _errors(recipe: Recipe, held: HeldStructure, modes: Eigenmodes, material: Ma
     if held.structure.thickness:
         parts[SUPPORTS] = support_errors(held, kept)
         parts[THEORY] = plate_theory_errors(held, kept, material, is_thin(recipe))
-        if is_thin(recipe):  # shear at clamped edges adds to that of plane waves
+        if isinstance(recipe.shape, PlateOfPlates) and is_thin(recipe):  # shear at clamped edges adds to that of plane waves
             thick = replace(recipe, shape=replace(recipe.shape, theory="thick"))
             sheared = held_by(thick.shape.structure(thick.shape.mesh(thick.supports), material), thick.supports)
             apart = kept.angular_frequencies / elastic_system(sheared).modes(number, progress, _ROUGH).angular_frequencies - 1.0
