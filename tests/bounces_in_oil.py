@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.optimize import least_squares
 
 import vibroimpact as vi
 from vibroimpact.bodies.rigid import rigid_plate, rigid_sphere
@@ -32,3 +33,18 @@ def computed_restitution(speed: float) -> float:
     law, oil = vi.find_contact_law("newton")(restitution=DRY_RESTITUTION), vi.Liquid(density=OIL_DENSITY, viscosity=VISCOSITY)
     drop = vi.Problem(sphere=sphere, plate=rigid_plate(), laws=(law,), speed=speed, gravity=0.0, impacts=1, liquid=oil)
     return float(vi.simulate(drop).impacts["restitution_achieved"][0])
+
+
+def fall_in(stokes: int, liquid: vi.Liquid | None) -> tuple[np.ndarray, np.ndarray]:
+    """Return computed and measured heights in the fall before a bounce [m]; height and speed at the first of them are fitted."""
+    seen = 1e-6 * np.array(TRACKS[stokes][0])
+    sphere = rigid_sphere(0.5 * DIAMETER, vi.Material(density=SPHERE_DENSITY, youngs_modulus=2.1e11, poissons_ratio=0.3))
+    stated = {"sphere": sphere, "plate": rigid_plate(), "laws": (vi.find_contact_law("newton")(restitution=DRY_RESTITUTION),)}
+
+    def heights(begin: np.ndarray) -> np.ndarray:
+        drop = vi.Problem(**stated, height=0.5 * DIAMETER + begin[0], velocity=-begin[1], impacts=1, liquid=liquid)
+        return vi.simulate(drop).at(2e-3 * np.arange(len(seen)))["position_m"] - 0.5 * DIAMETER
+
+    start = [seen[0], (seen[0] - seen[1]) / 2e-3]
+    fitted = least_squares(lambda begin: 1e6 * (heights(begin) - seen), start, diff_step=1e-4, x_scale=[1e-3, 0.1])
+    return heights(fitted.x), seen

@@ -7,9 +7,10 @@ from dataclasses import replace
 import numpy as np
 
 import vibroimpact as vi
-from bounces_in_oil import DIAMETER, DRY_RESTITUTION, TRACKS, computed_restitution, speed_at_touch
+from bounces_in_oil import DIAMETER, DRY_RESTITUTION, OIL_DENSITY, TRACKS, VISCOSITY, computed_restitution, fall_in, speed_at_touch
 from stated import says
 from support import plain_case
+from vibroimpact.cases.rigid import touch_speed
 from vibroimpact.contact.laws.adams_impact import AdamsImpact
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.dynamics import liquid, simulate
@@ -89,6 +90,19 @@ def test_liquids() -> None:
     says(PAGE, "the correlation gives restitutions of {}, {} and {}, with", *(computed_restitution(before) for before, _ in speeds))
     says(PAGE, "from the recorded positions, give {}, {} and {}.", *(after / before for before, after in speeds))
     says(PAGE, "with a restitution of {} in air", DRY_RESTITUTION)
+    glass = vi.read_case(
+        plain_case(
+            sphere={"radius": 0.005, "material": {"density": 2500.0, "youngs_modulus": 70e9, "poissons_ratio": 0.22}},
+            drop={"height": 1.0},
+            contact={"law": "tsuji", "restitution": 0.8, "liquid": True},
+        )
+    )
+    fast = (2.0 * 9.80665 * 0.995) ** 0.5
+    says(PAGE, "A glass sphere of {} mm that falls {} m in water touches at its terminal speed of {} m/s", 10, 1, touch_speed(glass))
+    says(PAGE, "where it would have {} m/s in a vacuum", fast)
+    oil = vi.Liquid(density=OIL_DENSITY, viscosity=VISCOSITY)
+    left = [1e6 * np.abs(np.subtract(*fall_in(stokes, medium))).max() for medium in (oil, None) for stokes in (152, 82)]
+    says(PAGE, "at Stokes numbers of {} and {}, are reproduced to {} and {} um, where parabolas leave {} and {} um", 152, 82, *left)
     heavier = 1.0 + 0.5 * liquid.WATER_DENSITY / QUARTZ
     says(PAGE, "lengthen it (by {} % in water for quartz", 100.0 * (heavier**0.4 - 1.0))
     says(PAGE, "Below a Stokes number of about {} no rebound", liquid.CRITICAL_STOKES)

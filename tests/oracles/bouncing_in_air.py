@@ -1,4 +1,4 @@
-"""A sphere that bounces in air: Newton's second law over time by SciPy, with the drag coefficient of every moment, and a touch turns it."""
+"""A sphere that bounces in air or a liquid: Newton's second law over time by SciPy, with the drag coefficient of every moment."""
 
 from __future__ import annotations
 
@@ -9,6 +9,18 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 DENSITY, VISCOSITY = 1.2, 1.81e-5
+
+
+class Medium(NamedTuple):
+    """Density [kg/m^3] and viscosity [Pa s] around a sphere, and the parts of the displaced mass that lift it and that move along."""
+
+    density: float
+    viscosity: float
+    lifting: float
+    added: float
+
+
+AIR = Medium(DENSITY, VISCOSITY, 0.0, 0.0)
 
 
 class Bounces(NamedTuple):
@@ -41,15 +53,18 @@ def bounces(
     gravity: float = 9.80665,
     coefficient: Callable[[float], float] = clift_gauvin,
     contact: float = 0.0,
+    medium: Medium = AIR,
 ) -> Bounces:
     """A drop from a height of the centre, with `number` rebounds; each contact takes a time in which the sphere stands still."""
-    area, mass = np.pi * radius**2, 4.0 / 3.0 * np.pi * radius**3 * density
+    area, volume = np.pi * radius**2, 4.0 / 3.0 * np.pi * radius**3
+    weight = gravity * volume * (density - medium.lifting * medium.density)
+    mass = volume * (density + medium.added * medium.density)
 
     def slope(_: float, state: np.ndarray) -> list[float]:
         speed = abs(state[1])
-        reynolds = max(DENSITY * speed * 2.0 * radius / VISCOSITY, 1e-12)
-        force = 0.5 * DENSITY * coefficient(reynolds) * area * speed * state[1]
-        return [state[1], -gravity - force / mass]
+        reynolds = max(medium.density * speed * 2.0 * radius / medium.viscosity, 1e-12)
+        force = 0.5 * medium.density * coefficient(reynolds) * area * speed * state[1]
+        return [state[1], -(weight + force) / mass]
 
     def touch(_: float, state: np.ndarray) -> float:
         return float(state[0]) - radius

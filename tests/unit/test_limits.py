@@ -316,3 +316,28 @@ def test_a_plate_that_moves_on_its_springs_does_not_bend() -> None:
     assert np.abs(result.history["plate_deflection_m"]).max() > 0.2 * 0.02
     assert result.peaks["plate"]["max_bending_m"] < 0.02 * 0.02
     assert not any("it also stretches" in doubt for doubt in result.doubts)
+
+
+@pytest.mark.parametrize(("radius", "thicknesses"), [(0.2, 0.249), (0.5, 1.074)])
+def test_a_heavy_sphere_bends_the_plate_most_long_after_it_touches(radius: float, thicknesses: float, tmp_path: Path) -> None:
+    """Its contact lasts ten to forty periods of the plate; a run and a study find the largest deflection of the history, and doubt it."""
+    plate = {
+        "size": [0.2, 0.2, 0.01],
+        "material": "steel",
+        "model": "elastic",
+        "supports": "simply-supported",
+        "modes": 20,
+        "damping": 0.01,
+    }
+    contact = {"law": "tsuji", "restitution": 0.7}
+    table = plain_case(
+        sphere={"radius": radius, "material": "steel"}, plate=plate, drop={"speed": 1.0}, contact=contact, run={"impacts": 2}
+    )
+    response = vi.simulate(vi.read_case(table))
+    largest = np.abs(response.history(columns=["plate_deflection_m"])["plate_deflection_m"]).max()
+    assert largest == pytest.approx(0.01 * thicknesses, rel=2e-3)
+    result = vi.result_of(response)
+    assert result.peaks["plate"]["max_bending_m"] == pytest.approx(largest, rel=0.01)
+    assert any("the plate deflects by" in doubt for doubt in result.doubts)
+    study = vi.read_study(vi.run_sweep(vi.read_sweep({**table, "sweep": {"over": {"drop.speed": [1.0]}}}), tmp_path / "study"))
+    assert float(study.values("limit_plate_deflection").squeeze()) == pytest.approx(thicknesses, rel=0.01)

@@ -10,6 +10,7 @@ import pytest
 
 import vibroimpact as vi
 from support import plain_case
+from vibroimpact.calibration.calibrate_case import calibrate_case, read_calibration
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.conditions import Conditions
 from vibroimpact.cases.expected import expected_of
@@ -62,10 +63,98 @@ def test_the_ledger_and_the_history_know_of_it() -> None:
     assert response.history()["contact_dissipated_J"].max() == pytest.approx(lost, rel=1e-6)
 
 
+GLASS = {"radius": 0.005, "material": {"density": 2500.0, "youngs_modulus": 70e9, "poissons_ratio": 0.22}}
+PLATE = {"size": [0.4, 0.3, 0.02], "material": "steel", "model": "elastic", "supports": "clamped", "modes": 5, "damping": 0.02}
+FRICTION = {"law": "mdr", "coefficient": 0.1}
+
+
+@pytest.mark.parametrize("number", [None, "500 mm"])
+def test_a_sphere_that_falls_in_it_does_not_fall_in_a_vacuum(number: str | None) -> None:
+    """10 mm of glass in water: 0.70 m/s, not the 4.42 m/s of a fall of 1 m in a vacuum; a check tells it as well."""
+    case = vi.read_case(wet(sphere=GLASS, drop={"height": number or 1.0}, run={"impacts": 1}))
+    response = vi.simulate(case)
+    assert response.impacts["approach_speed_m_s"][0] == pytest.approx(0.7025, abs=1e-4)
+    assert case_document(case)["first_impact"]["approach_speed_m_s"] == pytest.approx(response.impacts["approach_speed_m_s"][0], rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {},
+        {"run": {"duration": 1.2}},
+        {"run": {"impacts": "all"}},
+        {
+            "drop": {"speed": 2.0, "angle": "30 deg", "spin": [0.0, 20.0, 5.0]},
+            "plate": {"material": "steel", "inclination": "5 deg", "size": [2.0, 2.0, 0.02]},
+        },
+        pytest.param({"plate": PLATE}, marks=pytest.mark.slow),
+        pytest.param({"plate": {**PLATE, "motion": {"amplitude": "0.1 mm", "frequency": "30 Hz"}}}, marks=pytest.mark.slow),
+    ],
+)
+def test_histories_keep_energy_with_what_the_liquid_takes(changes: dict[str, Any]) -> None:
+    """Energy goes to drag, and to liquid that moves along and is turned with the sphere."""
+    contact = {"law": "tsuji", "restitution": 0.8, "liquid": True}
+    if "angle" in changes.get("drop", {}):
+        contact["friction"] = FRICTION
+    drop = {"sphere": GLASS, "drop": {"height": 0.2}, "contact": contact, "run": {"impacts": 3}}
+    response = vi.simulate(vi.read_case(wet(**{**drop, **changes})))
+    assert response.energy["closure_relative"] < 1e-9
+    history = response.history()
+    entries = [name for name in response.energy if name in history and not name.startswith(("microslip", "gross"))]
+    np.testing.assert_allclose(sum(history[name] for name in entries), response.energy["input_J"], rtol=1e-7)
+    assert history["liquid_J"][-1] == pytest.approx(response.energy["liquid_J"], rel=1e-9)
+    assert response.energy["liquid_J"] > 0.0
+    assert np.all(response.impacts["liquid_lost_J"] >= 0.0)
+    assert history["liquid_J"].min() >= -1e-5 * response.energy["input_J"], "gravity goes on in the contact"
+    assert response.history(columns=["kinetic_J"])["kinetic_J"].tolist() == history["kinetic_J"].tolist()
+
+
+def test_at_rest_it_presses_with_its_weight_less_buoyancy() -> None:
+    response = vi.simulate(vi.read_case(wet(sphere=GLASS, drop={"height": 0.1}, run={"impacts": "all"})))
+    assert response.outcomes[0].at_rest
+    history = response.history(columns=["force_N"])
+    volume = 4.0 / 3.0 * np.pi * 0.005**3
+    assert history["force_N"][-1] == pytest.approx(volume * (2500.0 - 998.2) * 9.80665, rel=1e-9)
+
+
+def test_a_heavy_liquid_bears_the_sphere() -> None:
+    mercury = {"density": 13534.0, "viscosity": "1.5 mPa s"}
+    with pytest.raises(vi.InputError, match=r"contact\.liquid\.density: .* 5\.414 times the density of the sphere, which floats in it"):
+        vi.read_case(wet(mercury, sphere=GLASS))
+    response = vi.simulate(vi.read_case(wet(mercury, sphere=GLASS, drop={"speed": 1.0, "gravity": 0.0}, run={"impacts": 1})))
+    assert response.impacts["restitution_asked"][0] == pytest.approx(0.8, rel=1e-2)
+    problem = vi.read_case(wet(sphere=GLASS)).to_problem()
+    parts = {"sphere": problem.sphere, "plate": problem.plate, "laws": problem.laws, "speed": 1.0}
+    with pytest.raises(vi.InputError, match="floats in it"):
+        vi.Problem(**parts, liquid=vi.Liquid(density=3000.0))  # type: ignore[arg-type]
+    with pytest.raises(vi.InputError, match="either in a liquid or in air"):
+        vi.Problem(**parts, liquid=vi.Liquid(), air=vi.Air())  # type: ignore[arg-type]
+
+
+def test_a_law_is_calibrated_along_a_drop_in_it() -> None:
+    table = wet(
+        sphere=GLASS, drop={"height": 0.5}, contact={"law": "hunt-crossley", "restitution": 0.8, "liquid": True}, run={"impacts": 4}
+    )
+    found = calibrate_case(read_calibration({**table, "calibrate": {"target": {"restitution": 0.7}, "model": "hunt-crossley"}}))
+    newton = vi.simulate(vi.read_case({**table, "contact": {"law": "newton", "restitution": 0.7, "liquid": True}})).impacts
+    for drop, tolerance in (("target", 1e-9), ("variable", 3e-4)):
+        np.testing.assert_allclose(found.drops[drop]["approach_speed_m_s"], newton["approach_speed_m_s"], rtol=tolerance)
+
+
+def test_rebound_heights_measured_in_it_give_the_restitution_back() -> None:
+    table = wet(sphere=GLASS, drop={"height": 0.5}, contact={"law": "newton", "restitution": 0.8, "liquid": True}, run={"impacts": 4})
+    heights = vi.simulate(vi.read_case(table)).impacts["rebound_height_m"].tolist()
+    measured = {**table, "calibrate": {"target": {"rebound_heights": heights}, "degree": 0}}
+    found = calibrate_case(read_calibration(measured))
+    np.testing.assert_allclose(found.values, 0.8, rtol=1e-6)
+    assert "buoyancy, drag and added mass of the liquid" in found.observations.notes[0]
+    with pytest.raises(vi.InputError, match=r"flies through a liquid, as given by contact\.liquid"):
+        calibrate_case(read_calibration({**table, "calibrate": {**measured["calibrate"], "air": True}}))
+
+
 def test_an_elastic_plate_is_hit_in_it() -> None:
-    plate = {"size": [0.4, 0.3, 0.02], "material": "steel", "model": "elastic", "supports": "clamped", "modes": 5, "damping": 0.02}
     impacts = {
-        viscosity: vi.simulate(vi.read_case(wet({"viscosity": viscosity}, plate=plate, run={"impacts": 1}))).impacts
+        viscosity: vi.simulate(vi.read_case(wet({"viscosity": viscosity}, plate=PLATE, run={"impacts": 1}))).impacts
         for viscosity in (1e-9, 0.5)
     }
     thin, thick = (found["restitution_achieved"][0] for found in impacts.values())

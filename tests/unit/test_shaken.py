@@ -12,6 +12,7 @@ import pytest
 from scipy import signal
 
 import vibroimpact as vi
+from support import plain_case
 from vibroimpact.cases.keys import with_values
 from vibroimpact.charts.marks import Line
 from vibroimpact.contact.laws.kuwabara_kono import KuwabaraKono
@@ -670,6 +671,23 @@ def test_the_ledger_of_oblique_impacts_on_an_elastic_screen_closes() -> None:
     assert touch["plate_deflection_m"] == pytest.approx(touch["position_m"] - 0.02, abs=1e-12)
 
 
+@pytest.mark.parametrize("law", ["newton", "hunt-crossley"])
+def test_the_place_of_an_impact_on_a_plate_that_moves_along_itself(law: str) -> None:
+    """Positions are in space; the plate has moved away under them by its motion, and the plate's own places tell where it is hit."""
+    table = plain_case(
+        contact={"law": law, "restitution": 0.6},
+        drop={"velocity": [0.3, 0.0, -1.0], "position": [0.01, 0.02]},
+        run={"impacts": 3},
+    )
+    table["plate"] |= {"motion": {"amplitude": "4 mm", "frequency": "7 Hz", "direction": [1, 0, 0]}, "size": [1.0, 1.0, 0.02]}
+    impacts = vi.simulate(vi.read_case(table)).impacts
+    moved = 4e-3 * np.sin(2.0 * np.pi * 7.0 * impacts["time_s"])
+    assert np.abs(moved).max() > 1e-3
+    assert impacts["place_on_plate_x_m"] == pytest.approx(impacts["position_x_m"] - moved, abs=1e-12)
+    assert impacts["place_on_plate_y_m"] == pytest.approx(impacts["position_y_m"], abs=1e-15)
+    assert impacts["place_on_plate_x_m"][0] == pytest.approx(0.01, abs=1e-12)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("drive", ["slow", "table"])
 def test_an_elastic_plate_that_drifts_is_one_at_rest_to_an_observer_who_drifts(tmp_path: Path, drive: str) -> None:
@@ -695,6 +713,9 @@ def test_an_elastic_plate_that_drifts_is_one_at_rest_to_an_observer_who_drifts(t
     assert found.impacts["separation_velocity_x_m_s"] == pytest.approx(sideways, abs=accuracy * drift)
     away = begun + drift * found.impacts["time_s"]
     assert found.impacts["position_x_m"] == pytest.approx(seen.impacts["position_x_m"] + away, abs=accuracy * drift)
+    for axis in "xy":
+        place, still_there = found.impacts[f"place_on_plate_{axis}_m"], seen.impacts[f"position_{axis}_m"]
+        assert place == pytest.approx(still_there, abs=accuracy * drift), "an observer on the plate sees where it is hit"
     assert found.energy["closure_relative"] <= 1e-9
 
 

@@ -12,9 +12,9 @@ import vibroimpact as vi
 from agreement import Against, Agrees
 from oracles.bouncing_in_air import Bounces, bounces, clift_gauvin, schiller_naumann
 from support import plain_case
-from vibroimpact.calibration.air_flights import AirFlights
 from vibroimpact.calibration.calibrate_case import calibrate_case, read_calibration
 from vibroimpact.calibration.calibration import Calibration
+from vibroimpact.calibration.fluid_flights import FluidFlights
 
 AGAINST = Against(
     "numerical integration of a sphere bouncing in air (SciPy)",
@@ -135,7 +135,7 @@ def test_another_drag_coefficient() -> None:
 )
 def test_flights(agrees: Agrees, radius: float, density: float, height: float) -> None:
     """Pebbles, table tennis balls, grains of sand and steel: speeds and times of flights, up and down."""
-    flights = AirFlights(GRAVITY, radius, density, 1.2 * height)
+    flights = FluidFlights(GRAVITY, radius, density, 1.2 * height)
 
     def slope(_: float, state: np.ndarray) -> list[float]:
         reynolds = max(1.2 * abs(state[1]) * 2.0 * radius / 1.81e-5, 1e-12)
@@ -171,7 +171,7 @@ def test_flights(agrees: Agrees, radius: float, density: float, height: float) -
 
 
 def test_beyond_what_air_lets_rise() -> None:
-    grain = AirFlights(GRAVITY, 2e-5, 2500.0, 1.0)
+    grain = FluidFlights(GRAVITY, 2e-5, 2500.0, 1.0)
     with pytest.raises(vi.InputError, match="not possible in air"):
         grain.speed_to_rise(np.array(3.0))
 

@@ -8,13 +8,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibroimpact.calibration.air_flights import AirFlights
 from vibroimpact.calibration.flights import Flights
+from vibroimpact.calibration.fluid_flights import FluidFlights
 from vibroimpact.calibration.observations import Observations
 from vibroimpact.calibration.restitution_limit import measured_restitutions
 from vibroimpact.cases.case import Case
-from vibroimpact.cases.rigid import touch_speed
+from vibroimpact.cases.rigid import fluid_of, touch_speed
 from vibroimpact.dynamics.air import Air
+from vibroimpact.dynamics.fluid import Fluid
+from vibroimpact.dynamics.liquid import Liquid
 from vibroimpact.errors import InputError
 
 _MATTERS = 0.002  # relative change of a restitution by drag above which a warning is given
@@ -31,39 +33,51 @@ class Measurement(NamedTuple):
 
 def speed_at_touch(case: Case, flights: Flights | None) -> float:
     """Return the speed at first touch of a case [m/s], with drag if flights are given and the case gives the height."""
-    if flights is None or case.drop.height is None or case.drop.air is not None:
+    if flights is None or case.drop.height is None or fluid_of(case) is not None:
         return touch_speed(case)
     return float(flights.speed_after_fall(np.array(case.drop.height - case.sphere.radius))[0])
 
 
 def evaluate(case: Case, measurement: Measurement, air: bool | None) -> Observations:
-    """Return the evaluated measurement, with drag if `air`, or if the drop of the case has it.
+    """Return the evaluated measurement, with drag if `air`, or if the drop of the case has it, as in a liquid.
 
     If neither says so, it is without drag, and with a warning where drag matters.
 
     Raises
     ------
     InputError
-        If the measurement shows no impacts, or flights that are impossible in air, or the case has air and `air` is False.
+        If the measurement shows no impacts, or flights that are impossible in air, or the case has air and `air` is False, or a liquid and
+        `air` is given.
     """
-    own = case.drop.air
+    own = fluid_of(case)
+    if air is not None and isinstance(own, Liquid):
+        raise InputError("the sphere flies through a liquid, as given by contact.liquid; leave one of them out", "air")
     if own is not None and air is False:
         raise InputError("the sphere flies through air, as given by drop.air; leave one of them out", "air")
     if case.drop.gravity == 0.0:  # no flight returns
         return measurement.evaluated(None)
-    highest = max(measurement.highest, (case.drop.height or 0.0) - case.sphere.radius, 0.5 * touch_speed(case) ** 2 / case.drop.gravity)
-    through = Air() if own is None else own.air()
-    flights = AirFlights(case.drop.gravity, case.sphere.radius, case.sphere.material.density, _ROOM * highest, through)
+    through, sphere = Air() if own is None else own, (case.sphere.radius, case.sphere.material.density)
+    fallen = 0.0 if case.drop.height is None or isinstance(own, Liquid) else case.drop.height - case.sphere.radius
+    pull = FluidFlights(case.drop.gravity, *sphere, 1.0, through).pull
+    flights = FluidFlights(
+        case.drop.gravity, *sphere, _ROOM * max(measurement.highest, fallen, 0.5 * touch_speed(case) ** 2 / pull), through
+    )
     if air or own is not None:
-        source = "Clift and Gauvin" if through.drag_coefficient is None else f"drag coefficient {through.drag_coefficient:g}"
-        note = f"Flights have the drag of air ({through.density:g} kg/m³; {source})."
         seen = measurement.evaluated(flights)
         heights = " Rebound heights are those that the sphere would reach without it." if "rebound_height" in seen.wanted else ""
-        return replace(seen, notes=(note + heights, *seen.notes))
+        return replace(seen, notes=(_note(through) + heights, *seen.notes))
     seen = measurement.evaluated(None)
     if air is None and (doubt := _doubt(seen, measurement, flights, case)):
         return replace(seen, doubts=(*seen.doubts, doubt))
     return seen
+
+
+def _note(through: Fluid) -> str:
+    constant = through.drag_coefficient if isinstance(through, Air) else None
+    source = "Clift and Gauvin" if constant is None else f"drag coefficient {constant:g}"
+    if isinstance(through, Liquid):
+        return f"Flights have the buoyancy, drag and added mass of the liquid ({through.density:g} kg/m³; {source})."
+    return f"Flights have the drag of air ({through.density:g} kg/m³; {source})."
 
 
 def _doubt(seen: Observations, measurement: Measurement, flights: Flights, case: Case) -> str:

@@ -10,7 +10,7 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.calibration.matchable import ALONG_PLATE, MATCHABLE, MatchableQuantity
 from vibroimpact.contact.law import ContactLaw
-from vibroimpact.dynamics.flight_in_air import flights_of, speed_of_fall
+from vibroimpact.dynamics.flight_in_fluid import flights_of, speed_of_fall
 from vibroimpact.dynamics.oblique.statement import Oblique
 from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.dynamics.problem import Problem
@@ -57,8 +57,11 @@ def single_impacts(problem: Problem, law: ContactLaw, speeds: Floats) -> dict[st
 
 def _single_impacts(problem: Problem, law: ContactLaw, speeds: Floats) -> dict[str, Floats]:
     response = simulate(replace(_one_impact(problem, law, speeds), tolerance=_TOLERANCE))
-    rise = np.maximum(response.impacts["rebound_height_m"][:, 0] - problem.sphere.contact_offset, 0.0)
-    return {**_first_impacts(response, MATCHABLE), "next_speed": np.sqrt(2.0 * problem.gravity * rise)}
+    found = _first_impacts(response, MATCHABLE)
+    if problem.liquid is not None and problem.gravity > 0.0:  # the flight of the response is in it
+        found["rebound_height"] = problem.sphere.contact_offset + 0.5 * found["separation_speed"] ** 2 / problem.gravity
+    rise = np.maximum(found["rebound_height"] - problem.sphere.contact_offset, 0.0)
+    return {**found, "next_speed": np.sqrt(2.0 * problem.gravity * rise)}
 
 
 def oblique_impacts(problem: Problem, law: ContactLaw, speeds: Floats, oblique: Oblique) -> dict[str, Floats]:
@@ -102,14 +105,14 @@ def first_approach_speed(problem: Problem) -> float:
     """Return the speed at the first touch of a drop [m/s]."""
     if problem.speed is not None:
         return float(problem.speed)
-    if problem.air is not None:
+    if problem.fluid is not None:
         return speed_of_fall(problem)
     return float(np.sqrt(2.0 * problem.gravity * (np.asarray(problem.height) - problem.sphere.contact_offset)))
 
 
 def return_speeds(problem: Problem, speeds: Floats) -> Floats:
-    """Return the speeds at which spheres come back that leave the plate with given ones [m/s], through the air of a drop that has it."""
-    if problem.air is None:
+    """Return the speeds at which spheres come back that leave the plate with given ones [m/s], through what a drop flies through."""
+    if problem.fluid is None:
         return speeds
     return flights_of(problem, np.zeros(len(speeds)), speeds).touch(np.zeros(1))[1]
 

@@ -19,6 +19,7 @@ from vibroimpact.cases.rigid import PLATE_FALLS, contact_laws_of, deforms, elast
 from vibroimpact.contact.friction.law import CompliantFriction
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, is_conservative
 from vibroimpact.dynamics.air import check_thin
+from vibroimpact.dynamics.liquid import check_sinks
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.errors import InputError
 from vibroimpact.resolved_case import ResolvedCase
@@ -110,7 +111,7 @@ def _check_liquid(case: CaseTable, law: ContactLaw) -> None:
     Raises
     ------
     InputError
-        If the law takes no restitution, or the sphere falls on another one or through air.
+        If the law takes no restitution, or the sphere falls on another one or through air, or floats.
     """
     if case.contact.local.liquid is None:
         return
@@ -123,6 +124,8 @@ def _check_liquid(case: CaseTable, law: ContactLaw) -> None:
         )
     if case.drop.air is not None:
         raise InputError("the sphere meets the plate in a liquid, and can't fall through air to it; leave one of them out", "drop.air")
+    if case.drop.gravity:
+        check_sinks(case.contact.local.liquid.density, case.sphere.material.density, "contact.liquid.density")
 
 
 def _check_motion(case: CaseTable) -> None:

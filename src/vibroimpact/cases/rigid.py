@@ -14,7 +14,8 @@ from vibroimpact.cases.oblique import normal_motion_of, oblique_of
 from vibroimpact.cases.pair import contact_pair, is_free_sphere
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.contact.registry import find_contact_law
-from vibroimpact.dynamics.flight_in_air import speed_of_fall
+from vibroimpact.dynamics.flight_in_fluid import speed_of_fall
+from vibroimpact.dynamics.fluid import Fluid
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.errors import InputError
 
@@ -48,6 +49,13 @@ def contact_laws_of(case: CaseTable) -> tuple[ContactLaw, ...]:
         )
     except InputError as error:
         raise InputError(error.message, f"contact.{error.key}".rstrip(".")) from None
+
+
+def fluid_of(case: CaseTable) -> Fluid | None:
+    """Return what the sphere of a case flies through; None for a vacuum."""
+    if case.contact.local.liquid is not None:
+        return case.contact.local.liquid.liquid()
+    return None if case.drop.air is None else case.drop.air.air()
 
 
 def in_liquid(case: CaseTable, law: ContactLaw) -> ContactLaw:
@@ -114,6 +122,6 @@ def touch_speed(case: CaseTable) -> float:
     motion = normal_motion_of(case)
     if "speed" in motion:
         return float(motion["speed"])
-    if case.drop.air is not None:
+    if fluid_of(case) is not None:
         return speed_of_fall(rigid_problem(case))
     return float((motion["velocity"] ** 2 + 2.0 * motion["gravity"] * (motion["height"] - case.sphere.radius)) ** 0.5)

@@ -1,4 +1,4 @@
-r"""Air, and its drag on a sphere."""
+"""Air, and the density up to which drag is all that matters of it."""
 
 from __future__ import annotations
 
@@ -14,26 +14,6 @@ AIR_DENSITY, AIR_VISCOSITY = 1.2, 1.81e-5
 """Density [kg/m^3] and viscosity [Pa s] of air at 20 C and sea level."""
 
 _DENSEST = 0.02  # largest density, relative to the sphere's: buoyancy then takes as much of gravity, and is left out
-_STILL = 1e-30  # m/s, for a speed of zero, at which Stokes' drag is none
-
-
-def drag_coefficient(reynolds: Array) -> Array:
-    r"""Return the drag coefficient of a smooth sphere at a Reynolds number.
-
-    .. math:: C_d = \frac{24}{Re}\left(1 + 0.15\,Re^{0.687}\right) + \frac{0.42}{1 + 42500\,Re^{-1.16}}
-
-    Within 6 % of measurements up to a Reynolds number of 3e5.
-
-    References
-    ----------
-    Clift, R. and Gauvin, W. H. (1970). The motion of particles in turbulent gas streams. Proc. Chemeca '70, 1, 14-28.
-
-    Examples
-    --------
-    >>> round(float(drag_coefficient(1e4)), 2)
-    0.42
-    """
-    return 24.0 / reynolds * (1.0 + 0.15 * reynolds**0.687) + 0.42 / (1.0 + 42500.0 * reynolds**-1.16)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -60,27 +40,15 @@ class Air(Fluid):
     0.478
     """
 
-    word = "air"
+    word, key = "air", "air"
 
     density: Array = AIR_DENSITY
     viscosity: Array = AIR_VISCOSITY
     drag_coefficient: Array | None = None
 
-    def drag(self, speed: Array, radius: Array, density: Array) -> Array:
-        r"""Return by how much air slows a sphere down [m/s^2], :math:`\tfrac38 (\rho_a / \rho) C_d v^2 / R`.
-
-        Parameters
-        ----------
-        speed : float or array
-            Through air that is at rest [m/s], >= 0.
-        radius, density : float or array
-            Of the sphere [m], [kg/m^3].
-        """
-        fast = np.maximum(speed, _STILL)
-        coefficient = self.drag_coefficient
-        if coefficient is None:
-            coefficient = drag_coefficient(self.density * fast * 2.0 * radius / self.viscosity)
-        return 0.375 * self.density / density * coefficient * fast**2 / radius
+    def coefficient(self, reynolds: Array) -> Array:
+        """Return the drag coefficient at a Reynolds number: that of a smooth sphere, or the constant one that was given."""
+        return super().coefficient(reynolds) if self.drag_coefficient is None else self.drag_coefficient
 
 
 def density_of(mass: Array, radius: Array) -> Array:
@@ -94,6 +62,7 @@ def check_thin(density: Array, of_sphere: Array, key: str = "") -> None:
     if part > _DENSEST:
         raise InputError(
             f"the medium of the fall has {100.0 * part:.3g} % of its density, and {100.0 * _DENSEST:g} % are the most: drag alone "
-            "acts on it, and in what is denser buoyancy, the mass of fluid that moves along, and the film over the plate count too",
+            "acts on it, and in what is denser buoyancy, the mass of fluid that moves along, and the film over the plate count too; give a "
+            "liquid as contact.liquid",
             key,
         )

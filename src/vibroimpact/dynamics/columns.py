@@ -80,7 +80,7 @@ HISTORY_COLUMNS: dict[str, Column] = {
     "acceleration_m_s2": Column("m/s2", "acceleration of the sphere, upwards"),
     "force_N": Column("N", "contact force on the sphere, upwards"),
     "indentation_m": Column("m", "indentation, zero without contact; negative where an adhesive contact is stretched"),
-    "kinetic_J": _held("kinetic energy of the sphere", "Kinetic energy of the sphere", "kinetic"),
+    "kinetic_J": _held("kinetic energy of the sphere, and of a liquid that moves along", "Kinetic energy of the sphere", "kinetic"),
     "potential_J": _held(
         "potential energy of the sphere, zero at first touch of the undeformed plate",
         "Potential energy of the sphere, zero at the height of first touch",
@@ -146,8 +146,8 @@ SHAKEN_HISTORY_COLUMNS: dict[str, Column] = {
 """Further columns of a history, where the plate is shaken."""
 
 OBLIQUE_IMPACT_COLUMNS: dict[str, Column] = {
-    "position_x_m": Column("m", "position of the sphere's centre at first touch, along x"),
-    "position_y_m": Column("m", "position of the sphere's centre at first touch, along y"),
+    "position_x_m": Column("m", "position of the sphere's centre at first touch, along x, from the mean position of the plate's centre"),
+    "position_y_m": Column("m", "position of the sphere's centre at first touch, along y, from the mean position of the plate's centre"),
     "approach_velocity_x_m_s": Column("m/s", "velocity of the centre at first touch, along x"),
     "approach_velocity_y_m_s": Column("m/s", "velocity of the centre at first touch, along y"),
     "separation_velocity_x_m_s": Column("m/s", "velocity of the centre at release, along x"),
@@ -176,16 +176,29 @@ OBLIQUE_IMPACT_COLUMNS: dict[str, Column] = {
 }
 """Further columns of the impact table, where motion is not along the normal alone."""
 
-AIR_IMPACT_COLUMNS: dict[str, Column] = {
-    "air_lost_J": Column("J", "energy lost to air drag in the flight before the impact", "Lost to the air", "air")
+CARRIED_IMPACT_COLUMNS: dict[str, Column] = {
+    "place_on_plate_x_m": Column("m", "place of first touch on the moving plate, along x from the plate's centre then"),
+    "place_on_plate_y_m": Column("m", "place of first touch on the moving plate, along y from the plate's centre then"),
 }
-"""A further column of the impact table, where the sphere flies through air."""
+"""Further columns of the impact table, where motion is not along the normal alone and the plate is shaken."""
+
+FLUID_IMPACT_COLUMNS: dict[str, Column] = {
+    "air_lost_J": Column("J", "energy lost to air drag in the flight before the impact", "Lost to the air", "air"),
+    "liquid_lost_J": Column("J", "energy lost to the drag of the liquid in the flight before the impact", "Lost to the liquid", "liquid"),
+}
+"""Further columns of the impact table, one of which it has where the sphere flies through air or a liquid."""
 
 VIBRATING_IMPACT_COLUMNS = {**IMPACT_COLUMNS, **VIBRATION_IMPACT_COLUMNS}
-ALL_IMPACT_COLUMNS = {**VIBRATING_IMPACT_COLUMNS, **SHAKEN_IMPACT_COLUMNS, **OBLIQUE_IMPACT_COLUMNS, **AIR_IMPACT_COLUMNS}
+ALL_IMPACT_COLUMNS = {
+    **VIBRATING_IMPACT_COLUMNS,
+    **SHAKEN_IMPACT_COLUMNS,
+    **OBLIQUE_IMPACT_COLUMNS,
+    **CARRIED_IMPACT_COLUMNS,
+    **FLUID_IMPACT_COLUMNS,
+}
 OBLIQUE_HISTORY_COLUMNS: dict[str, Column] = {
-    "position_x_m": Column("m", "position of the sphere's centre along x, from the centre of the plate"),
-    "position_y_m": Column("m", "position of the sphere's centre along y, from the centre of the plate"),
+    "position_x_m": Column("m", "position of the sphere's centre along x, from the mean position of the plate's centre"),
+    "position_y_m": Column("m", "position of the sphere's centre along y, from the mean position of the plate's centre"),
     "velocity_x_m_s": Column("m/s", "velocity of the centre along x"),
     "velocity_y_m_s": Column("m/s", "velocity of the centre along y"),
     "spin_x_rad_s": Column("rad/s", "angular velocity about x"),
@@ -208,15 +221,22 @@ FRICTION_PARTS: dict[str, Column] = {
 }
 """Two parts of `friction_J`, which are known at the end of a run."""
 
-AIR_HISTORY_COLUMNS: dict[str, Column] = {"air_J": _lost("energy lost so far to the drag of air", "Lost to the drag of air", "air")}
-"""A further column of a history, where the sphere flies through air."""
+FLUID_HISTORY_COLUMNS: dict[str, Column] = {
+    "air_J": _lost("energy lost so far to the drag of air", "Lost to the drag of air", "air"),
+    "liquid_J": _lost(
+        "energy lost so far to the liquid: by drag, and of the liquid that moves along as impacts turn the sphere",
+        "Lost to the liquid",
+        "liquid",
+    ),
+}
+"""Further columns of a history, one of which it has where the sphere flies through air or a liquid."""
 
 ALL_HISTORY_COLUMNS = {
     **HISTORY_COLUMNS,
     **VIBRATION_HISTORY_COLUMNS,
     **SHAKEN_HISTORY_COLUMNS,
     **OBLIQUE_HISTORY_COLUMNS,
-    **AIR_HISTORY_COLUMNS,
+    **FLUID_HISTORY_COLUMNS,
 }
 
 LEDGER_COLUMNS = {**ALL_HISTORY_COLUMNS, **FRICTION_PARTS}
@@ -237,8 +257,8 @@ SHAKEN_LEDGER = tuple(name for name, column in SHAKEN_HISTORY_COLUMNS.items() if
 OBLIQUE_LEDGER = tuple(name for name, column in OBLIQUE_HISTORY_COLUMNS.items() if column.in_ledger)
 """The further columns that share it, where motion is not along the normal alone."""
 
-AIR_LEDGER = tuple(name for name, column in AIR_HISTORY_COLUMNS.items() if column.in_ledger)
-"""The further column that shares it, where the sphere flies through air."""
+FLUID_LEDGER = tuple(name for name, column in FLUID_HISTORY_COLUMNS.items() if column.in_ledger)
+"""The further columns that share it, one where the sphere flies through air, the other in a liquid."""
 
 
 def impact_columns(impacts: Iterable[str]) -> dict[str, Column]:

@@ -1,4 +1,4 @@
-"""What air and liquids have in common: density and viscosity, of one drop or of a batch."""
+r"""What air and liquids have in common: density, viscosity and the drag on a sphere, of one drop or of a batch."""
 
 from __future__ import annotations
 
@@ -10,6 +10,27 @@ import numpy as np
 
 from vibroimpact.arrays import Array, Bools, Drops
 from vibroimpact.errors import InputError
+
+_STILL = 1e-30  # m/s, for a speed of zero, at which Stokes' drag is none
+
+
+def drag_coefficient(reynolds: Array) -> Array:
+    r"""Return the drag coefficient of a smooth sphere at a Reynolds number.
+
+    .. math:: C_d = \frac{24}{Re}\left(1 + 0.15\,Re^{0.687}\right) + \frac{0.42}{1 + 42500\,Re^{-1.16}}
+
+    Within 6 % of measurements up to a Reynolds number of 3e5.
+
+    References
+    ----------
+    Clift, R. and Gauvin, W. H. (1970). The motion of particles in turbulent gas streams. Proc. Chemeca '70, 1, 14-28.
+
+    Examples
+    --------
+    >>> round(float(drag_coefficient(1e4)), 2)
+    0.42
+    """
+    return 24.0 / reynolds * (1.0 + 0.15 * reynolds**0.687) + 0.42 / (1.0 + 42500.0 * reynolds**-1.16)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -24,6 +45,10 @@ class Fluid:
 
     word: ClassVar[str]
     """What messages call it."""
+    key: ClassVar[str]
+    """What the names of its columns begin with."""
+    added_mass: ClassVar[float] = 0.0
+    """Mass of fluid that moves along with a sphere, over the mass that the sphere displaces [-]."""
 
     density: Array
     viscosity: Array
@@ -52,3 +77,33 @@ class Fluid:
         if self.shape == ():
             return self
         return type(self)(**{name: value if np.ndim(value) == 0 else np.asarray(value)[drops] for name, value in self._given()})
+
+    def coefficient(self, reynolds: Array) -> Array:
+        """Return the drag coefficient of a smooth sphere at a Reynolds number."""
+        return drag_coefficient(reynolds)
+
+    def inertia(self, density: Array) -> Array:
+        """Return the mass that is accelerated in flight over that of the sphere [-], from its density [kg/m^3]."""
+        return 1.0 + self.added_mass * self.density / density
+
+    def weight(self, density: Array) -> Array:
+        """Return the weight in the fluid over that in a vacuum [-], of a sphere of a density [kg/m^3]."""
+        return 1.0 + 0.0 * density
+
+    def drag(self, speed: Array, radius: Array, density: Array) -> Array:
+        r"""Return by how much the fluid slows a sphere down [m/s^2].
+
+        .. math:: a = \frac{3}{8} \frac{\rho_f}{\rho + C_a \rho_f}\, C_d \frac{v^2}{R}
+
+        with the added mass C_a.
+
+        Parameters
+        ----------
+        speed : float or array
+            Through fluid that is at rest [m/s], >= 0.
+        radius, density : float or array
+            Of the sphere [m], [kg/m^3].
+        """
+        fast = np.maximum(speed, _STILL)
+        coefficient = self.coefficient(self.density * fast * 2.0 * radius / self.viscosity)
+        return 0.375 * self.density / (density * self.inertia(density)) * coefficient * fast**2 / radius

@@ -1,4 +1,10 @@
-r"""A liquid around an impact, whose film between the surfaces takes from the rebound.
+r"""A liquid around sphere and plate: buoyancy, drag and added mass in flight, and a film that takes from the rebound.
+
+In flight the sphere is accelerated by
+
+.. math:: \dot v = \frac{\rho - \rho_f}{\rho + \tfrac12 \rho_f}\, g - a(v)
+
+with the drag a of `vibroimpact.dynamics.fluid`, and half the displaced mass moves along, as in unbounded liquid without viscosity.
 
 The film has to be pressed out before sphere and plate touch, and drawn in as they part. What is left of the restitution in air depends on
 the Stokes number alone, the inertia of the sphere over the viscous force of the film.
@@ -14,6 +20,7 @@ import numpy as np
 from vibroimpact.arrays import Array
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.dynamics.fluid import Fluid
+from vibroimpact.errors import InputError
 
 WATER_DENSITY, WATER_VISCOSITY = 998.2, 1.002e-3
 """Density [kg/m^3] and viscosity [Pa s] of water at 20 C."""
@@ -21,7 +28,6 @@ WATER_DENSITY, WATER_VISCOSITY = 998.2, 1.002e-3
 CRITICAL_STOKES = 10.0
 """Stokes number below which spheres were seen to stay on the wall: Joseph and others 2001."""
 
-_ADDED_MASS = 0.5  # of a sphere, relative to the mass of liquid that it displaces
 _DRAINAGE = 35.0
 _LEAST = 1e-3  # part of the restitution that is left at least: laws take none of zero, and so slow a sphere is at rest
 
@@ -50,10 +56,14 @@ class Liquid(Fluid):
     3492
     """
 
-    word = "a liquid"
+    word, key, added_mass = "a liquid", "liquid", 0.5
 
     density: Array = WATER_DENSITY
     viscosity: Array = WATER_VISCOSITY
+
+    def weight(self, density: Array) -> Array:
+        """Return the weight in the liquid over that in a vacuum [-], of a sphere of a density [kg/m^3]: less buoyancy."""
+        return 1.0 - self.density / density
 
     def stokes_number(self, speed: Array, radius: Array, density: Array) -> Array:
         r"""Return the Stokes number of a sphere that meets a wall.
@@ -69,7 +79,7 @@ class Liquid(Fluid):
         radius, density : float or array
             Of the sphere [m], [kg/m^3].
         """
-        return (density + _ADDED_MASS * self.density) * 2.0 * radius * speed / (9.0 * self.viscosity)
+        return (density + self.added_mass * self.density) * 2.0 * radius * speed / (9.0 * self.viscosity)
 
     def around(self, law: Law, speed: Array, radius: Array, density: Array) -> Law:
         """Return the law of an impact with what the film leaves of its restitution.
@@ -89,6 +99,17 @@ class Liquid(Fluid):
         """
         dry: Array = vars(law)["restitution"]
         return law.changed({"restitution": dry * restitution_kept(self.stokes_number(speed, radius, density))})
+
+
+def check_sinks(density: Array, of_sphere: Array, key: str = "") -> None:
+    """Raise InputError, with a key, unless a sphere is denser than the liquid; densities [kg/m^3]."""
+    if np.any(np.asarray(density) >= np.asarray(of_sphere)):
+        part = float(np.max(np.asarray(density) / np.asarray(of_sphere)))
+        raise InputError(
+            f"it has {part:.4g} times the density of the sphere, which floats in it and doesn't fall; give a liquid of a smaller density, "
+            "or drop.speed with drop.gravity = 0",
+            key,
+        )
 
 
 def restitution_kept(stokes: Array) -> Array:

@@ -17,7 +17,8 @@ from vibroimpact.contact.friction.law import CompliantFriction
 from vibroimpact.contact.law import ContactLaw, InstantaneousLaw
 from vibroimpact.contact.quasi_static import QuasiStatic
 from vibroimpact.dynamics.air import Air, check_thin, density_of
-from vibroimpact.dynamics.liquid import Liquid
+from vibroimpact.dynamics.fluid import Fluid
+from vibroimpact.dynamics.liquid import Liquid, check_sinks
 from vibroimpact.dynamics.oblique.statement import Oblique
 from vibroimpact.dynamics.sensors.sensor import Sensor
 from vibroimpact.dynamics.shaken.statement import PlateMotion
@@ -64,8 +65,8 @@ class Problem:
     air : Air, optional
         What the sphere falls through: its drag slows it down in flight. By default nothing.
     liquid : Liquid, optional
-        What sphere and plate touch in: its film takes from the restitution of the law, which is that in air. Flights are without it. By
-        default nothing.
+        What is around sphere and plate, in place of air: buoyancy, drag and added mass act in flight, and a film takes from the
+        restitution of the law, which is that in air. By default nothing.
     impacts : int, optional
         Stop after so many impacts, at the top of the last rebound. None: go on to rest.
     duration : float, optional
@@ -260,6 +261,30 @@ class Problem:
             raise InputError("a sphere that touches in a liquid needs a radius: its contact_offset, greater than 0 m")
         if self.laws[0].free_parameter != "restitution":
             raise InputError(f"{self.laws[0].name} takes no restitution, of which a liquid leaves a part; take another law")
+        if self.air is not None:
+            raise InputError("the sphere is either in a liquid or in air; leave one of them out")
+        if np.any(np.asarray(self.gravity) > 0.0):
+            check_sinks(liquid.density, density_of(self.sphere.mass, self.sphere.contact_offset))
+
+    @property
+    def fluid(self) -> Fluid | None:
+        """What the sphere flies through; None for a vacuum."""
+        return self.air if self.liquid is None else self.liquid
+
+    @property
+    def net_weight(self) -> Array:
+        """Weight of the sphere, less its buoyancy, over that in a vacuum [-]."""
+        return 1.0 if self.fluid is None else self.fluid.weight(density_of(self.sphere.mass, self.sphere.contact_offset))
+
+    @property
+    def net_gravity(self) -> Array:
+        """Acceleration of gravity along the normal, less buoyancy [m/s^2]."""
+        return self.gravity * self.net_weight
+
+    @property
+    def flight_inertia(self) -> Array:
+        """Mass that is accelerated in flight, with that of a liquid that moves along, over that of the sphere [-]."""
+        return 1.0 if self.fluid is None else self.fluid.inertia(density_of(self.sphere.mass, self.sphere.contact_offset))
 
     @property
     def vibrates(self) -> bool:

@@ -12,9 +12,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.air_history import air_lost
 from vibroimpact.dynamics.columns import (
-    AIR_HISTORY_COLUMNS,
+    FLUID_HISTORY_COLUMNS,
     HISTORY_COLUMNS,
     OBLIQUE_HISTORY_COLUMNS,
     SHAKEN_HISTORY_COLUMNS,
@@ -22,6 +21,7 @@ from vibroimpact.dynamics.columns import (
     meanings,
 )
 from vibroimpact.dynamics.energy import why_failed
+from vibroimpact.dynamics.fluid_history import MOTION, fluid_history
 from vibroimpact.dynamics.history_grid import points_kept, thinned
 from vibroimpact.dynamics.leg import Leg
 from vibroimpact.dynamics.oblique.history import oblique_history
@@ -140,7 +140,9 @@ class Response:
         of_vibration = VIBRATION_HISTORY_COLUMNS if self.problem.vibrates else {}
         moving = {} if self.problem.motion is None else SHAKEN_HISTORY_COLUMNS
         along = {} if self.problem.oblique is None else OBLIQUE_HISTORY_COLUMNS
-        return meanings({**HISTORY_COLUMNS, **of_vibration, **moving, **along, **({} if self.problem.air is None else AIR_HISTORY_COLUMNS)})
+        fluid = None if self.problem.fluid is None else f"{self.problem.fluid.key}_J"
+        of_fluid = {name: column for name, column in FLUID_HISTORY_COLUMNS.items() if name == fluid}
+        return meanings({**HISTORY_COLUMNS, **of_vibration, **moving, **along, **of_fluid})
 
     @property
     def status(self) -> str:
@@ -349,7 +351,8 @@ class Response:
             from vibroimpact.dynamics.vibrating.history import vibrating_history
             from vibroimpact.dynamics.vibrating.rest_motion import RestMotion
 
-            of_bodies = [name for name in columns if name not in OBLIQUE_HISTORY_COLUMNS and name not in AIR_HISTORY_COLUMNS]
+            others = {**OBLIQUE_HISTORY_COLUMNS, **FLUID_HISTORY_COLUMNS}
+            of_bodies = [*(name for name in columns if name not in others), *(() if problem.fluid is None else MOTION)]
             found, resting = vibrating_history(problem, segments[number], times, of_bodies), isinstance(segments[number].motion, RestMotion)
         if self.legs is not None and problem.oblique is not None:
             start = segments[number].start
@@ -358,8 +361,8 @@ class Response:
             lost = float(self.impacts["friction_lost_J"][:leg].sum())
             along = oblique_history(problem, self.legs[leg], lost, start + times, start if resting else np.inf)
             found |= {name: values + found[name] if name in found else values for name, values in along.items()}
-        if self.legs is not None and problem.air is not None:
-            found["air_J"] = air_lost(self.legs, float(problem.sphere.mass), segments[number].start + times)
+        if self.legs is not None and problem.fluid is not None:
+            found |= fluid_history(problem, self.legs, segments[number].start + times, found)
         return {name: found[name] for name in columns}
 
     @cached_property
@@ -381,7 +384,7 @@ class Response:
             begin = end_of(self.legs[-1])
             rest = RideSegment(begin, end, ride, begin)
         elif self.outcomes[0].at_rest:
-            weight = float(self.problem.sphere.mass) * float(self.problem.gravity)
+            weight = float(self.problem.sphere.mass) * float(self.problem.net_gravity)
             points = 2 if self.problem.oblique is None else 97
             rest = RestSegment(end_of(self.legs[-1]), end, float(self.rest.sag[0]), weight, float(self.rest.stored[0]), points)
         return timeline_of(self.legs, rest, np.stack([self.impacts["energy_lost_J"] - plastic, plastic, -work], axis=1))

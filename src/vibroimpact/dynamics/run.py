@@ -12,12 +12,12 @@ from vibroimpact.contact.law import CompliantLaw, ContactLaw, InstantaneousLaw
 from vibroimpact.contact.static import static_indentation
 from vibroimpact.dynamics.air import density_of
 from vibroimpact.dynamics.bodies import Bodies
-from vibroimpact.dynamics.columns import AIR_IMPACT_COLUMNS, OBLIQUE_IMPACT_COLUMNS, SHAKEN_IMPACT_COLUMNS
+from vibroimpact.dynamics.columns import CARRIED_IMPACT_COLUMNS, OBLIQUE_IMPACT_COLUMNS, SHAKEN_IMPACT_COLUMNS
 from vibroimpact.dynamics.contact import CAPTURED, FAILED, RIDING
 from vibroimpact.dynamics.encounter import Encounter, encounter_of
 from vibroimpact.dynamics.energy import CLOSURE_LIMIT, WRITE_OFF_LIMIT, close_ledger
 from vibroimpact.dynamics.flight import Flight
-from vibroimpact.dynamics.flight_in_air import AirFlight
+from vibroimpact.dynamics.flight_in_fluid import FluidFlight
 from vibroimpact.dynamics.impact_rows import ImpactRows
 from vibroimpact.dynamics.leg import Leg
 from vibroimpact.dynamics.lockstep import Coroutine
@@ -37,7 +37,7 @@ class Run:
         self.problem = problem
         self.size = int(np.prod(problem.shape))
         self.mass, self.radius = self.spread(problem.sphere.mass), self.spread(problem.sphere.contact_offset)
-        self.gravity = self.spread(problem.gravity)
+        self.gravity, self.inertia = self.spread(problem.net_gravity), self.spread(problem.flight_inertia)
         self.time, self.gap, self.velocity = np.zeros(self.size), np.zeros(self.size), np.zeros(self.size)
         if problem.height is not None:
             self.gap, self.velocity = self.spread(problem.height) - self.radius, self.spread(problem.velocity)
@@ -45,12 +45,15 @@ class Run:
             self.velocity = -self.spread(problem.speed)
             # at touch: apart by the rounding error of the place of a plate that is shaken
             self.gap = self.gap + problem.surface(0.0)[0] + 4e-15 * np.abs(problem.surface_phasors).sum()
-        self.oblique = None if problem.oblique is None else ObliqueMotion(problem.oblique, self.mass, self.radius, problem.motion)
-        self.ahead: tuple[Drops, AirFlight] | None = None  # flights whose tops have been computed already
-        self.energy_in = self.mechanical_energy()
+        self.oblique = None
+        if problem.oblique is not None:
+            self.oblique = ObliqueMotion(problem.oblique.with_weight(problem.net_weight), self.mass, self.radius, problem.motion)
+        self.ahead: tuple[Drops, FluidFlight] | None = None  # flights whose tops have been computed already
+        self.liquid_at_start = self.energy_of_liquid(self.velocity)
+        self.energy_in = self.mechanical_energy() + self.liquid_at_start
         if self.oblique is not None:
             self.energy_in = sum(self.oblique.energies(), self.energy_in)
-        self.dissipated, self.plastic, self.deepest, self.to_air = (np.zeros(self.size) for _ in range(4))
+        self.dissipated, self.plastic, self.deepest, self.to_fluid = (np.zeros(self.size) for _ in range(4))
         self.moving = np.ones(self.size, dtype=bool)
         self.outcomes = np.full(self.size, Outcome.FAILED.code)
         self.end_time, self.rest_time = np.full(self.size, np.nan), np.full(self.size, np.nan)
@@ -61,7 +64,8 @@ class Run:
         further = (
             *(() if problem.motion is None else SHAKEN_IMPACT_COLUMNS),
             *(() if self.oblique is None else OBLIQUE_IMPACT_COLUMNS),
-            *(() if problem.air is None else AIR_IMPACT_COLUMNS),
+            *(() if self.oblique is None or problem.motion is None else CARRIED_IMPACT_COLUMNS),
+            *(() if problem.fluid is None else [f"{problem.fluid.key}_lost_J"]),
         )
         self.rows = ImpactRows((*self.bodies.columns, *further), self.size)
 
@@ -83,6 +87,11 @@ class Run:
     def mechanical_energy(self) -> Floats:
         """Return the kinetic and potential energy [J]."""
         return np.asarray(self.mass * (0.5 * self.velocity**2 + self.gravity * self.gap))
+
+    def energy_of_liquid(self, velocity: Floats) -> Floats:
+        """Return the kinetic energy of the liquid that moves along with the spheres [J], at their velocities along the normal [m/s]."""
+        squares = velocity**2 + (0.0 if self.oblique is None else (self.oblique.state.velocity**2).sum(axis=0))
+        return np.asarray(0.5 * self.mass * (self.inertia - 1.0) * squares)
 
     def default_rest_speed(self) -> Floats:
         """Return the speed from which a drop would rise by its static indentation [m/s], at least 1e-6 of the first approach speed."""
@@ -123,14 +132,17 @@ class Run:
 
     def flights(self, drops: Drops) -> Flight:
         """Return the flights that drops are about to make."""
-        air, now = self.problem.air, (self.time[drops], self.gap[drops], self.velocity[drops], self.gravity[drops])
-        if air is None:
+        fluid, now = (
+            self.problem.fluid,
+            (self.time[drops], self.gap[drops], self.velocity[drops], self.gravity[drops] / self.inertia[drops]),
+        )
+        if fluid is None:
             return Flight(*now)
         if self.ahead is None or not np.array_equal(self.ahead[0], drops):
             none = np.zeros((0, len(drops)))
-            along = (none, none) if self.oblique is None else self.oblique.pulled(drops)
+            velocity, pull = (none, none) if self.oblique is None else self.oblique.pulled(drops)
             sphere = self.radius[drops], density_of(self.mass[drops], self.radius[drops])
-            flights = AirFlight(*now, *sphere, air.take(drops), along)
+            flights = FluidFlight(*now, *sphere, fluid.take(drops), (velocity, pull / self.inertia[drops]))
             self.ahead = drops, flights
         return self.ahead[1]
 
@@ -163,11 +175,12 @@ class Run:
         self.time[drops], self.ahead = leg.flight_end, None
         if not stops.all():
             leg = yield from self.collide(leg, touch[~stops], speed[~stops])
-        if isinstance(flight, AirFlight):
-            taken = self.mass[drops] * flight.lost(leg.flight_end)
-            self.to_air[drops] += taken
+        if isinstance(flight, FluidFlight):
+            assert self.problem.fluid is not None
+            self.to_fluid[drops] += self.mass[drops] * flight.given(leg.flight_end)
             if not stops.all():
-                self.rows.last["air_lost_J"][leg.contact_drops] = taken[~stops]
+                lost = self.mass[drops] * flight.lost(leg.flight_end)
+                self.rows.last[f"{self.problem.fluid.key}_lost_J"][leg.contact_drops] = lost[~stops]
         growth = yield from self.bodies.growth(leg)
         if growth.size:
             self.rows.last["sensitivity"][leg.contact_drops] = growth
@@ -181,6 +194,8 @@ class Run:
         row["restitution_asked"][drops] = _nominal_restitution(law)
         if self.problem.motion is not None:
             row["plate_velocity_m_s"][drops] = self.problem.surface(touch)[1]
+            if self.oblique is not None:
+                row["place_on_plate_x_m"][drops], row["place_on_plate_y_m"][drops] = self.oblique.seen_from_plate(drops, touch)
         if isinstance(law, InstantaneousLaw):
             (place, velocity, _), separation = self.problem.surface(touch), law.separation_speed(speed, self.mass[drops])
             self.time[drops], self.gap[drops], self.velocity[drops] = touch, place, velocity + separation
@@ -209,7 +224,7 @@ class Run:
         row["energy_lost_J"][drops] = lost
         with np.errstate(divide="ignore", invalid="ignore"):
             rise = np.where(self.gravity[drops] > 0.0, 0.5 * rising**2 / self.gravity[drops], np.nan)
-        if self.problem.air is not None:
+        if self.problem.fluid is not None:
             rise = np.where(rising > 0.0, self.flights(drops).apex()[1] - self.gap[drops], rise)
         row["rebound_height_m"][drops] = self.radius[drops] + self.gap[drops] + rise
         if self.oblique is not None:
@@ -305,7 +320,7 @@ class Run:
             # flights are a geometric series with the ratio of the last restitution
             missing = 1.0 - row["restitution_achieved"][slow]
             speed = self.velocity[slow] - self.problem.surface(self.time[slow])[1]
-            limit = self.time[slow] + 2.0 * speed / self.gravity[slow] / np.where(missing > 1e-6, missing, 0.0)
+            limit = self.time[slow] + 2.0 * speed * self.inertia[slow] / self.gravity[slow] / np.where(missing > 1e-6, missing, 0.0)
         self.bring_to_rest(slow, law.take(np.flatnonzero(resting)), limit, np.zeros(len(slow)))
         self.stop(slow, Outcome.REST_SPEED, np.where(np.isfinite(limit), limit, self.time[slow]))
 
@@ -331,12 +346,12 @@ class Run:
 
     def batch(self) -> Response:
         """Return the response of the batch without a history."""
-        at_rest = np.array([outcome.at_rest for outcome in OUTCOMES])[self.outcomes]
+        fluid, at_rest = self.problem.fluid, np.array([outcome.at_rest for outcome in OUTCOMES])[self.outcomes]
         if self.problem.duration is not None:
             self.end_time[at_rest] = np.maximum(self.end_time, self.problem.duration)[at_rest]
         along = {} if self.oblique is None else self.lie_on_plate(self.oblique, np.flatnonzero(at_rest))
         final_gap, final_velocity = self.final_motion(np.flatnonzero(at_rest))
-        vibration = self.bodies.energies()
+        vibration, liquid = self.bodies.energies(), self.energy_of_liquid(final_velocity)
         added = self.mass * self.gravity * self.deepest + np.maximum(-self.stored, 0.0)  # the stored energy is negative where it sticks
         if self.oblique is not None:
             added += np.maximum(-along["potential_J"], 0.0)  # what gravity did down the plate
@@ -347,7 +362,7 @@ class Run:
             self.energy_in,
             added,
             {
-                "kinetic_J": 0.5 * self.mass * final_velocity**2 + along.pop("kinetic_J", 0.0),
+                "kinetic_J": 0.5 * self.mass * final_velocity**2 + liquid + along.pop("kinetic_J", 0.0),
                 "potential_J": self.mass * self.gravity * final_gap + along.pop("potential_J", 0.0),
                 "contact_elastic_J": self.stored + vibration.pop("local_J", 0.0),
                 "contact_dissipated_J": self.dissipated + vibration.pop("local_damping_J", 0.0),
@@ -355,7 +370,7 @@ class Run:
                 "written_off_at_rest_J": self.written_off,
                 **vibration,
                 **along,
-                **({} if self.problem.air is None else {"air_J": self.to_air}),
+                **({} if fluid is None else {f"{fluid.key}_J": self.to_fluid + self.liquid_at_start - liquid}),
             },
         )
         energy |= {} if self.oblique is None else self.oblique.friction_parts()

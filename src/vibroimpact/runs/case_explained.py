@@ -75,7 +75,7 @@ def case_explained(case: Case, aside: Container[str] = ()) -> RenderableType:
     if (table := case.contact.local.liquid) is not None:
         stokes = table.liquid().stokes_number(speed, case.sphere.radius, case.sphere.material.density)
         left = f"at the first touch the Stokes number is {stokes:.4g}, and {restitution_kept(stokes):.5g} of the restitution remains"
-        rows.append(("liquid", f"{fluid_words(table.model_dump())}: {left}; flights are without it"))
+        rows.append(("liquid", f"{fluid_words(table.model_dump())}: {left}"))
     if (friction := friction_law_of(case)) is not None:
         rows.append(("friction law", f"{friction.name}: {friction.equation}"))
         rows += [(f"  {item.name}", f"{getattr(friction, item.name):.9g} {item.metadata['unit']}".rstrip()) for item in fields(friction)]

@@ -25,6 +25,7 @@ _ROLES = {
     "plastic_work_J": "plastic work",
     "friction_J": "sphere damping",
     "air_J": "plate damping",
+    "liquid_J": "plate damping",
     "sphere_damping_J": "sphere damping",
     "plate_damping_J": "plate damping",
     "written_off_at_rest_J": "written off",

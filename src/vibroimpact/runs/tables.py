@@ -10,8 +10,8 @@ import numpy as np
 
 from vibroimpact.arrays import Floats, Indices
 from vibroimpact.dynamics.columns import (
-    AIR_LEDGER,
     ALL_IMPACT_COLUMNS,
+    FLUID_LEDGER,
     FRICTION_PARTS,
     LEDGER,
     LEDGER_COLUMNS,
@@ -50,6 +50,7 @@ _SHOWN_COLUMNS = (
     "friction_lost_J",
     "microslip_lost_J",
     "air_lost_J",
+    "liquid_lost_J",
     "contacts",
     "sensitivity",
 )
@@ -118,7 +119,7 @@ def ledger_table(result: Result) -> tuple[str, list[LedgerRow]]:
     """
     put_in, scale = result.energy["input_J"], multiple("J", result.energy["input_J"])
     parts = {"friction_J": tuple(FRICTION_PARTS)} if result.energy.keys() >= FRICTION_PARTS.keys() else {}
-    entries = (*LEDGER, *VIBRATION_LEDGER, *SHAKEN_LEDGER, *OBLIQUE_LEDGER, *AIR_LEDGER)
+    entries = (*LEDGER, *VIBRATION_LEDGER, *SHAKEN_LEDGER, *OBLIQUE_LEDGER, *FLUID_LEDGER)
     values = {
         name: result.energy[name]
         for entry in entries

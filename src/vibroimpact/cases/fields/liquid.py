@@ -1,4 +1,4 @@
-"""The key `contact.liquid`: what sphere and plate touch in."""
+"""The key `contact.liquid`: what sphere and plate are in."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from vibroimpact.ranges import Range
 
 
 class LiquidTable(Section):
-    """A liquid at rest, whose film between the surfaces takes from the rebound."""
+    """A liquid at rest, through which the sphere falls, and whose film between the surfaces takes from the rebound."""
 
     density: Annotated[float, Quantity("kg/m^3", "density of the liquid", Range(above=0))] = WATER_DENSITY
     viscosity: Annotated[float, Quantity("Pa*s", "viscosity of the liquid", Range(above=0))] = WATER_VISCOSITY
@@ -29,7 +29,7 @@ LiquidField = Annotated[
     LiquidTable | None,
     BeforeValidator(lambda value: read_fluid(LiquidTable, value)),
     JsonSchema(
-        "liquid around the impact, which reduces the rebound: true for water at 20 C, or its numbers; none by default",
+        "liquid around sphere and plate, slows the fall and reduces the rebound: true for water at 20 C, or its numbers; none by default",
         lambda: {"anyOf": [{"type": "boolean"}, LiquidTable.model_json_schema()]},
     ),
 ]

@@ -70,7 +70,7 @@ def _lying(problem: Problem, leg: Leg, moving: Moving, elapsed: Floats) -> Movin
     assert leg.oblique is not None
     assert problem.oblique is not None
     (sphere, _), (states, _, taken), same = leg.oblique, moving, np.zeros(len(elapsed), dtype=np.intp)
-    start, pressing = states.take(same[:1]), np.array([float(problem.gravity)])
+    start, pressing = states.take(same[:1]), np.array([float(problem.net_gravity)])
     lying = LyingSpheres(sphere, start, problem.oblique.friction, pressing, elapsed.max(keepdims=True))
     state, friction = lying.at(same, elapsed)
     return state, friction, taken + energy_taken(sphere, start, state)

@@ -87,8 +87,15 @@ class ObliqueMotion:
 
     def _over_plate(self, drops: Drops, flight: Flight, time: Floats) -> Floats:
         """Return the places of drops at times of their flights [s], seen from the plate [m] (2, b)."""
-        place = self._flown(drops, flight, time).position
+        return self._from_plate(self._flown(drops, flight, time).position, time)
+
+    def _from_plate(self, place: Floats, time: Floats) -> Floats:
+        """Return places at some times [s], seen from the plate, whose supports may move along it [m] (2, b)."""
         return place if self.motion is None else place - np.outer(self.motion.direction[:2], self.motion.at(time)[0])
+
+    def seen_from_plate(self, drops: Drops, time: Floats) -> Floats:
+        """Return the places of drops now, at some times [s], seen from the plate [m] (2, b)."""
+        return self._from_plate(self.state.position[:, drops], time)
 
     def place_on_plate(self, drops: Drops, flight: Flight, time: Floats) -> Floats:
         """Return the places of drops at times of their flights [s], or the nearest ones on the plate [m] (2, b)."""

@@ -92,6 +92,10 @@ class Oblique:
         """() for one drop, (B,) for a batch."""
         return np.broadcast_shapes(*(np.shape(value) for value in self.values))
 
+    def with_weight(self, part: Array) -> Self:
+        """Return the same where the sphere has a part of its weight, as in a liquid."""
+        return replace(self, gravity=(self.gravity[0] * part, self.gravity[1] * part))
+
     def take(self, drop: int | slice) -> Self:
         """Return what one drop of a batch has, or some."""
 

@@ -27,7 +27,7 @@ def rigid_history(problem: Problem, segments: Timeline, number: int, times: Floa
     written_off : float
         Energy that was written off when the sphere came to rest [J].
     """
-    segment, mass, gravity = segments[number], float(problem.sphere.mass), float(problem.gravity)
+    segment, mass, gravity = segments[number], float(problem.sphere.mass), float(problem.net_gravity)
     gap, velocity, force, stored, lost, plastic = segment.at(times)
     lost_before, plastic_before, drive_before = segments.spent[number]
     resting, flying = isinstance(segment, RestSegment), isinstance(segment, FlightSegment)

@@ -23,9 +23,10 @@ from vibroimpact.dynamics.sensors.pole_pairs import Section
 from vibroimpact.dynamics.sensors.ports import Ports, ports_of
 from vibroimpact.dynamics.sensors.recording import Signal
 from vibroimpact.dynamics.sensors.sampled import (
+    around_first_contact,
     first_motion,
-    longest_span,
     outputs_around_first_contact,
+    response_length,
     sample_at_instants,
     sample_filtered,
     sample_filtered_chain,
@@ -164,20 +165,20 @@ def _excited(
 ) -> tuple[Floats, Floats]:
     """Return samples of the vibration that impacts excite (S, count), and how far the modes left out may change each (S,)."""
     sensor, bare = group[0], _chain(problem, ports, group, group[0].sections)
-    antialias, rate = antialias_of(sensor), sensor.rate
+    antialias, rate, around = antialias_of(sensor), sensor.rate, around_first_contact(segments, sensor.rate)
     # a converter's filter is applied in closed form; an analogue one is a part of the chain, sampled at instants
     if antialias.half_length:
-        known = filtered_chain(bare, rate, longest_span(segments, rate))
+        known = filtered_chain(bare, rate, response_length(segments, rate, around))
         values = sample_filtered(known, ports, segments, range(count))
     else:
         chain = _chain(problem, ports, group, (*sensor.sections, *antialias.sections))
         values = sample_at_instants(chain, ports, rate, segments, count)
         rate *= 1 if antialias.sections else _WIDER
-        known = filtered_chain(bare, rate, longest_span(segments, rate))
+        known = filtered_chain(bare, rate, response_length(segments, rate, around))
     # the error by the modes left out, from a model of the next octave
     steeper = 2.0 ** np.array([[one.steepness] for one in group])
-    left_out = filtered_chain(_next_octave_chain(bare, steeper, sensor.sections), rate, longest_span(segments, rate))
-    norm, left_out_norm = (np.linalg.norm(outputs_around_first_contact(one, ports, segments), axis=1) for one in (known, left_out))
+    left_out = filtered_chain(_next_octave_chain(bare, steeper, sensor.sections), rate, response_length(segments, rate, around))
+    norm, left_out_norm = (np.linalg.norm(outputs_around_first_contact(one, ports, segments, around), axis=1) for one in (known, left_out))
     return values, left_out_norm / np.where(norm > 0.0, norm, np.inf)
 
 

@@ -97,14 +97,27 @@ def sample_filtered(
     return values
 
 
-def outputs_around_first_contact(filtered: FilteredChain, ports: Ports, segments: Sequence[VibratingSegment]) -> Floats:
-    """Return the outputs around the first contact, before which everything is at rest, within the filter's reach, (S, samples)."""
-    rate = filtered.rate
-    span = next((span for span in _spans(filtered.chain, ports, segments, rate) if span.pulses), None)
+def around_first_contact(segments: Sequence[VibratingSegment], rate: float) -> float:
+    """Return a time before and after the first contact [s] in which its waves come to sensors: its own, or a filter's reach at a rate."""
+    pressed = [isinstance(segment.trajectory, VibratingStretch) for segment in segments]
+    if True not in pressed:
+        return HALF_LENGTH / rate
+    first = pressed.index(True)
+    last = pressed.index(False, first) if False in pressed[first:] else len(pressed)
+    return max(HALF_LENGTH / rate, segments[last - 1].end - segments[first].start)
+
+
+def outputs_around_first_contact(filtered: FilteredChain, ports: Ports, segments: Sequence[VibratingSegment], around: float) -> Floats:
+    """Return the outputs around the first contact, before which everything is at rest, to a time before and after it [s], (S, samples).
+
+    All of the contact counts: a part of it would end with a jump of the force, which excites the highest frequencies.
+    """
+    rate, reach = filtered.rate, _first_sample(around, filtered.rate)
+    span = next((span for span in _spans(filtered.chain, ports, segments, rate, around) if span.pulses), None)
     if span is None:
         return np.zeros((filtered.answers.shape[1], 0))
-    first = _first_sample(span.start, rate) - HALF_LENGTH
-    values = np.zeros((filtered.answers.shape[1], _first_sample(span.end, rate) + HALF_LENGTH - first))
+    first = _first_sample(span.start, rate) - reach
+    values = np.zeros((filtered.answers.shape[1], _first_sample(span.end, rate) + reach - first))
     for port, times, impulses in span.joined():
         filtered.add(values, port, times - first / rate, impulses, values.shape[1])
     return values
@@ -151,6 +164,11 @@ def longest_span(segments: Sequence[VibratingSegment], rate: float) -> float:
     """Return the largest length of a part of the history with contact that is computed at once [s]."""
     stretches = (segment.end - segment.start for segment in segments if isinstance(segment.trajectory, VibratingStretch))
     return max(HALF_LENGTH / rate, *stretches, 0.0)
+
+
+def response_length(segments: Sequence[VibratingSegment], rate: float, around: float) -> float:
+    """Return the length of impulse responses beyond a filter's reach [s] for samples, and for those to a time around the first contact."""
+    return max(longest_span(segments, rate), 2.0 * around - HALF_LENGTH / rate)
 
 
 def _add_rest(
@@ -210,9 +228,11 @@ def _initial_plate_state(segment: VibratingSegment) -> Floats:
     return np.stack([trajectory.start.displacement[ground], trajectory.start.velocity[ground]])
 
 
-def _spans(chain: MeasuringChain, ports: Ports, segments: Sequence[VibratingSegment], rate: float) -> Iterator[_Span]:
-    """Yield the history in parts; neighbouring contacts are combined up to the filter's reach."""
-    instrument_state, reach = np.zeros((2, chain.oscillators.number - chain.modes)), HALF_LENGTH / rate
+def _spans(
+    chain: MeasuringChain, ports: Ports, segments: Sequence[VibratingSegment], rate: float, longest: float | None = None
+) -> Iterator[_Span]:
+    """Yield the history in parts; neighbouring contacts are combined up to a length [s], by default the filter's reach."""
+    instrument_state, reach = np.zeros((2, chain.oscillators.number - chain.modes)), HALF_LENGTH / rate if longest is None else longest
     fastest = max(2.0 * np.pi * _PASS_BAND * rate, float(chain.oscillators.angular_frequency[chain.modes :].max(initial=0.0)))
     span: _Span | None = None
     for segment in segments:

@@ -24,7 +24,7 @@ from vibroimpact.dynamics.sensors.filtered_chain import FilteredChain, filtered_
 from vibroimpact.dynamics.sensors.left_out import next_octave
 from vibroimpact.dynamics.sensors.measuring_chain import measuring_chain
 from vibroimpact.dynamics.sensors.ports import Ports
-from vibroimpact.dynamics.sensors.sampled import longest_span, outputs_around_first_contact, sample_filtered
+from vibroimpact.dynamics.sensors.sampled import around_first_contact, outputs_around_first_contact, response_length, sample_filtered
 from vibroimpact.dynamics.sensors.sensor import Sensor
 from vibroimpact.dynamics.vibrating.bodies import bases_of_plate
 from vibroimpact.dynamics.vibrating.oscillators import Oscillators
@@ -83,9 +83,9 @@ def heard(
 
 def _uncertainty(kernels: _Kernels, plate: Oscillators, ports: Ports, segments: Sequence[VibratingSegment], rate: float) -> float:
     """Return the sound of the modes left out of the next octave, as an estimate, relative to that of the modes around the first contact."""
-    norms = []
+    norms, around = [], around_first_contact(segments, rate)
     for modes, shapes in ((plate, kernels.shapes), next_octave(plate, kernels.shapes)):
-        accelerations = outputs_around_first_contact(_chain(modes, shapes, rate, segments), ports, segments)
+        accelerations = outputs_around_first_contact(_chain(modes, shapes, rate, segments), ports, segments, around)
         norms.append(float(np.linalg.norm(_through(accelerations, kernels.lags))) if accelerations.size else 0.0)
     return norms[1] / norms[0] if norms[0] else 0.0
 
@@ -96,7 +96,7 @@ def _chain(plate: Oscillators, shapes: Floats, rate: float, segments: Sequence[V
     What the modes left out do quasi-statically has no part in it: next to the contact, it moves hardly any air.
     """
     chain = measuring_chain(plate, shapes, np.zeros((len(plate.shape), len(shapes))), [2] * len(shapes), ())
-    return filtered_chain(chain, rate, longest_span(segments, rate))
+    return filtered_chain(chain, rate, response_length(segments, rate, around_first_contact(segments, rate)))
 
 
 def _kernels(problem: Problem, sensor: Sensor) -> _Kernels:

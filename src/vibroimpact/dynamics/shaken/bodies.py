@@ -12,8 +12,8 @@ from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.rigid.bodies import RigidBodies
 from vibroimpact.dynamics.rigid.solve_contact import SolvesContact
 from vibroimpact.dynamics.shaken.ride import Ride
-from vibroimpact.dynamics.vibrating.air_motion import free_motion
 from vibroimpact.dynamics.vibrating.bodies import system_of
+from vibroimpact.dynamics.vibrating.fluid_motion import free_motion
 from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.vibrating.next_touch import next_touch
 

@@ -22,10 +22,10 @@ from vibroimpact.dynamics.oblique.state import ObliqueContacts
 from vibroimpact.dynamics.oblique.statement import Oblique
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.shaken.steady import steady_surface
-from vibroimpact.dynamics.vibrating.air_motion import free_motion
 from vibroimpact.dynamics.vibrating.carried_motion import carry
 from vibroimpact.dynamics.vibrating.carried_oscillations import carry_oscillating, steady_response
 from vibroimpact.dynamics.vibrating.contact_equilibrium import ContactEquilibrium
+from vibroimpact.dynamics.vibrating.fluid_motion import free_motion
 from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.vibrating.next_touch import next_touch
 from vibroimpact.dynamics.vibrating.rest_motion import RestMotion, bring_to_rest

@@ -12,8 +12,8 @@ from vibroimpact.dynamics.columns import MOTION_COLUMNS
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.shaken.statement import PlateMotion
 from vibroimpact.dynamics.shaken.steady import steady_phasors
-from vibroimpact.dynamics.vibrating.air_motion import AirMotion
 from vibroimpact.dynamics.vibrating.bodies import bases_of_plate, centre_of, slices_of
+from vibroimpact.dynamics.vibrating.fluid_motion import FluidMotion
 from vibroimpact.dynamics.vibrating.free_motion import FreePhase
 from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State
 from vibroimpact.dynamics.vibrating.local import LocalContact
@@ -41,7 +41,7 @@ def vibrating_history(problem: Problem, segment: VibratingSegment, time: Floats,
 def _motion_columns(problem: Problem, segment: VibratingSegment, time: Floats, state: State) -> dict[str, Floats]:
     """Return the columns of motion and force at times since the start of a segment [s] (T,), from the states then."""
     system, motion = segment.system, segment.motion
-    mass, gravity = float(problem.sphere.mass), float(problem.gravity)
+    mass, gravity = float(problem.sphere.mass), float(problem.net_gravity)
     force = np.zeros_like(time)
     if isinstance(motion, VibratingStretch):
         force = motion.contacts[0].force_at(motion.rule.unmap_time(time / motion.length))
@@ -54,7 +54,7 @@ def _motion_columns(problem: Problem, segment: VibratingSegment, time: Floats, s
         "position_m": float(problem.sphere.contact_offset) - depth,
         "velocity_m_s": -fall_speed,
         "acceleration_m_s2": motion.flight.acceleration(segment.start + time[:, None])[:, 0]
-        if isinstance(motion, AirMotion)
+        if isinstance(motion, FluidMotion)
         else force / mass - gravity,
         "force_N": force,
         "indentation_m": indentation,

@@ -1,6 +1,7 @@
-r"""Flight through air at rest, whose drag slows the sphere down.
+r"""Flight through air or a liquid at rest, whose drag slows the sphere down.
 
-With the velocity v in one dimension or three, gravity g and the drag a of `vibroimpact.dynamics.air`,
+With the velocity v in one dimension or three, the acceleration g at which the sphere would fall without drag, which is less than gravity in
+a liquid, and the drag a of `vibroimpact.dynamics.fluid`,
 
 .. math:: \dot v = g - a(|v|)\, v / |v|
 
@@ -21,9 +22,10 @@ from typing import Literal
 import numpy as np
 
 from vibroimpact.arrays import Bools, Drops, Floats
-from vibroimpact.dynamics.air import Air, density_of
+from vibroimpact.dynamics.air import density_of
 from vibroimpact.dynamics.collocation import collocation_rule
 from vibroimpact.dynamics.flight import Flight
+from vibroimpact.dynamics.fluid import Fluid
 from vibroimpact.dynamics.oblique.state import Sphere, State
 from vibroimpact.dynamics.problem import Problem
 
@@ -40,7 +42,7 @@ class Moving:
     """Motion of b spheres.
 
     `time`: since the start of the flight [s] (b,). `place` [m], `velocity` [m/s]: (C, b), the last component along the normal. `lost`:
-    energy per mass that air has taken since the start [J/kg] (b,).
+    energy per mass of the sphere that drag has taken since the start [J/kg] (b,).
     """
 
     time: Floats
@@ -67,22 +69,22 @@ square (C, b)."""
 
 @dataclass(frozen=True)
 class Falling:
-    """What spheres fall through, and how they are pulled: `radius` [m], `density` [kg/m^3] (b,), `gravity` [m/s^2] (C, b)."""
+    """What spheres fall through, and how they are pulled: `radius` [m], `density` [kg/m^3] (b,), `gravity` without drag [m/s^2] (C, b)."""
 
-    air: Air
+    fluid: Fluid
     radius: Floats
     density: Floats
     gravity: Floats
 
     def take(self, which: Drops | Bools) -> Falling:
         """Return those of some of them."""
-        return Falling(self.air.take(which), self.radius[which], self.density[which], self.gravity[:, which])
+        return Falling(self.fluid.take(which), self.radius[which], self.density[which], self.gravity[:, which])
 
     def acceleration(self, velocity: Floats) -> tuple[Floats, Floats]:
-        """Return the accelerations (..., C, b), and the powers per mass that air takes [W/kg] (..., b), at velocities (..., C, b)."""
+        """Return accelerations (..., C, b), and powers per mass that drag takes [W/kg] (..., b), at velocities (..., C, b)."""
         speed = np.sqrt((velocity**2).sum(axis=-2))
-        drag = self.air.drag(speed, self.radius, self.density)
-        return self.gravity - (drag / np.maximum(speed, _STILL))[..., None, :] * velocity, drag * speed
+        drag = self.fluid.drag(speed, self.radius, self.density)
+        return self.gravity - (drag / np.maximum(speed, _STILL))[..., None, :] * velocity, drag * speed * self.fluid.inertia(self.density)
 
     def longest(self, velocity: Floats) -> Floats:
         """Return the longest piece from given velocities [s] (b,); infinite where the velocity stays."""
@@ -90,7 +92,7 @@ class Falling:
 
         def constant(speed: Floats) -> Floats:
             some = np.maximum(speed, _STILL)
-            return np.asarray(some / self.air.drag(some, self.radius, self.density))
+            return np.asarray(some / self.fluid.drag(some, self.radius, self.density))
 
         time = constant(speed)
         for _ in range(6):  # the constant that belongs to the speed after it
@@ -135,25 +137,25 @@ class Falling:
 
 
 @dataclass(frozen=True)
-class AirFlight(Flight):
-    """Flights of B drops through air, in one dimension or in three; all arrays but those of `along` are (B,).
+class FluidFlight(Flight):
+    """Flights of B drops through air or a liquid, in one dimension or in three; all arrays but those of `along` are (B,).
 
-    `radius`, `density`: of the spheres [m], [kg/m^3]. `air`: what they fly through. `along`: velocities at the start [m/s] and
-    accelerations of gravity [m/s^2] along the plate, (2, B), or (0, B) where all motion is along the normal.
+    `radius`, `density`: of the spheres [m], [kg/m^3]. `fluid`: what they fly through. `along`: velocities at the start [m/s] and
+    accelerations without drag [m/s^2] along the plate, (2, B), or (0, B) where all motion is along the normal.
     """
 
     radius: Floats
     density: Floats
-    air: Air
+    fluid: Fluid
     along: tuple[Floats, Floats]
 
-    def take(self, which: Drops) -> AirFlight:
+    def take(self, which: Drops) -> FluidFlight:
         """Return the flights of some of the drops."""
         motion = (self.start[which], self.gap[which], self.velocity[which], self.gravity[which])
         along = self.along[0][:, which], self.along[1][:, which]
-        return AirFlight(*motion, self.radius[which], self.density[which], self.air.take(which), along)
+        return FluidFlight(*motion, self.radius[which], self.density[which], self.fluid.take(which), along)
 
-    def after(self, time: Floats) -> AirFlight:
+    def after(self, time: Floats) -> FluidFlight:
         """Return the flights from times on [s] (B,)."""
         moving = self._moving(time)
         along = moving.velocity[:-1], self.along[1]
@@ -192,8 +194,17 @@ class AirFlight(Flight):
         return np.where(never, np.inf, self.start + top.time), np.where(never, np.inf, top.place[-1])
 
     def lost(self, time: Floats) -> Floats:
-        """Return the energy per mass that air has taken by times [s] (..., B) [J/kg]."""
+        """Return the energy per mass of the sphere that drag has taken by times [s] (..., B) [J/kg]."""
         return self._moving(time).lost
+
+    def given(self, time: Floats) -> Floats:
+        """Return the energy per mass that the sphere has given to the fluid by times [s] (..., B) [J/kg].
+
+        This is what drag has taken, and what the fluid that moves along has gained since the start of the flight.
+        """
+        moving, start = self._moving(time), self._rises[0].velocity
+        along = 0.5 * (self.fluid.inertia(self.density) - 1.0)
+        return np.asarray(moving.lost + along * ((moving.velocity**2).sum(axis=0) - (start**2).sum(axis=0)))
 
     def acceleration(self, time: Floats) -> Floats:
         """Return the upward acceleration at times [s] (..., B) [m/s^2]."""
@@ -206,7 +217,7 @@ class AirFlight(Flight):
 
     @cached_property
     def _falling(self) -> Falling:
-        return Falling(self.air, self.radius, self.density, np.concatenate([self.along[1], -self.gravity[None]]))
+        return Falling(self.fluid, self.radius, self.density, np.concatenate([self.along[1], -self.gravity[None]]))
 
     @cached_property
     def _rises(self) -> list[Moving]:
@@ -268,21 +279,23 @@ def _time_to_fall(height: Floats, down: Floats, mean: Floats) -> Floats:
     return np.where(height > 0.0, time, 0.0)
 
 
-def flights_of(problem: Problem, gap: Floats, velocity: Floats) -> AirFlight:
-    """Return flights through the air of a single drop, from gaps [m] with upward velocities [m/s] (n,).
+def flights_of(problem: Problem, gap: Floats, velocity: Floats) -> FluidFlight:
+    """Return flights through the air or the liquid of a single drop, from gaps [m] with upward velocities [m/s] (n,).
 
     Along the plate they begin with the velocity of the drop.
     """
     oblique, alike = problem.oblique, np.ones(len(gap))
-    assert problem.air is not None
+    assert problem.fluid is not None
     velocities, gravity = (np.zeros(0), np.zeros(0)) if oblique is None else (np.array(oblique.velocity), np.array(oblique.gravity))
     mass, radius = problem.sphere.mass * alike, problem.sphere.contact_offset * alike
-    along = velocities[:, None] * alike, gravity[:, None] * alike
-    return AirFlight(0.0 * alike, gap, velocity, problem.gravity * alike, radius, density_of(mass, radius), problem.air, along)
+    part = problem.net_weight / problem.flight_inertia
+    along = velocities[:, None] * alike, gravity[:, None] * part * alike
+    pull = problem.gravity * part * alike
+    return FluidFlight(0.0 * alike, gap, velocity, pull, radius, density_of(mass, radius), problem.fluid, along)
 
 
 def speed_of_fall(problem: Problem) -> float:
-    """Return the speed at the first touch of a single drop from a height through air [m/s]."""
+    """Return the speed at the first touch of a single drop from a height through air or a liquid [m/s]."""
     assert problem.height is not None
     gap, velocity = np.array([problem.height - problem.sphere.contact_offset]), np.array([problem.velocity], dtype=float)
     return float(flights_of(problem, gap, velocity).touch(np.zeros(1))[1][0])

@@ -1,4 +1,4 @@
-r"""Vertical flights in still air, with aerodynamic drag."""
+r"""Vertical flights in still air or a still liquid, with drag."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.calibration.flights import EndSpeeds, ReturnFlight
 from vibroimpact.dynamics.air import Air
+from vibroimpact.dynamics.fluid import Fluid
 from vibroimpact.errors import InputError
 
 _POINTS = 513  # of a table; cubic interpolation errs by 1e-9 for a fall of 4 m
@@ -20,12 +21,13 @@ _FASTEST = 1e4  # m/s, at which the integration stops
 
 
 @dataclass(frozen=True)
-class AirFlights:
-    r"""Vertical flights of a sphere in still air.
+class FluidFlights:
+    r"""Vertical flights of a sphere in still air or a still liquid.
 
     Below the top of a flight, at a depth s, :math:`v\,dv/ds = g - a(v)` on the way down and :math:`g + a(v)` on the way up, with
-    the drag deceleration a of `vibroimpact.dynamics.air`. Both equations are integrated once over the square root of s, in which
-    speeds and times are smooth, and then interpolated by cubic Hermite splines.
+    the deceleration a by drag of `vibroimpact.dynamics.fluid`, and as g in a liquid the part of gravity that buoyancy and added mass leave.
+    Both equations are integrated once over the square root of s, in which speeds and times are smooth, and then interpolated by cubic
+    Hermite splines.
 
     Parameters
     ----------
@@ -35,7 +37,7 @@ class AirFlights:
         Radius [m] and density [kg/m^3] of the sphere.
     highest : float
         The largest rise to be tabulated [m].
-    air : Air
+    fluid : Fluid
         What it flies through; by default air at 20 C and sea level.
 
     Raises
@@ -45,7 +47,7 @@ class AirFlights:
 
     Examples
     --------
-    >>> pebble = AirFlights(9.8, 0.002, 1250.0, 4.0)
+    >>> pebble = FluidFlights(9.8, 0.002, 1250.0, 4.0)
     >>> [round(float(speed), 2) for speed in (pebble.speed_after_fall(np.array(4.0))[0], pebble.speed_to_rise(np.array(4.0))[0])]
     [7.68, 10.33]
     """
@@ -54,17 +56,22 @@ class AirFlights:
     radius: float
     density: float
     highest: float
-    air: Air = Air()
+    fluid: Fluid = Air()
+
+    @property
+    def pull(self) -> float:
+        """Acceleration in a fall without drag [m/s^2]."""
+        return float(self.gravity * self.fluid.weight(self.density) / self.fluid.inertia(self.density))
 
     def speed_after_fall(self, height: Floats) -> tuple[Floats, Floats]:
         """Return the speed after a fall from rest through a height [m/s], and its derivative with respect to the height [1/s]."""
         speed = self._within(self._tables.down, height)
-        return speed, (self.gravity - self.air.drag(speed, self.radius, self.density)) / speed
+        return speed, (self.pull - self.fluid.drag(speed, self.radius, self.density)) / speed
 
     def speed_to_rise(self, height: Floats) -> tuple[Floats, Floats]:
         """Return the initial speed needed to rise by a height [m/s], and its derivative with respect to the height [1/s]."""
         speed = self._within(self._tables.up, height)
-        return speed, (self.gravity + self.air.drag(speed, self.radius, self.density)) / speed
+        return speed, (self.pull + self.fluid.drag(speed, self.radius, self.density)) / speed
 
     def depth_at(self, time: Floats) -> tuple[Floats, Floats]:
         """Return the depth below the apex [m] at a time relative to the apex [s], and the downward velocity [m/s]."""
@@ -99,8 +106,8 @@ class AirFlights:
 
     def _too_far(self, what: str) -> InputError:
         return InputError(
-            f"{what} is not possible in air, for a sphere of {self.radius:g} m and {self.density:g} kg/m^3; look at units, radius and "
-            "density, or leave out air"
+            f"{what} is not possible in {self.fluid.word}, for a sphere of {self.radius:g} m and {self.density:g} kg/m^3; look at units, "
+            f"radius and density, or leave out {self.fluid.word}"
         )
 
     @cached_property
@@ -113,8 +120,8 @@ class AirFlights:
         slopes = []  # derivatives of speed and time with respect to the root of the depth, for ascent and descent
         for sign, (speed, _) in ((1.0, up), (-1.0, down)):
             with np.errstate(invalid="ignore"):
-                slow = np.where(root > 0.0, 2.0 * root / speed, np.sqrt(2.0 / self.gravity))
-            slopes.append((slow * (self.gravity + sign * self.air.drag(speed, self.radius, self.density)), slow))
+                slow = np.where(root > 0.0, 2.0 * root / speed, np.sqrt(2.0 / self.pull))
+            slopes.append((slow * (self.pull + sign * self.fluid.drag(speed, self.radius, self.density)), slow))
         times = up[1] + down[1]
         by_root = slopes[0][1] + slopes[1][1]
         clock = np.concatenate([-up[1][:0:-1], down[1]])
@@ -138,14 +145,14 @@ class AirFlights:
 
         def slope(root: float, state: Floats) -> list[float]:
             slow = 2.0 * root / state[0]
-            return [slow * (self.gravity + sign * float(self.air.drag(state[0], self.radius, self.density))), slow]
+            return [slow * (self.pull + sign * float(self.fluid.drag(state[0], self.radius, self.density))), slow]
 
         def too_fast(root: float, state: Floats) -> float:
             return float(state[0]) - _FASTEST
 
         too_fast.terminal = True  # type: ignore[attr-defined]
         first = _BEGIN * last
-        begin = [np.sqrt(2.0 * self.gravity) * first, np.sqrt(2.0 / self.gravity) * first]
+        begin = [np.sqrt(2.0 * self.pull) * first, np.sqrt(2.0 / self.pull) * first]
         found = solve_ivp(
             slope, (first, last), begin, method="DOP853", rtol=_CLOSE, atol=0.0, dense_output=True, events=too_fast, first_step=first
         )

@@ -1,4 +1,4 @@
-"""Free motion of bodies that vibrate, while the sphere flies through air."""
+"""Free motion of bodies that vibrate, while the sphere flies through air or a liquid."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.flight import Flight
-from vibroimpact.dynamics.flight_in_air import AirFlight
+from vibroimpact.dynamics.flight_in_fluid import FluidFlight
 from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
 
 
 @dataclass(frozen=True)
-class AirMotion(FreeMotion):
-    """Motion without contact force in which the sphere, the first coordinate, flies through air; `flight`: its flight alone."""
+class FluidMotion(FreeMotion):
+    """Motion without contact force in which the sphere, the first coordinate, flies through air or a liquid; `flight`: its flight alone."""
 
-    flight: AirFlight
+    flight: FluidFlight
 
     def state(self, time: Floats) -> State:
         """Return the state at times since the start [s] (...)."""
@@ -26,9 +26,9 @@ class AirMotion(FreeMotion):
         displacement[..., 0], speed[..., 0] = -root * gap, -root * velocity
         return replace(vibrating, displacement=displacement, velocity=speed)
 
-    def after(self, time: float) -> AirMotion:
+    def after(self, time: float) -> FluidMotion:
         """Return the motion from a time on [s]."""
-        return AirMotion(self.system, self.state(np.array(time)), self.flight.after(self._when(np.array(time))))
+        return FluidMotion(self.system, self.state(np.array(time)), self.flight.after(self._when(np.array(time))))
 
     def pull(self, time: float) -> Floats:
         """Return a bound of the acceleration of the approach by what acts on the sphere [m/s^2] (contacts,), from a time on [s].
@@ -44,4 +44,4 @@ class AirMotion(FreeMotion):
 
 def free_motion(system: LinearSystem, state: State, flight: Flight) -> FreeMotion:
     """Return the motion without contact force of a system whose sphere is on a flight, from the state at its start."""
-    return AirMotion(system, state, flight) if isinstance(flight, AirFlight) else FreeMotion(system, state)
+    return FluidMotion(system, state, flight) if isinstance(flight, FluidFlight) else FreeMotion(system, state)
