@@ -40,7 +40,7 @@ def table_records(path: Path) -> Iterator[Record]:
         raise InputError(f"{path}: there is no column time [s] in the header; the rate follows from the times of the samples")
     if len(names) < 2:
         raise InputError(f"{path}: there is no column beside the time; each other one is a channel, such as geophone [V]")
-    table = read_table_file(path, {name: "" if unit == "1" else unit.replace("s2", "s^2") for name, unit in names.items()})
+    table = read_table_file(path, {name: "" if unit == "1" else unit for name, unit in names.items()})
     time = table.columns[_TIME]
     try:
         rate = rate_of(time)
