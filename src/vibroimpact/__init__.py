@@ -43,6 +43,9 @@ if TYPE_CHECKING:
     from vibroimpact.calibration.friction.measured import ObliqueImpacts as ObliqueImpacts
     from vibroimpact.calibration.observations import Observations as Observations
     from vibroimpact.calibration.position_record import impacts_in_position as impacts_in_position
+    from vibroimpact.calibration.restitutions.folder import save_restitutions as save_restitutions
+    from vibroimpact.calibration.restitutions.restitutions import Restitutions as Restitutions
+    from vibroimpact.calibration.restitutions.restitutions import read_restitutions as read_restitutions
     from vibroimpact.calibration.speed_function import SpeedFunction as SpeedFunction
     from vibroimpact.calibration.tunables import law_parameter as law_parameter
     from vibroimpact.calibration.tunables import modal_damping as modal_damping
@@ -220,6 +223,7 @@ _HOME = {
     "Problem": "dynamics.problem",
     "QuasiStatic": "contact.quasi_static",
     "Rebounds": "calibration.bounces.rebounds",
+    "Restitutions": "calibration.restitutions.restitutions",
     "Record": "signals.record",
     "Recogniser": "recognition.recogniser",
     "Recognised": "recognition.apply",
@@ -301,6 +305,7 @@ _HOME = {
     "read_labelled_signals": "recognition.read_dataset",
     "read_mesh": "meshes.mesh_file",
     "read_records": "signals.read_records",
+    "read_restitutions": "calibration.restitutions.restitutions",
     "read_result": "results.folder",
     "read_study": "studies.study",
     "read_sweep": "studies.sweep",
@@ -325,6 +330,7 @@ _HOME = {
     "save_identification": "identification.folder",
     "save_modes": "modes.folder",
     "save_rebounds": "calibration.bounces.folder",
+    "save_restitutions": "calibration.restitutions.folder",
     "save_recognised": "recognition.apply",
     "save_recognition": "recognition.folder",
     "save_result": "runs.save",

@@ -13,5 +13,9 @@ def test_factors_of_conversion() -> None:
     says(PAGE, "The damping of a dashpot, in N s/m, is divided by {}.", factor("N s/m", "N s/mm"))
 
 
+def test_standard_gravity() -> None:
+    says(PAGE, "; standard gravity, {} m/s^2: `g`, `gn`", vi.to_si("1 gn", "m/s^2"))
+
+
 def factor(unit: str, to: str) -> float:
     return 1.0 / vi.convert_units(1.0, unit, to)

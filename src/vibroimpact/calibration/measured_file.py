@@ -14,6 +14,7 @@ from vibroimpact.calibration.bounce_record import impacts_in_bounces
 from vibroimpact.calibration.evaluate_measurement import Measurement, speed_at_touch
 from vibroimpact.calibration.flights import Flights, VacuumFlights, vacuum_height
 from vibroimpact.calibration.force_record import impacts_in_force
+from vibroimpact.calibration.impact_table import DEVIATION, check_counts, check_positive, read_impact_table
 from vibroimpact.calibration.matchable import MATCHABLE
 from vibroimpact.calibration.measured_case import check_restitutions, heights_measurement
 from vibroimpact.calibration.noise import scaled
@@ -26,14 +27,11 @@ from vibroimpact.cases.rigid import mass_of_sphere
 from vibroimpact.contact.power_law import HERTZ_TIME
 from vibroimpact.errors import InputError
 from vibroimpact.measurements.record_file import SPHERE_ACCELERATION, is_universal, read_universal_record
-from vibroimpact.measurements.table_file import TableFile, read_table_file, strictly_increasing
+from vibroimpact.measurements.table_file import TableFile, strictly_increasing
 from vibroimpact.signals.bounces.find import find_bounces
 from vibroimpact.signals.one_record import one_record
 
 _MATCHABLE = {name: quantity.unit for name, quantity in MATCHABLE.items()}
-DEVIATION = "_standard_deviation"
-"""Ending of the names of columns with standard deviations."""
-
 _COLUMNS = {
     "time": "s",
     "position": "m",
@@ -44,6 +42,7 @@ _COLUMNS = {
     "restitution": "",
     "restitution_achieved": "",
     "rebound_height": "m",
+    "count": "",
     **_MATCHABLE,
     **{f"{name}{DEVIATION}": unit for name, unit in {"restitution": "", "rebound_height": "m", **_MATCHABLE}.items()},
 }
@@ -162,6 +161,7 @@ def _rows_measurement(case: Case, table: TableFile) -> Measurement:
         columns.setdefault("restitution", columns["restitution_achieved"])
     for name in ("approach_speed", *(name for name in columns if name.endswith(DEVIATION))):
         check_positive(table, name)
+    check_counts(table)
     for ending in ("", DEVIATION):  # as separation speed, by the definition of restitution
         if f"restitution{ending}" in columns:
             columns.setdefault(f"separation_speed{ending}", columns[f"restitution{ending}"] * speeds)
@@ -171,10 +171,14 @@ def _rows_measurement(case: Case, table: TableFile) -> Measurement:
     for name in wanted:
         check_positive(table, next(column for column in (name, "restitution", "restitution_achieved") if column in table.columns))
     deviations = known_deviations(table.path, columns, wanted)
+    # of unknown magnitude: the same relative noise for all; less for the mean of several
+    sizes = {
+        name: size / np.sqrt(columns.get("count", 1.0)) for name, size in (deviations or {k: np.abs(v) for k, v in wanted.items()}).items()
+    }
     labels, radius, gravity = tuple(f"line {line}" for line in table.lines), case.sphere.radius, case.drop.gravity
 
     def evaluated(flights: Flights | None) -> Observations:
-        seen = from_table(speeds, wanted, deviations, labels)
+        seen = replace(from_table(speeds, wanted, sizes, labels), deviations_known=deviations is not None)
         if "rebound_height" in wanted and gravity > 0.0 and np.all(wanted["rebound_height"] > radius):
             rises, scales = vacuum_height(flights or VacuumFlights(gravity), wanted["rebound_height"] - radius)
             noise = {**seen.noise, "rebound_height": scaled(scales, seen.noise["rebound_height"])}
@@ -204,23 +208,9 @@ def known_deviations(path: Path, columns: Mapping[str, Floats], wanted: Iterable
     return {name: columns[f"{name}{DEVIATION}"] for name in known}
 
 
-def check_positive(table: TableFile, column: str) -> None:
-    """Check that all values of a column are greater than zero.
-
-    Raises
-    ------
-    InputError
-        If one is not, with its line.
-    """
-    wrong = np.flatnonzero(~(table.columns[column] > 0.0))
-    if wrong.size:
-        value = table.columns[column][wrong[0]]
-        raise InputError(f"{table.path}, line {table.lines[wrong[0]]}: {column} is {value:g}; it must be greater than 0", "target")
-
-
 def _table(file: str) -> TableFile:
     try:
-        return read_table_file(file, _COLUMNS)
+        return read_impact_table(file, _COLUMNS)
     except InputError as error:
         if "acceleration; expected a " in error.message:  # given where a force or a position is required
             what = error.message.partition(" (a number in ")[0]  # without the hint how to write a force

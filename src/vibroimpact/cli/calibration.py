@@ -24,6 +24,8 @@ from vibroimpact.cli.shared import (
 )
 from vibroimpact.errors import InputError
 
+_TABLES = (".csv", ".txt")
+
 
 @app.command()
 def calibrate(
@@ -32,7 +34,10 @@ def calibrate(
         typer.Argument(
             metavar="CASE|RECORD",
             autocompletion=complete_case_or_record,
-            help='A TOML file, a shipped case such as "paper:calibration", or a record of bounces: WAV, CSV, UFF, NetCDF-4.',
+            help=(
+                'A TOML file, a shipped case such as "paper:calibration", a record of bounces (WAV, CSV, UFF, NetCDF-4), '
+                "or a table of restitutions over the approach speed."
+            ),
         ),
     ],
     output: Annotated[
@@ -58,12 +63,13 @@ def calibrate(
     force: Force = False,
     as_json: Json = False,
 ) -> None:
-    """Calibrate a contact law to a specified or measured rebound. From a record of bounces estimate their restitutions.
+    """Calibrate a contact law to a specified or measured rebound. From a record of bounces, or a table, fit the restitution.
 
     The [calibrate] section of a case specifies the target: a contact law, a restitution, or measurements. Without it the
     damping of Adams' IMPACT is calibrated to the law of the case. From a record of sound or vibration, restitution and
-    speed of each impact follow from the times between bounces.
+    speed of each impact follow from the times between bounces; a table has them: speed [m/s], restitution and, for means, count.
     """
+    from vibroimpact.calibration.impact_table import holds_restitutions
     from vibroimpact.results.folder import check_free
 
     target = Path(f"{stem(case)}-calibrated") if output is None else output
@@ -72,6 +78,12 @@ def calibrate(
         if changes:
             raise InputError("--set changes the keys of a case, and a record has none")
         check_free(target, force=force)
+        if Path(case).suffix.lower() in _TABLES and holds_restitutions(case):
+            of_records = [option for option, value in given.items() if value is not None]
+            if of_records:
+                raise InputError(f"{of_records[0]} goes with a record of bounces; {case} is a table of restitutions, which has no times")
+            _fit_table(Path(case), target, figures=figures, force=force, as_json=as_json)
+            return
         _listen(Path(case), target, channel, gravity, height, contact, figures=figures, force=force, as_json=as_json)
         return
     for option, value in given.items():
@@ -93,6 +105,18 @@ def calibrate(
         folder = save_calibration(what.case, found, target, force=force, figures=("png",) if figures else ())
     told = report_of(what.case, found)
     show_folder(folder, lambda: {**told.document, **told.tables}, lambda: calibration_summary(what.case, told), as_json=as_json)
+
+
+def _fit_table(file: Path, target: Path, *, figures: bool, force: bool, as_json: bool) -> None:
+    """Fit the restitutions of a table over the approach speed, and print and write them."""
+    from vibroimpact.calibration.restitutions.document import restitution_document
+    from vibroimpact.calibration.restitutions.folder import save_restitutions
+    from vibroimpact.calibration.restitutions.restitutions import read_restitutions
+    from vibroimpact.calibration.restitutions.text import restitution_summary
+
+    found = read_restitutions(file)
+    folder = save_restitutions(found, target, force=force, figures=("png",) if figures else ())
+    show_folder(folder, lambda: restitution_document(found), lambda: restitution_summary(found), as_json=as_json)
 
 
 def _listen(

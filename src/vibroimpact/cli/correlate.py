@@ -90,7 +90,9 @@ def _force_among(records: list[Record], name: str) -> Record:
     InputError
         If there is none of this name, or several.
     """
-    named = [record for record in records if record.name == name]
+    from vibroimpact.signals.one_record import is_named
+
+    named = [record for record in records if is_named(record, name)]
     if len(named) != 1:
         names = list(dict.fromkeys(record.name for record in records))
         there = f"the records are {', '.join(map(shown, names))}.{did_you_mean(name, names)}"

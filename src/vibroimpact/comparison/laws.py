@@ -79,7 +79,7 @@ def _case_under(case: Case, law: type[ContactLaw], given: Mapping[str, Any], ach
         value = given.get(f"{law.name}.{key}", given.get(key))
         if value is not None:
             contact[key] = value
-        elif key not in contact and achieving is not None and item.default is MISSING and item.metadata["example"] is not None:
+        elif achieving is not None and not _can_be_left_out(case, law, contact, item):
             contact[key] = item.metadata["example"]  # placeholder, valid only for the parameter that is tuned
             placeholders.append(key)
     own_name = case.name or "a drop"  # it may mention the law of the case
@@ -99,6 +99,19 @@ def _case_under(case: Case, law: type[ContactLaw], given: Mapping[str, Any], ach
     except InputError as error:
         hint = " (give parameters with LAW.KEY=VALUE)" if "missing" in error.message or "needs" in error.message else ""
         raise InputError(f"{law.name}: {str(error).removeprefix(f'{law.name} ')}{hint}") from None
+
+
+def _can_be_left_out(case: Case, law: type[ContactLaw], contact: Mapping[str, Any], item: Field[Any]) -> bool:
+    """Return whether a parameter is given, has no typical value, a default, or another one that is given in its place."""
+    if item.name in contact or item.metadata["example"] is None:
+        return True
+    if item.default is not None:
+        return item.default is not MISSING
+    try:
+        law.for_pair(contact_pair(case), **{key: value for key, value in contact.items() if key != "law" and not isinstance(value, str)})
+    except InputError:
+        return False
+    return True
 
 
 def _tuned(case: Case, table: Mapping[str, Any], parameter: str, achieving: float) -> Case:

@@ -17,7 +17,7 @@ _SMALL = 0.02
 
 @dataclass(frozen=True, kw_only=True)
 class HystereticLaw(PowerLaw):
-    r"""Base of the laws :math:`F = K \delta^n (1 + D\, \dot\delta/\dot\delta_0)`, each with its own :math:`D(e)`."""
+    r"""Base of the laws :math:`F = K \delta^n (1 + D\, \dot\delta/\dot\delta_0)`, each with its own :math:`D`."""
 
     contact_end = "zero-indentation"
     tension = "none"
@@ -31,14 +31,18 @@ class HystereticLaw(PowerLaw):
         """The damping factor D(e) [-]."""
         raise NotImplementedError
 
+    def damping_factor_at(self, approach_speed: Array) -> Array:
+        """Return the damping factor of an impact at an approach speed [m/s]; here the same at all speeds."""
+        return self.damping_factor
+
     def forces(self, delta: Array, delta_dot: Array, approach_speed: Array) -> tuple[Array, Array]:
         """Return the elastic and the dissipative force [N]."""
         elastic = self.elastic_force(delta)
-        return elastic, elastic * (self.damping_factor / approach_speed * delta_dot)
+        return elastic, elastic * (self.damping_factor_at(approach_speed) / approach_speed * delta_dot)
 
     def closed_form_restitution(self, mass: Array, speed: Array) -> Array:
         """Return the restitution without gravity, a function of D only."""
-        return hysteretic_restitution(self.damping_factor + 0.0 * mass * speed)
+        return hysteretic_restitution(self.damping_factor_at(speed) + 0.0 * mass * speed)
 
 
 def hysteretic_restitution(damping_factor: Array) -> Array:

@@ -14,6 +14,7 @@ from vibroimpact.contact.hysteretic import HystereticLaw
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.contact.laws.adams_impact import AdamsImpact
 from vibroimpact.contact.laws.hertz import Hertz
+from vibroimpact.contact.laws.hunt_crossley import HuntCrossley
 from vibroimpact.contact.registry import contact_laws
 from vibroimpact.errors import InputError
 from vibroimpact.exporting.contact_parameters import approach_speeds
@@ -136,13 +137,17 @@ def adams_contact(drop: Drop) -> AdamsContact:
             '"vibroimpact calibrate" finds the damping of adams-impact that achieves the same restitution'
         )
     # damping that changes from impact to impact becomes an expression of the approach speed, by which the impacts are distinguished
-    varies = drop.function is not None or len({_damping(one) for one in laws}) > 1
+    dampings = [_damping(one, speed) for one, speed in zip(laws, speeds, strict=False)]
+    by_speed = isinstance(law, HuntCrossley) and law.dissipation is not None and len(laws) == 1
+    varies = drop.function is not None or by_speed or len(set(dampings)) > 1
     if drop.function is not None:
         damping, meaning = _by_function(law, *drop.function)
+    elif by_speed:  # the stored speed is in mm/s
+        damping, meaning = f"{adams_number(dampings[0] / (1000.0 * speeds[0]))} * speed", "the dissipation times the approach speed"
     elif varies:
-        damping, meaning = _by_steps([_damping(one) for one in laws], speeds)
+        damping, meaning = _by_steps(dampings, speeds)
     else:
-        damping, meaning = adams_number(_damping(law)), "the same in every impact"
+        damping, meaning = adams_number(dampings[0]), "the same in every impact"
     for one in laws[1:]:
         if _stiffness_terms(one) != _stiffness_terms(law):
             raise InputError("Adams' contact can change its damping from impact to impact, and nothing else", "laws")
@@ -190,10 +195,10 @@ def _stiffness_terms(law: ContactLaw) -> tuple[float, float, float | None]:
     return float(law.stiffness), float(law.exponent), penetration
 
 
-def _damping(law: ContactLaw) -> float:
-    """Return the largest damping coefficient [N s/mm], or the damping factor of a hysteretic law [-]."""
+def _damping(law: ContactLaw, speed: float) -> float:
+    """Return the largest damping coefficient [N s/mm], or the damping factor of a hysteretic law at an approach speed [m/s] [-]."""
     if isinstance(law, HystereticLaw):
-        return float(law.damping_factor)
+        return float(law.damping_factor_at(speed))
     return float(getattr(law, "damping_max", 0.0)) / 1000.0
 
 

@@ -13,6 +13,7 @@ from vibroimpact.dynamics.sensors.sensor import Sensor
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.shown import shown
 from vibroimpact.signals.baseline import without_baseline
+from vibroimpact.signals.one_record import is_named
 from vibroimpact.signals.onset import onset_time
 from vibroimpact.signals.record import Record, Removed
 
@@ -117,16 +118,17 @@ def sensors_of(sensors: Sequence[Sensor], records: Sequence[Record]) -> tuple[Se
     known = {sensor.name: sensor for sensor in sensors}
     chosen: dict[str, Sensor] = {}
     for record in records:
-        if record.name not in known:
+        name = next((name for name in (record.name, *known) if name in known and is_named(record, name)), None)
+        if name is None:
             there = ", ".join(f'"{name}"' for name in known)
             words = f"the case has no sensor {shown(record.name)}; it has {there}.{did_you_mean(record.name, known)}"
             first = next(iter(known.values()))
             column = f'; a column of a CSV file is named after its sensor and has its unit, such as "{first.name} [{first.unit}]"'
             raise InputError(words if not record.source.lower().endswith(".csv") else words.removesuffix(".") + column)
-        if record.name in chosen:
-            raise InputError(f"there are two records {shown(record.name)}; give those of one fall")
-        _check(record, known[record.name])
-        chosen[record.name] = known[record.name]
+        if name in chosen:
+            raise InputError(f"there are two records {shown(name)}; give those of one fall")
+        _check(record, known[name])
+        chosen[name] = known[name]
     if not chosen:
         raise InputError("there is no record; give the files with those of the sensors")
     return tuple(chosen.values())

@@ -19,6 +19,7 @@ from vibroimpact.files.reading import FileKind, text_lines, with_path
 from vibroimpact.measurements.table_layout import fields_of, table_layout
 from vibroimpact.shown import shortened, shown
 from vibroimpact.units.reading import to_si
+from vibroimpact.units.spelling import plain_factor
 
 TABLE = FileKind("a table is a CSV file", 500_000_000, "keep the part with the impacts")
 """Requirements on a table file."""
@@ -47,6 +48,14 @@ _ENDINGS = {
     "_mV": "mV",
     "_Pa": "Pa",
 }
+
+_LANGUAGES = {
+    "time": "t zeit temps tiempo tempo tijd tid aika czas čas idő zaman время 时间 時間",
+    "force": "kraft fuerza forza força kracht voima siła síla erő kuvvet сила 力",
+}
+"""Names of a column in other languages, which instruments write by the language that they are set to."""
+
+_ENGLISH = {word: name for name, words in _LANGUAGES.items() for word in words.split()}
 
 
 @dataclass(frozen=True)
@@ -184,12 +193,12 @@ def _places(number: int, header: Sequence[str], units: Mapping[str, str]) -> tup
 
 
 def name_and_unit(cell: str) -> tuple[str, str | None]:
-    """Return name and unit of a header cell; None if it has no unit.
+    """Return name and unit of a header cell; None if it has no unit. The words of other languages for time and force are translated.
 
     Examples
     --------
-    >>> name_and_unit("Rebound height [mm]"), name_and_unit("time_s"), name_and_unit("count")
-    (('rebound_height', 'mm'), ('time', 's'), ('count', None))
+    >>> name_and_unit("Rebound height [mm]"), name_and_unit("time_s"), name_and_unit("count"), name_and_unit("Zeit [ms]")
+    (('rebound_height', 'mm'), ('time', 's'), ('count', None), ('time', 'ms'))
     """
     whole = cell.strip()
     if whole.endswith(("]", ")")):
@@ -206,17 +215,17 @@ def name_and_unit(cell: str) -> tuple[str, str | None]:
 
 
 def _plain(name: str) -> str:
-    return re.sub(r"[\s-]+", "_", name.strip().lower())
+    plain = re.sub(r"[\s-]+", "_", name.strip().lower())
+    return _ENGLISH.get(plain, plain)
 
 
 def _factor(line: int, cell: str, unit: str | None, wanted: str) -> float:
     where = f"line {line}, column {shown(cell)}"
     if not wanted:
-        if unit == "%":
-            return 0.01
-        if unit not in (None, "", "-", "1"):
+        factor = plain_factor(unit or "")
+        if factor is None:
             raise InputError(f"{where}: it is a plain number, and has no unit")
-        return 1.0
+        return factor
     if unit is None or not unit:
         name = shortened(cell.split("[")[0].strip(), _LONG_NAME)
         raise InputError(f"{where}: the unit is missing; write it in brackets, such as {name} [{wanted}]")

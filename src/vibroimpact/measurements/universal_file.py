@@ -153,8 +153,16 @@ def _lines(raw: bytes, place: int, number: int) -> tuple[list[str], int]:
     lines = []
     for _ in range(number):
         line, place = _line(raw, place)
-        lines.append(line[:200].decode("latin-1"))
+        lines.append(_text_of(line[:200]))
     return lines, place
+
+
+def _text_of(line: bytes) -> str:
+    """Return a line of a header, which is ASCII by the format, and in practice UTF-8 or Latin-1."""
+    try:
+        return line.decode("utf-8")
+    except UnicodeDecodeError:
+        return line.decode("latin-1")
 
 
 def _factors(raw: bytes, place: int) -> dict[str, float]:

@@ -47,6 +47,7 @@ _OTHER_FOLDERS = {
     "laws": "this is a comparison of contact laws, not the result of a run; make it anew with compare",
     "calibration": "this is a calibration, not the result of a run; run its case.toml, or make it anew with calibrate",
     "bounces": "these are bounces in a record, not the result of a run; find them anew with calibrate",
+    "restitutions": "these are restitutions of a table, not the result of a run; fit them anew with calibrate",
     "reproduction": "this is a reproduction of the paper, not the result of a run; make it anew with reproduce",
     "study": "this is a study of many drops, not the result of a run; its results are in study.nc",
     "modes": "these are modes of elastic bodies, not the result of a run; make them anew with modes",

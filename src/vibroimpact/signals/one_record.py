@@ -7,6 +7,7 @@ from os import PathLike
 
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.files.reading import with_path
+from vibroimpact.measurements.table_file import name_and_unit
 from vibroimpact.shown import shown
 from vibroimpact.signals.read_records import read_records
 from vibroimpact.signals.record import Record
@@ -23,7 +24,7 @@ def one_record(path: str | PathLike[str], channel: str | None = None) -> Record:
     path : path
         The file, as `read_records` reads it.
     channel : str, optional
-        Name of the channel.
+        Name of the channel, or the cell of a table's header that has it with its unit.
 
     Raises
     ------
@@ -43,7 +44,7 @@ def one_record(path: str | PathLike[str], channel: str | None = None) -> Record:
     names, found = [], []
     for record in read_records(path):
         names.append(record.name)
-        if channel in (None, record.name):
+        if channel is None or is_named(record, channel):
             found.append(record)
         if len(found) > 1:
             break
@@ -52,11 +53,24 @@ def one_record(path: str | PathLike[str], channel: str | None = None) -> Record:
         there = f"it has {_listed(every)}.{did_you_mean(channel or '', every)}" if every else "it has no record"
         raise with_path(path, InputError(f"there is no channel {shown(channel)}; {there}" if channel is not None else there))
     if len(found) > 1:
-        every = list(dict.fromkeys(record.name for record in islice(read_records(path), _TOLD + 1) if channel in (None, record.name)))
+        alike = (record.name for record in islice(read_records(path), _TOLD + 1) if channel is None or is_named(record, channel))
+        every = list(dict.fromkeys(alike))
         several = f"it has several channels, {_listed(every)}; name one by channel"
         one = f"several signals have the name {shown(every[0])}; take a file with one of them"
         raise with_path(path, InputError(several if len(every) > 1 else one))
     return found[0]
+
+
+def is_named(record: Record, channel: str) -> bool:
+    """Return whether a record has a name, or that of a header's cell: a column "Recording (a.u.)" is the record "recording".
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> [is_named(vi.Record("recording", [0.0, 1.0], 8e3, "1"), name) for name in ("recording", "Recording (a.u.)", "record")]
+    [True, True, False]
+    """
+    return record.name in (channel, name_and_unit(channel)[0])
 
 
 def _listed(names: list[str]) -> str:

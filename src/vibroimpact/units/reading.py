@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 from vibroimpact.errors import InputError
 from vibroimpact.shown import shortened, shown
 from vibroimpact.units.grammar import is_unit
+from vibroimpact.units.spelling import by_gravity, spelled
 
 if TYPE_CHECKING:
     import pint
@@ -37,6 +38,7 @@ _KIND = {
     "N/m": "stiffness",
     "N/m^1.5": "contact stiffness",
     "N s/m": "damping",
+    "s/m": "reciprocal speed",
     "J/m^2": "work of adhesion",
     "1/m": "reciprocal length",
     "V": "voltage",
@@ -63,6 +65,7 @@ _EXAMPLE = {
     "N/m": "1.2 MN/m",
     "N/m^1.5": "1.6e4 N/mm^1.5",
     "N s/m": "179.75 N s/m",
+    "s/m": "0.3 s/m",
     "J/m^2": "50 mJ/m^2",
     "1/m": "0.5 1/mm",
     "V": "10 mV",
@@ -78,7 +81,7 @@ _EXAMPLE = {
 _WITHOUT_DIMENSION = ("rad", "byte", "")
 """Units that have no dimension by which they are told from each other."""
 
-_PREFIXES = {"G": 1e9, "M": 1e6, "k": 1e3, "c": 1e-2, "m": 1e-3, "u": 1e-6, "µ": 1e-6, "μ": 1e-6, "n": 1e-9}
+_PREFIXES = {"G": 1e9, "M": 1e6, "k": 1e3, "c": 1e-2, "m": 1e-3, "u": 1e-6, "n": 1e-9}
 _PREFIXED = ("m", "s", "m/s", "m/s^2", "Pa", "Hz", "N", "N/m", "V")
 """SI units whose multiples are read without pint, with the same factors."""
 
@@ -96,9 +99,9 @@ def to_si(value: float | str, unit: str = "") -> float:
     Parameters
     ----------
     value : float or str
-        A bare number is in `unit` already; a string must have a unit of the same dimension.
+        A bare number is in `unit` already; a string must have a unit of the same dimension, in any spelling: m/s2, m/s², m·s⁻², µm.
     unit : str, default ""
-        The SI unit of the result, as pint reads it; "" for a plain number.
+        The SI unit of the result; "" for a plain number.
 
     Returns
     -------
@@ -118,6 +121,8 @@ def to_si(value: float | str, unit: str = "") -> float:
     2260000000.0
     >>> to_si(0.025, "m")
     0.025
+    >>> to_si("250 mm/s²", "m/s^2")
+    0.25
     >>> to_si("500 g", "m/s^2")  # as data sheets have it: standard gravity; of a mass "g" is the gram
     4903.325
     >>> to_si("25 kg", "m")
@@ -125,6 +130,7 @@ def to_si(value: float | str, unit: str = "") -> float:
         ...
     vibroimpact.errors.InputError: "25 kg" is a mass; expected a length (a number in m, or a string such as "25 mm")
     """
+    unit = spelled(unit)
     if isinstance(value, bool) or not isinstance(value, (int, float, str)):
         raise InputError(f"{shown(value)} is not {_wanted(unit)}")
     if isinstance(value, str):
@@ -176,7 +182,8 @@ def convert_units(value: float, unit: str, to: str) -> float:
     value : float
         The number, in `unit`.
     unit, to : str
-        Units, as pint reads them: "N/m^1.5", "N s/mm", "kN/mm^1.5", "kg/s".
+        Units, in any spelling: "N/m^1.5", "N·s/mm", "kN/mm¹·⁵", "kg/s". "g" is the gram, or standard gravity if only that is of the
+        dimension of the other unit.
 
     Returns
     -------
@@ -198,6 +205,8 @@ def convert_units(value: float, unit: str, to: str) -> float:
     have, want = _known_unit(unit), _known_unit(to)
     number = _finite(to_si(value), value)
     if have.dimensionality != want.dimensionality:
+        have, want = _by_gravity(unit, to) or (have, want)
+    if have.dimensionality != want.dimensionality:
         both = " and ".join(f"{shown(name)} is {_dimension_words(one)}" for name, one in ((unit, have), (to, want)))
         raise InputError(f"{both}; one can't be converted to the other")
     try:
@@ -205,6 +214,15 @@ def convert_units(value: float, unit: str, to: str) -> float:
     except OverflowError:
         found = math.inf
     return _finite(found, f"{value:g} {unit} in {to}")
+
+
+def _by_gravity(unit: str, to: str) -> tuple[pint.Unit, pint.Unit] | None:
+    """Return two units of one dimension if "g" is standard gravity in one of them, or None."""
+    for one, other in ((by_gravity(spelled(unit)), to), (unit, by_gravity(spelled(to)))):
+        have, want = _known_unit(one), _known_unit(other)
+        if have.dimensionality == want.dimensionality:
+            return have, want
+    return None
 
 
 def dimension_of(unit: str) -> dict[str, float]:
@@ -305,21 +323,19 @@ def _split(text: str, *, plain: bool = False) -> tuple[float, str] | None:
 
 def _parse_unit(text: str) -> pint.Unit:
     """Return a unit; raises ValueError, or any error of pint for a unit that it can't read."""
-    if not is_unit(text):
+    plain = spelled(text)
+    if not is_unit(plain):
         raise ValueError(text)
-    return _registry().parse_units(text)
-
-
-_GRAVITIES = {"g": "g0", "mg": "mg0", "ug": "ug0", "µg": "ug0", "μg": "ug0"}
-"""Symbols of standard gravity, 9.80665 m/s^2, and its multiples in accelerometers' data sheets, and pint's names of them."""
+    return _registry().parse_units(plain)
 
 
 def _factor(given: str, unit: str, text: str) -> float:
     """Return the conversion factor from `given` to `unit`."""
-    if given == unit:
+    plain = spelled(given)
+    if plain == unit:
         return 1.0
-    if unit in _PREFIXED and given[1:] == unit and given[0] in _PREFIXES:
-        return _PREFIXES[given[0]]
+    if unit in _PREFIXED and plain[1:] == unit and plain[0] in _PREFIXES:
+        return _PREFIXES[plain[0]]
     return _converted(given, unit, text)
 
 
@@ -330,10 +346,10 @@ def _converted(given: str, unit: str, text: str) -> float:
 
     registry = _registry()
     try:
-        spelled = _GRAVITIES.get(given, given) if unit == "m/s^2" else given  # of an acceleration, g is standard gravity and not the gram
-        if unit == "V s^2/m":  # as of what is told for an acceleration
-            spelled = re.sub(r"/ *g$", "/g0", given)
-        have, want = registry.Quantity(1.0, _parse_unit(spelled)), registry.parse_units(unit)
+        have, want = registry.Quantity(1.0, _parse_unit(given)), registry.parse_units(unit)
+        if have.dimensionality != want.dimensionality:  # of an acceleration, g is standard gravity, and not the gram
+            other = registry.Quantity(1.0, _parse_unit(by_gravity(spelled(given))))
+            have = other if other.dimensionality == want.dimensionality else have
         return float(have.to(want).magnitude)
     except pint.DimensionalityError:
         dimensional = (name for name in _KIND if name not in _WITHOUT_DIMENSION)

@@ -7,6 +7,7 @@ from functools import partial
 import numpy as np
 
 from vibroimpact.calibration.bounces.rebounds import Rebounds
+from vibroimpact.calibration.bounces.speed_laws import Fitted
 from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.decimation import decimated
@@ -37,8 +38,8 @@ def bounce_charts(found: Rebounds) -> list[Chart]:
     >>> [chart.name for chart in vi.bounce_charts(vi.rebounds_of(heard))]
     ['record', 'restitution']
     """
-    makers = {"record": _record_chart, "restitution": _restitution_chart}
-    return made_charts({name: partial(make, found) for name, make in makers.items()})
+    of_impacts = partial(restitution_chart, found, each="Each impact between two flights of the record", one="impact")
+    return made_charts({"record": partial(_record_chart, found), "restitution": of_impacts})
 
 
 def _record_chart(found: Rebounds) -> Chart:
@@ -57,17 +58,20 @@ def _record_chart(found: Rebounds) -> Chart:
     return Chart("record", "Bounces in the record", ((panel,),), caption, height=2.6)
 
 
-def _restitution_chart(found: Rebounds) -> Chart:
-    known = np.isfinite(found.restitution)
+def restitution_chart(found: Fitted, each: str = "Each row of the table", one: str = "row") -> Chart:
+    """Return the chart of restitutions over the approach speed with their fits; `each` and `one`: what a point is."""
+    known = np.isfinite(found.restitution) & np.isfinite(found.approach_speed)
     speed, (low, high) = found.approach_speed[known], found.intervals[known].T
-    names = tuple(f"impact {number + 1}" for number in np.flatnonzero(known))
+    names = tuple(f"{one} {number + 1}" for number in np.flatnonzero(known))
     smooth = np.linspace(speed.min(), speed.max(), _SMOOTH)
     marks: list[Mark] = []
     ends = found.laws[-1].band(smooth, found.confidence)
     if np.isfinite(ends).all():
         marks.append(Band(smooth, *ends, f"{100.0 * found.confidence:g} % band of the {found.laws[-1].name} law", "band"))
     marks += [Line(smooth, law(smooth), law.name, series(number)) for number, law in enumerate(found.laws)]
-    marks.append(Points(speed, found.restitution[known], "impacts", "matched", names, low=low, high=high))
+    whole = np.isfinite([low, high]).all()
+    bars = {"low": low, "high": high} if whole else {}
+    marks.append(Points(speed, found.restitution[known], f"{one}s", "matched", names, **bars))
     panel = Panel(Axis("Approach speed", "m/s"), Axis("Restitution"), tuple(marks))
-    caption = f"Each impact between two flights of the record, with its {100.0 * found.confidence:g} % interval, and the fits."
+    caption = f"{each}{f', with its {100.0 * found.confidence:g} % interval' if whole else ''}, and the fits."
     return Chart("restitution", "Restitution over the approach speed", ((panel,),), caption, height=3.2)

@@ -7,6 +7,7 @@ from typing import Any
 
 from vibroimpact._version import __version__
 from vibroimpact.calibration.bounces.rebounds import Rebounds
+from vibroimpact.calibration.bounces.speed_laws import SpeedLaw
 
 
 def bounce_rows(found: Rebounds) -> list[dict[str, Any]]:
@@ -47,20 +48,25 @@ def bounce_document(found: Rebounds) -> dict[str, Any]:
             "drop_height_given": found.height is not None,
             "drop_height_standard_deviation_m": found.drop_deviation,
             "impacts": bounce_rows(found),
-            "fits": {
-                law.name: {
-                    "coefficients": law.coefficients.tolist(),
-                    "intervals": law.intervals(found.confidence).tolist(),
-                    "scatter": law.scatter,
-                    "degrees_of_freedom": _finite(law.freedom),
-                }
-                for law in found.laws
-            },
+            "fits": fits_document(found.laws, found.confidence),
             "others": [
                 {"time_s": float(time), "reason": reason} for time, reason in zip(found.bounces.others, found.bounces.reasons, strict=True)
             ],
             "doubts": list(found.doubts),
         },
+    }
+
+
+def fits_document(laws: list[SpeedLaw], confidence: float) -> dict[str, Any]:
+    """Return the fits of a restitution over the approach speed by name; None where there is no finite number."""
+    return {
+        law.name: {
+            "coefficients": law.coefficients.tolist(),
+            "intervals": [[_finite(end) for end in ends] for ends in law.intervals(confidence)],
+            "scatter": law.scatter,
+            "degrees_of_freedom": _finite(law.freedom),
+        }
+        for law in laws
     }
 
 

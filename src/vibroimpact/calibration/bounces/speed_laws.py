@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -61,7 +62,31 @@ class SpeedLaw:
         return (value * np.exp(-half), value * np.exp(half)) if power else (value - half, value + half)
 
 
-def speed_laws(speed: Floats, restitution: Floats, covariance: Floats) -> list[SpeedLaw]:
+class Fitted(Protocol):
+    """Restitutions at several approach speeds with their fits, from bounces or from a table."""
+
+    @property
+    def approach_speed(self) -> Floats:
+        """Approach speeds [m/s], (n,)."""
+
+    @property
+    def restitution(self) -> Floats:
+        """Restitutions, (n,)."""
+
+    @property
+    def intervals(self) -> Floats:
+        """Their intervals, (n, 2)."""
+
+    @property
+    def laws(self) -> list[SpeedLaw]:
+        """Fits over the approach speed."""
+
+    @property
+    def confidence(self) -> float:
+        """Confidence level of intervals."""
+
+
+def speed_laws(speed: Floats, restitution: Floats, covariance: Floats, count: Floats | None = None) -> list[SpeedLaw]:
     """Return the fits to restitutions at several speeds: those with fewer coefficients than there are restitutions, the constant always.
 
     Real bounces scatter by more than times are uncertain: to their covariance that of a scatter is added, such that the sum of squared
@@ -73,6 +98,8 @@ def speed_laws(speed: Floats, restitution: Floats, covariance: Floats) -> list[S
         Approach speeds [m/s] and restitutions.
     covariance : array, shape (n, n)
         Covariance of the restitutions.
+    count : array, shape (n,), optional
+        The number of impacts of which each restitution is the mean, of which the scatter is that of one; 1 by default.
 
     Examples
     --------
@@ -80,20 +107,22 @@ def speed_laws(speed: Floats, restitution: Floats, covariance: Floats) -> list[S
     >>> [law.coefficients.round(6).tolist() for law in speed_laws(speed, 0.8 * speed**-0.25, 1e-6 * np.eye(4))][-1]
     [0.8, -0.25]
     """
-    found = [_fitted(CONSTANT, np.ones((len(speed), 1)), restitution, covariance)]
+    one = np.ones(len(speed)) if count is None else 1.0 / count
+    found = [_fitted(CONSTANT, np.ones((len(speed), 1)), restitution, covariance, one)]
     if len(speed) > 2 and np.ptp(speed) > 0.0:
-        found.append(_fitted(LINEAR, np.vander(speed, 2, increasing=True), restitution, covariance))
+        found.append(_fitted(LINEAR, np.vander(speed, 2, increasing=True), restitution, covariance, one))
         relative = covariance / np.outer(restitution, restitution)
-        power = _fitted(POWER, np.vander(np.log(speed), 2, increasing=True), np.log(restitution), relative)
+        power = _fitted(POWER, np.vander(np.log(speed), 2, increasing=True), np.log(restitution), relative, one)
         found.append(power)
     return found
 
 
-def _fitted(name: str, design: Floats, value: Floats, covariance: Floats) -> SpeedLaw:
+def _fitted(name: str, design: Floats, value: Floats, covariance: Floats, shares: Floats) -> SpeedLaw:
+    """Return a fit; `shares`: parts of the variance of the scatter that the values have, (n,)."""
     freedom = len(value) - design.shape[1]
 
     def fit(added: float) -> tuple[Floats, Floats, float]:
-        root = np.linalg.cholesky(covariance + added * np.eye(len(value)))
+        root = np.linalg.cholesky(covariance + added * np.diag(shares))
         white, target = np.linalg.solve(root, design), np.linalg.solve(root, value)
         inverse = np.linalg.pinv(white)
         solution = inverse @ target

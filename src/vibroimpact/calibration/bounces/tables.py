@@ -8,7 +8,7 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.calibration.bounces.rebounds import Rebounds
-from vibroimpact.calibration.bounces.speed_laws import CONSTANT, LINEAR, POWER, SpeedLaw
+from vibroimpact.calibration.bounces.speed_laws import CONSTANT, LINEAR, POWER, Fitted, SpeedLaw
 from vibroimpact.calibration.report import Cells
 from vibroimpact.units.display import MISSING, column_texts, digits, fixed, text
 
@@ -41,9 +41,9 @@ def impact_cells(found: Rebounds) -> Cells:
     return headers, [list(row) for row in zip(*columns, strict=True)]
 
 
-def law_sentences(found: Rebounds) -> list[str]:
+def law_sentences(found: Fitted) -> list[str]:
     """Return the fits over the approach speed, a sentence each."""
-    return [_sentence(law, found) for law in found.laws]
+    return [_sentence(law, found.confidence) for law in found.laws]
 
 
 def drop_sentence(found: Rebounds) -> str:
@@ -85,8 +85,8 @@ def decimals_of(deviation: Floats) -> int:
     return int(np.clip(1 - math.floor(math.log10(least)), 3, _MOST_DECIMALS)) if least > 0.0 else _MOST_DECIMALS
 
 
-def _sentence(law: SpeedLaw, found: Rebounds) -> str:
-    ends = law.intervals(found.confidence)
+def _sentence(law: SpeedLaw, confidence: float) -> str:
+    ends = law.intervals(confidence)
     first, *second = [f"{digits(value, 4)} ({_range(low, high)})" for value, (low, high) in zip(law.coefficients, ends, strict=True)]
     said = {
         CONSTANT: f"Constant: e = {first}",

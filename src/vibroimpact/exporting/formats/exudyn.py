@@ -8,6 +8,7 @@ from dataclasses import fields
 
 from vibroimpact.contact.friction.law import FrictionLaw
 from vibroimpact.contact.law import ContactLaw
+from vibroimpact.contact.laws.hunt_crossley import HuntCrossley
 from vibroimpact.contact.laws.linear_spring_dashpot import LinearSpringDashpot
 from vibroimpact.errors import InputError
 from vibroimpact.exporting.contact_parameters import approach_speeds, first_contact, shared_notes
@@ -68,6 +69,8 @@ def _force(law: ContactLaw) -> str:
     """Return the body of the Python function of a law's contact force."""
     if isinstance(law, LinearSpringDashpot) and law.damping is not None:
         return "return p.stiffness * delta + p.damping * rate"
+    if isinstance(law, HuntCrossley) and law.dissipation is not None:
+        return "return p.stiffness * delta**p.exponent * (1.0 + p.dissipation * rate)"
     if law.name not in _FORCES:
         raise InputError(
             f"{law.name} can't be written for EXUDYN; {', '.join(sorted(_FORCES))} can. "

@@ -11,6 +11,7 @@ from vibroimpact.contact.kelvin_voigt import KelvinVoigtLaw
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.contact.laws.adams_impact import AdamsImpact
 from vibroimpact.contact.laws.hertz import Hertz
+from vibroimpact.contact.laws.hunt_crossley import HuntCrossley
 from vibroimpact.contact.laws.kuwabara_kono import KuwabaraKono
 from vibroimpact.contact.laws.tsuji import Tsuji
 from vibroimpact.dynamics.oblique.statement import Oblique
@@ -177,6 +178,11 @@ def _notes(drop: Drop) -> list[str]:
         if normals[0].damping == "velocity":
             where = f"{speeds[0]:.6g} m/s, the speed of the first impact" if len(normals) == 1 else "the speed of each impact of this drop"
             notes.append(f"Its restitution is the law's at {where}; at others it differs somewhat.")
+    if isinstance(law, HuntCrossley) and law.dissipation is not None:
+        notes.append(
+            f"Its restitution is the law's at {speeds[0]:.6g} m/s, the speed of the first impact, and does not depend on the speed; "
+            "that of the law rises to 1 where it slows down."
+        )
     if _friction(drop) is not None and normals[0].coefficient and not normals[0].clipped:
         notes.append("Where LAMMPS' normal force pulls, at the end of a contact, friction follows its magnitude.")
     if len(normals) > 1:

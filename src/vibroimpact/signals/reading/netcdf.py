@@ -19,11 +19,11 @@ from vibroimpact.signals.reading.equal_steps import rate_of
 from vibroimpact.signals.reading.si_units import in_si
 from vibroimpact.signals.record import Record
 from vibroimpact.structures.free_memory import check_memory
+from vibroimpact.units.reading import to_si
 
 NETCDF = FileKind("a NetCDF file holds variables with a dimension of time", 1_000_000_000_000, "split it")
 """Requirements on a NetCDF file."""
 
-_SECONDS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "second": 1.0, "seconds": 1.0}
 _COPIES = 3  # of samples, while they are converted
 _AT_ONCE = 2**22
 """Samples that are read at once."""
@@ -69,7 +69,7 @@ def _signals(file: h5py.File) -> Iterator[tuple[h5py.Dataset, float, float]]:
         if not isinstance(data, h5py.Dataset) or data.dtype.kind not in "fiu" or not data.ndim or data.is_scale:
             continue
         for scale in data.dims[data.ndim - 1].values():
-            second = _SECONDS.get(_text(scale.attrs.get("units", "")))
+            second = _seconds(_text(scale.attrs.get("units", "")))
             if second is None or len(scale) < 2:
                 continue
             check_memory(_COPIES * 8.0 * len(scale), f"the times of variable {name} need", NETCDF.smaller)
@@ -80,6 +80,14 @@ def _signals(file: h5py.File) -> Iterator[tuple[h5py.Dataset, float, float]]:
             except InputError:  # a history at unequal steps is no signal
                 continue
             yield data, rate, float(time[0])
+
+
+def _seconds(unit: str) -> float | None:
+    """Return how many seconds a unit has; None if it is none of time."""
+    try:
+        return to_si(f"1 {unit}", "s")
+    except InputError:
+        return None
 
 
 def _records(data: h5py.Dataset, rate: float, start: float) -> Iterator[Record]:

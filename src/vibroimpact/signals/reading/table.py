@@ -41,7 +41,7 @@ def table_records(path: Path) -> Iterator[Record]:
     if len(names) < 2:
         raise InputError(f"{path}: there is no column beside the time; each other one is a channel, such as geophone [V]")
     doubts: list[str] = []
-    table = read_table_file(path, {name: "" if unit == "1" else unit.replace("s2", "s^2") for name, unit in names.items()}, doubts)
+    table = read_table_file(path, {name: "" if unit == "1" else unit for name, unit in names.items()}, doubts)
     channels = [name for name in names if name != _TIME]
     try:
         sampled = at_equal_steps(table.columns[_TIME], [table.columns[name] for name in channels])

@@ -1,0 +1,150 @@
+"""Measured restitutions at several approach speeds, and their fits."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from os import PathLike
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.calibration.bounces.speed_laws import SpeedLaw, speed_laws
+from vibroimpact.calibration.fitting import half_width
+from vibroimpact.calibration.impact_table import DEVIATION, check_counts, check_positive, is_impact_table, read_impact_table
+from vibroimpact.errors import InputError
+from vibroimpact.measurements.table_file import TableFile
+
+_MOST = 1.1
+"""Largest restitution that noise can explain."""
+
+_MOST_DIGITS = 9
+
+
+@dataclass(frozen=True)
+class Restitutions:
+    """Restitutions at n approach speeds, which are taken as exact.
+
+    Parameters
+    ----------
+    source : str
+        The file.
+    approach_speed, restitution : array, shape (n,)
+        Approach speeds [m/s] and restitutions.
+    deviation : array, shape (n,)
+        Standard deviation of each restitution; NaN if it is not known.
+    count : array, shape (n,)
+        The number of impacts of which each restitution is the mean.
+    rounding : float
+        Step to which the restitutions are rounded, by their digits.
+    laws : list of SpeedLaw
+        Fits of the restitution over the approach speed.
+    confidence : float
+        Confidence level of intervals.
+    doubts : tuple of str
+        Warnings, as sentences.
+    """
+
+    source: str
+    approach_speed: Floats
+    restitution: Floats
+    deviation: Floats
+    count: Floats
+    rounding: float
+    laws: list[SpeedLaw]
+    confidence: float
+    doubts: tuple[str, ...]
+
+    @property
+    def intervals(self) -> Floats:
+        """Confidence intervals of the restitutions, (n, 2); NaN where the deviation is not known."""
+        half = half_width(self.confidence, np.inf) * self.deviation
+        return np.stack([self.restitution - half, self.restitution + half], axis=1)
+
+
+def read_restitutions(path: str | PathLike[str], *, confidence: float = 0.95) -> Restitutions:
+    r"""Return the restitutions of a table with a row for each approach speed, and their fits.
+
+    A row has `approach_speed` [m/s] and `restitution`, or `separation_speed` [m/s]; `restitution_standard_deviation`, if it is known; and
+    `count`, if it is the mean of several impacts: then the standard deviation is that of one impact. Without standard deviations the
+    scatter about the fit tells them; what the digits of the table leave open is added.
+
+    Parameters
+    ----------
+    path : path
+        The file.
+    confidence : float, default 0.95
+        Confidence level of intervals.
+
+    Raises
+    ------
+    InputError
+        If the file can't be read, has other columns, or a value is impossible; the message names the line.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> import vibroimpact as vi
+    >>> with TemporaryDirectory() as folder:
+    ...     file = Path(folder, "ev.csv")
+    ...     _ = file.write_text("speed [m/s],restitution,count\n1,0.81,5\n2,0.78,5\n4,0.74,8\n")
+    ...     found = vi.read_restitutions(file)
+    >>> [(law.name, law.coefficients.round(3).tolist()) for law in found.laws]
+    [('constant', [0.771]), ('linear', [0.83, -0.023]), ('power', [0.812, -0.066])]
+    """
+    table = read_impact_table(path)
+    if not is_impact_table(table.columns):
+        raise InputError(f"{path}: it has no approach_speed [m/s] with a restitution or a separation_speed [m/s]")
+    columns = table.columns
+    for name in columns:
+        if name != "count":
+            check_positive(table, name)
+    check_counts(table)
+    speed, count = columns["approach_speed"], columns.get("count", np.ones(len(table.lines)))
+    by_speeds = "restitution" not in columns
+    restitution = columns["separation_speed"] / speed if by_speeds else columns["restitution"]
+    _check_height(table, restitution)
+    known = columns.get(f"separation_speed{DEVIATION}" if by_speeds else f"restitution{DEVIATION}")
+    rounding = rounding_step(columns["separation_speed"] if by_speeds else restitution)
+    scale = 1.0 / speed if by_speeds else np.ones(len(speed))
+    deviation = np.full(len(speed), np.nan) if known is None else scale * known / np.sqrt(count)
+    variance = np.nan_to_num(deviation) ** 2 + (scale * rounding) ** 2 / 12.0
+    laws = speed_laws(speed, restitution, np.diag(variance), count)
+    return Restitutions(str(path), speed, restitution, deviation, count, rounding, laws, confidence, _doubts(table, restitution, speed))
+
+
+def rounding_step(values: Floats) -> float:
+    """Return the largest power of ten of which all values are multiples: the step to which they are rounded; at least 1e-9.
+
+    Examples
+    --------
+    >>> rounding_step(np.array([0.81, 0.8])), rounding_step(np.array([0.8125, 1.0]))
+    (0.01, 0.0001)
+    """
+    for places in range(_MOST_DIGITS):
+        shifted = values * 10.0**places
+        if np.all(np.abs(shifted - np.round(shifted)) <= 1e-9 * np.maximum(np.abs(shifted), 1.0)):
+            return float(10.0**-places)
+    return float(10.0**-_MOST_DIGITS)
+
+
+def _check_height(table: TableFile, restitution: Floats) -> None:
+    """Raise InputError if a restitution is higher than noise makes it."""
+    wrong = np.flatnonzero(restitution > _MOST)
+    if wrong.size:
+        value = restitution[wrong[0]]
+        words = f"the restitution is {value:.4g}, and noise lifts none above {_MOST:g}"
+        hint = "if it is in per cent, name its unit: restitution [%]" if value > 10.0 else "look at the speeds and their units"
+        raise InputError(f"{table.path}, line {table.lines[wrong[0]]}: {words}; {hint}")
+
+
+def _doubts(table: TableFile, restitution: Floats, speed: Floats) -> tuple[str, ...]:
+    found = []
+    above = np.flatnonzero(restitution > 1.0)
+    if above.size:
+        worst = int(np.argmax(restitution))
+        words = f"the restitution in line {table.lines[worst]} is {restitution[worst]:.4g}: more than 1 gains energy"
+        found.append(f"{words}; a case takes 1 at most")
+    if len(np.unique(speed)) < 3:
+        found.append("at fewer than three speeds nothing tells a dependence on the speed from scatter: only a constant is fitted")
+    return tuple(found)

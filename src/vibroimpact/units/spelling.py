@@ -1,0 +1,75 @@
+"""Spellings of units: as instruments, languages and this program's own tables write them, brought to the one that pint reads."""
+
+from __future__ import annotations
+
+import re
+from functools import lru_cache
+
+_SUPERSCRIPTS = "⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻"
+_RAISED = re.compile(rf"[{_SUPERSCRIPTS}]+(?:[·⋅.][{_SUPERSCRIPTS}]+)?")
+_LOWERED = str.maketrans(f"{_SUPERSCRIPTS}·⋅", "0123456789+-..")
+_SIGNS = str.maketrans(
+    {
+        **dict.fromkeys("\u2212\u2010\u2011\u2013", "-"),  # minus, hyphens, en dash
+        **dict.fromkeys("\u22c5\u2219\u2022\u00d7", "·"),  # dot operator, bullets, multiplication sign
+        **dict.fromkeys("\u2215\u2044\u00f7", "/"),  # division slash, fraction slash, division sign
+        **dict.fromkeys("\u00b5\u03bc", "u"),  # micro sign and Greek mu
+    }
+)
+_POINT = re.compile(r"(?<=[A-Za-z0-9)])\.(?=[A-Za-z(])")
+"""A full stop between two units multiplies them; between digits it is a decimal point."""
+
+_STANDARD_GRAVITY = re.compile(r"(?<![A-Za-z])([mu]?)g_?n(?![A-Za-z0-9])")
+_JOINED = re.compile(r"(?<![A-Za-z])([GMkmu]?(?:N|Pa|V))s(?![A-Za-z])")
+"""A newton, pascal or volt with the second after it, as in Ns/m."""
+
+_POWER = re.compile(r"(?<=[A-Za-z])\+?(-?[1-9]\d*(?:\.\d+)?)(?![A-Za-z0-9])")
+"""A power without a sign of it, as in m/s2; no unit has a name that ends in a digit from 1 to 9."""
+
+_GRAVITY = re.compile(r"(?<![A-Za-z])([mu]?)[gG](?![A-Za-z0-9])")
+
+_PLAIN = {
+    **dict.fromkeys(("", "1", "-", "none"), 1.0),
+    **dict.fromkeys(("a.u.", "a.u", "arb. u.", "arb. unit", "arb. units", "arb.units", "arbitrary units", "count", "counts"), 1.0),
+    **dict.fromkeys(("strain", "m/m", "mm/mm"), 1.0),
+    **dict.fromkeys(("um/m", "microstrain", "ustrain", "uε"), 1e-6),
+    "mm/m": 1e-3,
+    "%": 1e-2,
+}
+
+
+@lru_cache(maxsize=1000)
+def spelled(text: str) -> str:
+    """Return a unit in the spelling that is read: powers after "^", "u" for micro, "·" between factors; unknown words are kept.
+
+    Examples
+    --------
+    >>> [spelled(text) for text in ("m/s2", "m·s⁻²", "m.s-2", "kg/m³", "N/m¹·⁵", "µm", "mV/gn", "Ns/m")]
+    ['m/s^2', 'm·s^-2', 'm·s^-2', 'kg/m^3', 'N/m^1.5', 'um', 'mV/g0', 'N s/m']
+    """
+    raised = _RAISED.sub(lambda power: "^" + power[0].translate(_LOWERED).removeprefix("+"), text.strip())
+    plain = _JOINED.sub(r"\1 s", " ".join(raised.translate(_SIGNS).split()))
+    return _POWER.sub(r"^\1", _POINT.sub("·", _STANDARD_GRAVITY.sub(r"\1g0", plain)))
+
+
+def by_gravity(text: str) -> str:
+    """Return a unit in which g, mg, ug and G are standard gravity, 9.80665 m/s^2, and not the gram, its parts and the gauss.
+
+    Examples
+    --------
+    >>> by_gravity("mV/g"), by_gravity("mg"), by_gravity("kg")
+    ('mV/g0', 'mg0', 'kg')
+    """
+    return _GRAVITY.sub(r"\1g0", text)
+
+
+def plain_factor(text: str) -> float | None:
+    """Return the factor of a unit of plain numbers, such as strain or arbitrary units; None if it is none.
+
+    Examples
+    --------
+    >>> plain_factor("a.u."), plain_factor("µm/m"), plain_factor("%"), plain_factor("m")
+    (1.0, 1e-06, 0.01, None)
+    """
+    word = " ".join(text.translate(_SIGNS).split())
+    return _PLAIN.get(word, _PLAIN.get(word.lower()))
