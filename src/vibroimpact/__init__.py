@@ -46,7 +46,6 @@ if TYPE_CHECKING:
     from vibroimpact.calibration.restitutions.folder import save_restitutions as save_restitutions
     from vibroimpact.calibration.restitutions.restitutions import Restitutions as Restitutions
     from vibroimpact.calibration.restitutions.restitutions import read_restitutions as read_restitutions
-    from vibroimpact.calibration.speed_function import SpeedFunction as SpeedFunction
     from vibroimpact.calibration.tunables import law_parameter as law_parameter
     from vibroimpact.calibration.tunables import modal_damping as modal_damping
     from vibroimpact.cases.case import Case as Case
@@ -71,6 +70,8 @@ if TYPE_CHECKING:
     from vibroimpact.contact.registry import find_contact_law as find_contact_law
     from vibroimpact.contact.registry import find_friction_law as find_friction_law
     from vibroimpact.contact.registry import friction_laws as friction_laws
+    from vibroimpact.contact.speed_function import SpeedFunction as SpeedFunction
+    from vibroimpact.contact.speed_function import SpeedTable as SpeedTable
     from vibroimpact.correlation.charts import correlation_charts as correlation_charts
     from vibroimpact.correlation.correlate import Correlation as Correlation
     from vibroimpact.correlation.correlate import correlate as correlate
@@ -234,7 +235,8 @@ _HOME = {
     "Sensor": "dynamics.sensors.sensor",
     "SensorSignals": "recognition.labelled_signals",
     "Signal": "dynamics.sensors.recording",
-    "SpeedFunction": "calibration.speed_function",
+    "SpeedFunction": "contact.speed_function",
+    "SpeedTable": "contact.speed_function",
     "StrainGauge": "dynamics.sensors.instruments.strain_gauge",
     "Study": "studies.study",
     "Sweep": "studies.sweep",

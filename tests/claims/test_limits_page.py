@@ -33,6 +33,7 @@ def threshold(name: str, unit: float = 1.0) -> float:
 def test_thresholds() -> None:
     says(PAGE, "at the same energy | above {} %", threshold("finite_sphere", 100.0))
     says(PAGE, "contact radius over the radius of the sphere | above {} |", threshold("small_contact"))
+    says(PAGE, "as a [function of it](case-file.md#functions-of-the-approach-speed) | above {} |", threshold("speeds_given"))
     says(PAGE, "over the tensile strength | above {} |", threshold("sphere_strength"))
     says(PAGE, "(Clift and Gauvin 1970; {} kg/m^3)", AIR_DENSITY)
     says(PAGE, "| above {} % | the loss, and the speed with drag", threshold("air_drag", 100.0))

@@ -20,8 +20,8 @@ from scipy.io import loadmat, wavfile
 
 import vibroimpact as vi
 from support import plain_case
-from vibroimpact.calibration.speed_function import SpeedFunction
 from vibroimpact.cli import main
+from vibroimpact.contact.speed_function import SpeedFunction
 from vibroimpact.dynamics.columns import HISTORY_COLUMNS, IMPACT_COLUMNS, meanings
 from vibroimpact.dynamics.sensors.recording import Signal
 from vibroimpact.dynamics.sensors.sensor import Sensor

@@ -13,7 +13,6 @@ import numpy as np
 import pytest
 
 from told import MASS, RADIUS, STIFFNESS, told, told_case
-from vibroimpact.calibration.speed_function import SpeedFunction
 from vibroimpact.contact.friction.laws.mindlin import MindlinForce
 from vibroimpact.contact.hysteretic import HystereticLaw
 from vibroimpact.contact.laws.adams_impact import AdamsImpact
@@ -24,6 +23,7 @@ from vibroimpact.contact.laws.newton import Newton
 from vibroimpact.contact.laws.tsuji import Tsuji
 from vibroimpact.contact.pair import ContactPair
 from vibroimpact.contact.registry import contact_laws, find_friction_law
+from vibroimpact.contact.speed_function import SpeedFunction
 from vibroimpact.dynamics.oblique.statement import Oblique
 from vibroimpact.dynamics.restitution import achieved_restitution
 from vibroimpact.errors import InputError

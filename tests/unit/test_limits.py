@@ -76,6 +76,12 @@ def small(radius: float) -> dict[str, Any]:
     return {"sphere__radius": radius, "drop": {"speed": 0.05}}
 
 
+def given_up_to(speed: float) -> dict[str, Any]:
+    """A restitution that is given from 0.01 m/s to a speed, and a drop that comes at 1 m/s."""
+    restitution = {"speed": [0.01, speed], "value": [0.6, 0.5]}
+    return {"contact": {"law": "tsuji", "restitution": restitution}, "drop": {"height": 0.025 + 1.0 / 19.6133}}
+
+
 @pytest.mark.parametrize(
     ("name", "threshold", "below", "beyond", "words"),
     [
@@ -85,6 +91,7 @@ def small(radius: float) -> dict[str, Any]:
         ("adhesion", 0.01, small(2e-5), small(1e-5), ["J/m^2", "stick below", '"jkr"']),
         ("plate_edge", 1.0, near_edge(0.045), near_edge(0.0453), ["half space is too stiff", "move drop.position"]),
         ("full_damping", 1.0, fading("9 um"), fading("10 um"), ["never acts in full", "calibrate"]),
+        ("speeds_given", 1.05, given_up_to(0.96), given_up_to(0.95), ["is given for approach speeds", "the nearest one holds"]),
     ],
 )
 def test_a_limit_is_doubted_from_its_threshold_on(

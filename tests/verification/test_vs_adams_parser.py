@@ -19,11 +19,11 @@ from oracles.adams_functions import Refused, Scope, State, parse_function
 from support import one_in
 from vibroimpact.bodies.body import Body
 from vibroimpact.bodies.rigid import rigid_plate
-from vibroimpact.calibration.speed_function import SpeedFunction
 from vibroimpact.contact.hysteretic import HystereticLaw
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.contact.laws.adams_impact import AdamsImpact
 from vibroimpact.contact.laws.hertz import Hertz
+from vibroimpact.contact.speed_function import SpeedFunction
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.errors import InputError
 from vibroimpact.exporting.drop import Drop

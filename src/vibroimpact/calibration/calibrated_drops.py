@@ -14,7 +14,7 @@ from vibroimpact.calibration.matching import Tunable
 from vibroimpact.calibration.noise import standard_deviations
 from vibroimpact.calibration.observations import Observations
 from vibroimpact.calibration.single_impacts import first_approach_speed, return_speeds
-from vibroimpact.calibration.speed_function import SpeedFunction
+from vibroimpact.contact.speed_function import SpeedFunction
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.simulate import simulate
 

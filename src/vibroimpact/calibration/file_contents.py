@@ -54,6 +54,7 @@ def calibration_table(case: Case, found: Calibration) -> dict[str, Any]:
             "scatter": _finite(fit.scatter),
             "largest_misfit": largest_misfit(found),
         },
+        "by_speed": fit.function.table(),
         "confidence": found.confidence,
         "bootstrap": found.bootstrap,
         "matched": matched_rows(found),

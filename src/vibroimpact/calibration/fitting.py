@@ -13,7 +13,7 @@ from vibroimpact.arrays import Floats
 from vibroimpact.calibration.matching import Tunable, derivatives, residual_scale
 from vibroimpact.calibration.noise import Noise, no_noise, scaled, standard_deviations, whitened
 from vibroimpact.calibration.observations import Observations
-from vibroimpact.calibration.speed_function import SpeedFunction
+from vibroimpact.contact.speed_function import SpeedFunction
 from vibroimpact.errors import ComputationError, InputError
 
 _SWEEPS = 50

@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import BeforeValidator, Field, StrictBool, model_validator
 
 from vibroimpact.calibration.matchable import MATCHABLE, check_weights
-from vibroimpact.cases.fields.contact import ContactSection, law_schema, read_contact
+from vibroimpact.cases.fields.contact import ContactSection, in_table, law_schema, read_contact
 from vibroimpact.cases.fields.json_schema import JsonSchema
 from vibroimpact.cases.fields.quantities import Quantity
 from vibroimpact.cases.fields.section import Section, read_table
@@ -238,7 +238,7 @@ def calibrate_table(section: CalibrateSection) -> dict[str, Any]:
 
 def _as_table(value: Target) -> dict[str, Any]:
     if isinstance(value, ContactSection):
-        return {"law": value.law, **{name: list(one) if isinstance(one, tuple) else one for name, one in value.parameters.items()}}
+        return {"law": value.law, **{name: in_table(one) for name, one in value.parameters.items()}}
     return value.model_dump(exclude_none=True, mode="json")
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -10,6 +12,8 @@ from vibroimpact.calibration.differences import COMPARED, WAYS, differences, lar
 from vibroimpact.calibration.matchable import MATCHABLE, REBOUNDS
 from vibroimpact.calibration.report import Cells, shortened
 from vibroimpact.calibration.tunables import law_parameter
+from vibroimpact.cases.fields.contact import varies_with_speed
+from vibroimpact.contact.speed_function import toml_of
 from vibroimpact.runs.tables import formatted_column
 from vibroimpact.units.display import column_texts, digits, fixed, largest, text
 
@@ -104,6 +108,8 @@ def fit_sentences(found: Calibration) -> list[str]:
     else:
         where = "over these speeds" if found.curve is not None else "at the impacts"
         told.append(f"Its largest deviation is {digits(largest_misfit(found), 3)} {found.unit} {where}.".replace("  ", " "))
+    if fit.function.degree and found.parameter in {item.name for item in fields(found.problem.laws[0]) if varies_with_speed(item)}:
+        told.append(f"In a case: {found.parameter} = {toml_of(fit.function)}")
     return told
 
 

@@ -14,7 +14,7 @@ from vibroimpact.calibration.observations import Observations, from_table
 from vibroimpact.calibration.section import CalibrateSection, FileTarget, HeightsTarget, ImpactTarget, RestitutionTarget
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.fields.contact import ContactSection
-from vibroimpact.cases.rigid import contact_laws_of, touch_speed
+from vibroimpact.cases.rigid import by_speed_of, contact_laws_of, touch_speed
 from vibroimpact.contact.laws.newton import Newton
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.errors import InputError
@@ -35,7 +35,8 @@ def target_of(case: Case, problem: Problem, section: CalibrateSection) -> Proble
         raise InputError("nothing that is to be matched flew; leave this out", "air")
     if isinstance(target, ContactSection):
         try:
-            return replace(problem, laws=contact_laws_of(case.model_copy(update={"contact": target})))
+            other = case.model_copy(update={"contact": target})
+            return replace(problem, laws=contact_laws_of(other), by_speed=by_speed_of(other))
         except InputError as error:
             raise InputError(error.message, error.key.replace("contact", "target", 1)) from None
     assert isinstance(target, RestitutionTarget)
@@ -46,7 +47,7 @@ def target_of(case: Case, problem: Problem, section: CalibrateSection) -> Proble
         return from_table(
             np.array([speed]), {"separation_speed": np.array([target.restitution * speed])}, None, ("impact 1",), of_the_drop=True
         )
-    return replace(problem, laws=(Newton(restitution=target.restitution),))
+    return replace(problem, laws=(Newton(restitution=target.restitution),), by_speed={})
 
 
 def _measured(case: Case, target: HeightsTarget | ImpactTarget | FileTarget, section: CalibrateSection) -> Measurement:

@@ -50,6 +50,8 @@ def law_parameter(problem: Problem, name: str | None = None) -> Tunable:
     chosen = name or str(first.free_parameter)
     if chosen not in known:
         raise InputError(f'{first.name} has no parameter "{chosen}"; it has {choices(known, chosen)}', "parameter")
+    # what is sought takes the place of a function of the approach speed
+    problem = replace(problem, by_speed={key: function for key, function in problem.by_speed.items() if key != chosen})
     told = known[chosen].metadata
     given = np.array([float(getattr(law, chosen)) for law in laws])
     start = _start(float(given[0]), told["example"])

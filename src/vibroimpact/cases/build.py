@@ -15,7 +15,16 @@ from vibroimpact.cases.fields.material import material_table
 from vibroimpact.cases.motion import motion_length
 from vibroimpact.cases.oblique import friction_law_of, oblique_keys
 from vibroimpact.cases.pair import is_free_sphere
-from vibroimpact.cases.rigid import PLATE_FALLS, contact_laws_of, deforms, elastic_names, impact_limit, rigid_problem, run_duration
+from vibroimpact.cases.rigid import (
+    PLATE_FALLS,
+    by_speed_of,
+    contact_laws_of,
+    deforms,
+    elastic_names,
+    impact_limit,
+    rigid_problem,
+    run_duration,
+)
 from vibroimpact.contact.friction.law import CompliantFriction
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, is_conservative
 from vibroimpact.dynamics.air import check_thin
@@ -194,7 +203,11 @@ def resolved_case(case: CaseTable) -> ResolvedCase:
     laws = contact_laws_of(case)
     contact: dict[str, Any] = {"law": case.contact.law}
     # a parameter is a list only if its values differ between impacts; derived ones are written out, so that the file is complete
+    functions = by_speed_of(case)
     for item in fields(laws[0]):
+        if item.name in functions:
+            contact[item.name] = functions[item.name].table()
+            continue
         values = [getattr(law, item.name) for law in laws]
         if item.name in case.contact.parameters or values[0] is not None:
             contact[item.name] = values if len(values) > 1 and len(set(values)) > 1 else values[0]

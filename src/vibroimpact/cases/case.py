@@ -55,6 +55,6 @@ def case_schema() -> dict[str, Any]:
     schema = Case.model_json_schema()
     schema["$schema"] = "https://json-schema.org/draft/2020-12/schema"
     schema["properties"]["contact"] = contact_schema()
-    for name in ("ContactSection", "FrictionTable"):  # their keys are those of the laws
+    for name in ("ContactSection", "SpeedFunction", "SpeedTable", "FrictionTable"):  # their keys are those of the laws
         schema["$defs"].pop(name, None)
     return schema

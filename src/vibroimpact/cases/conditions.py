@@ -15,10 +15,14 @@ from vibroimpact.contact.elastic_plastic import ElasticPlasticLaw
 from vibroimpact.contact.law import ContactLaw, InstantaneousLaw
 from vibroimpact.contact.pair import effective_modulus, hertz_stiffness
 from vibroimpact.contact.registry import find_contact_law
+from vibroimpact.contact.speed_function import BySpeed, held, of_table
 from vibroimpact.materials import RIGID, Material
 from vibroimpact.resolved_case import ResolvedCase
 
 _LIKE_HERTZ = 0.01  # relative: a stiffness that differs by more was measured or fitted, and includes effects beyond Hertz's theory
+
+_OTHER_TABLES = {"friction", "liquid", "measured"}
+"""Tables in the contact section of a case that are not parameters of the law."""
 
 
 @dataclass(frozen=True)
@@ -42,6 +46,8 @@ class DropSummary:
         `RELATIVE_CHANGE`, or of the tolerance if that is larger.
     plate_theory : float
         For a single drop on plate elements: estimated part by which its first largest force is too large due to plate theory.
+    slowest : float or array
+        Lowest approach speed of its impacts [m/s].
     """
 
     force: Array = math.nan
@@ -52,6 +58,7 @@ class DropSummary:
     modes: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     changes: Array = 0.0
     plate_theory: Array = math.nan
+    slowest: Array = math.nan
 
 
 @dataclass(frozen=True)
@@ -122,7 +129,15 @@ class Conditions:
     def law_parameter(self, name: str, otherwise: Any = math.nan) -> Array:
         """Return a parameter of the contact law for the first impact."""
         value = self.case["contact"].get(name, otherwise)
+        if isinstance(value, Mapping):
+            return held(of_table(value), self.summary.speed)
         return value[0] if isinstance(value, (list, tuple)) else value
+
+    @cached_property
+    def by_speed(self) -> dict[str, BySpeed]:
+        """The parameters of the contact law that are functions of the approach speed."""
+        tables = {key: value for key, value in self.case["contact"].items() if isinstance(value, Mapping) and not _OTHER_TABLES & {key}}
+        return {key: of_table(value) for key, value in tables.items()}
 
     @property
     def yields(self) -> bool:

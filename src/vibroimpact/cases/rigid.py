@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from vibroimpact.arrays import Array
 from vibroimpact.bodies.body import Body
 from vibroimpact.bodies.rigid import rigid_plate, rigid_sphere
 from vibroimpact.cases.fields.section import derived
@@ -14,6 +15,7 @@ from vibroimpact.cases.oblique import normal_motion_of, oblique_of
 from vibroimpact.cases.pair import contact_pair, is_free_sphere
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.contact.registry import find_contact_law
+from vibroimpact.contact.speed_function import BySpeed, SpeedFunction, SpeedTable, held
 from vibroimpact.dynamics.flight_in_fluid import speed_of_fall
 from vibroimpact.dynamics.fluid import Fluid
 from vibroimpact.dynamics.problem import Problem
@@ -38,13 +40,18 @@ def mass_of_sphere(case: CaseTable) -> float:
 
 @derived
 def contact_laws_of(case: CaseTable) -> tuple[ContactLaw, ...]:
-    """Return the contact law of each impact, as many as the longest list of a parameter has values; the last holds for later impacts."""
-    law, pair = find_contact_law(case.contact.law), contact_pair(case)
-    lists = {key: value for key, value in case.contact.parameters.items() if isinstance(value, tuple)}
+    """Return the contact law of each impact, as many as the longest list of a parameter has values; the last holds for later impacts.
+
+    A function of the approach speed has its value at the first touch, in a vacuum.
+    """
+    law, pair, functions = find_contact_law(case.contact.law), contact_pair(case), by_speed_of(case)
+    first = {key: held(function, _touch_speed_in_vacuum(case)) for key, function in functions.items()}
+    parameters: dict[str, Any] = {**case.contact.parameters, **first}
+    lists = {key: value for key, value in parameters.items() if isinstance(value, tuple)}
     number = max((len(value) for value in lists.values()), default=1)
     try:
         return tuple(
-            law.for_pair(pair, **{**case.contact.parameters, **{key: value[min(impact, len(value) - 1)] for key, value in lists.items()}})
+            law.for_pair(pair, **{**parameters, **{key: value[min(impact, len(value) - 1)] for key, value in lists.items()}})
             for impact in range(number)
         )
     except InputError as error:
@@ -58,9 +65,16 @@ def fluid_of(case: CaseTable) -> Fluid | None:
     return None if case.drop.air is None else case.drop.air.air()
 
 
+def by_speed_of(case: CaseTable) -> dict[str, BySpeed]:
+    """Return the parameters of the contact law of a case that are functions of the approach speed."""
+    return {key: value for key, value in case.contact.parameters.items() if isinstance(value, (SpeedFunction, SpeedTable))}
+
+
 def in_liquid(case: CaseTable, law: ContactLaw) -> ContactLaw:
-    """Return a contact law of a case with the restitution that a liquid, if there is one, leaves it at the speed of the first touch."""
-    table = case.contact.local.liquid
+    """Return a contact law of a case at the speed of the first touch, with the restitution that a liquid, if there is one, leaves it."""
+    functions, table = by_speed_of(case), case.contact.local.liquid
+    if functions:
+        law = law.changed({key: held(function, touch_speed(case)) for key, function in functions.items()})
     return law if table is None else table.liquid().around(law, touch_speed(case), case.sphere.radius, case.sphere.material.density)
 
 
@@ -95,6 +109,7 @@ def rigid_problem(case: CaseTable) -> Problem:
         sphere=rigid_sphere(case.sphere.radius, case.sphere.material),
         plate=_rigid_below(case),
         laws=contact_laws_of(case),
+        by_speed=by_speed_of(case),
         **normal_motion_of(case),
         oblique=oblique_of(case),
         motion=motion_of(case),
@@ -124,4 +139,12 @@ def touch_speed(case: CaseTable) -> float:
         return float(motion["speed"])
     if fluid_of(case) is not None:
         return speed_of_fall(rigid_problem(case))
-    return float((motion["velocity"] ** 2 + 2.0 * motion["gravity"] * (motion["height"] - case.sphere.radius)) ** 0.5)
+    return float(_touch_speed_in_vacuum(case))
+
+
+def _touch_speed_in_vacuum(case: CaseTable) -> Array:
+    """Return the approach speed of the first impact without air [m/s]; the numbers of the case may be arrays."""
+    motion = normal_motion_of(case)
+    if "speed" in motion:
+        return motion["speed"]
+    return (motion["velocity"] ** 2 + 2.0 * motion["gravity"] * (motion["height"] - case.sphere.radius)) ** 0.5

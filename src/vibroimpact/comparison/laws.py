@@ -8,6 +8,7 @@ from typing import Any
 
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.case import Case
+from vibroimpact.cases.fields.contact import in_table
 from vibroimpact.cases.pair import contact_pair
 from vibroimpact.cases.reader import read_case
 from vibroimpact.cases.rigid import contact_laws_of, touch_speed
@@ -74,7 +75,7 @@ def _case_under(case: Case, law: type[ContactLaw], given: Mapping[str, Any], ach
     placeholders = []
     for key, value in case.contact.parameters.items():
         if law.name == case.contact.law or (key in known and _unit(known[key]) == _unit(own[key])):
-            contact[key] = list(value) if isinstance(value, tuple) else value
+            contact[key] = in_table(value)
     for key, item in known.items():
         value = given.get(f"{law.name}.{key}", given.get(key))
         if value is not None:
@@ -108,7 +109,7 @@ def _can_be_left_out(case: Case, law: type[ContactLaw], contact: Mapping[str, An
     if item.default is not None:
         return item.default is not MISSING
     try:
-        law.for_pair(contact_pair(case), **{key: value for key, value in contact.items() if key != "law" and not isinstance(value, str)})
+        law.for_pair(contact_pair(case), **{key: value for key, value in contact.items() if isinstance(value, (int, float, list))})
     except InputError:
         return False
     return True

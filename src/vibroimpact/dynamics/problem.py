@@ -16,6 +16,7 @@ from vibroimpact.bodies.body import Body
 from vibroimpact.contact.friction.law import CompliantFriction
 from vibroimpact.contact.law import ContactLaw, InstantaneousLaw
 from vibroimpact.contact.quasi_static import QuasiStatic
+from vibroimpact.contact.speed_function import BySpeed, held
 from vibroimpact.dynamics.air import Air, check_thin, density_of
 from vibroimpact.dynamics.fluid import Fluid
 from vibroimpact.dynamics.liquid import Liquid, check_sinks
@@ -48,6 +49,9 @@ class Problem:
         vibrate in the modes that they have.
     laws : tuple of ContactLaw
         The contact law of the first impact, the second, ...; the last one goes on. All of one kind.
+    by_speed : mapping of str to SpeedFunction or SpeedTable, optional
+        Parameters of the law that are functions of the approach speed of each impact, in place of their values in `laws`; beyond the
+        range of a function its value at the nearest end holds.
     height : float or array, optional
         Height of the sphere's centre above the plate's upper surface at rest, at the start [m].
     velocity : float or array, default 0
@@ -120,6 +124,7 @@ class Problem:
     sphere: Body
     plate: Body
     laws: tuple[ContactLaw, ...]
+    by_speed: Mapping[str, BySpeed] = field(default_factory=dict)
     height: Array | None = None
     velocity: Array = 0.0
     speed: Array | None = None
@@ -149,6 +154,9 @@ class Problem:
         one_kind = isinstance(self.laws, (tuple, list)) and len({type(law) for law in self.laws}) == 1
         if not one_kind or not isinstance(self.laws[0], ContactLaw):
             raise InputError("laws must be one or more contact laws, all of one kind")
+        for name in self.by_speed:
+            if name not in {item.name for item in fields(self.laws[0])}:
+                raise InputError(f"{self.laws[0].name} has no parameter {name} that could be a function of the approach speed")
         for name in ("height", "velocity", "speed", "gravity", "duration", "rest_speed", "tolerance"):
             value = getattr(self, name)
             if value is not None and np.asarray(value).dtype.kind not in "iuf":
@@ -320,6 +328,10 @@ class Problem:
     def law_of(self, impact: int) -> ContactLaw:
         """Return the law of an impact, counted from 0; the last one goes on."""
         return self.laws[min(impact, len(self.laws) - 1)]
+
+    def law_at(self, law: ContactLaw, speed: Array) -> ContactLaw:
+        """Return a law with the parameters that are functions of the approach speed at one [m/s]."""
+        return law.changed({name: held(function, speed) for name, function in self.by_speed.items()})
 
     def take(self, drop: int | slice) -> Problem:
         """Return the problem of one drop of a batch, or of some."""

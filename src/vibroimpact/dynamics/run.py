@@ -123,9 +123,9 @@ class Run:
             law = law.changed(self.memories)
         return law if len(drops) == self.size else law.take(drops)
 
-    def law_in_liquid(self, drops: Drops, speed: Floats) -> ContactLaw:
-        """Return the law of the next impact of drops, with what a liquid leaves of its restitution at an approach speed [m/s]."""
-        law, liquid, radius = self.law(drops), self.problem.liquid, self.radius[drops]
+    def law_at(self, drops: Drops, speed: Floats) -> ContactLaw:
+        """Return the law of the next impact of drops at an approach speed [m/s], with what a liquid leaves of its restitution."""
+        law, liquid, radius = self.problem.law_at(self.law(drops), speed), self.problem.liquid, self.radius[drops]
         return law if liquid is None else liquid.take(drops).around(law, speed, radius, density_of(self.mass[drops], radius))
 
     # one flight and one contact --------------------------------------------------------------------
@@ -188,7 +188,7 @@ class Run:
 
     def collide(self, leg: Leg, touch: Floats, speed: Floats) -> Coroutine[Leg]:
         """Solve the contact of drops, write the row of the impact table, and return the leg with the contact."""
-        drops, law = leg.contact_drops, self.law_in_liquid(leg.contact_drops, speed)
+        drops, law = leg.contact_drops, self.law_at(leg.contact_drops, speed)
         row = self.rows.add()
         row["impact"][drops], row["time_s"][drops], row["approach_speed_m_s"][drops] = len(self.rows), touch, speed
         row["restitution_asked"][drops] = _nominal_restitution(law)
@@ -212,7 +212,7 @@ class Run:
             closing = self.bodies.closing_speed(drops, speed, self.velocity[drops])
             leg, lost = yield from self.solve_contact(leg, encounter_of(law, self.mass[drops], self.gravity[drops], closing), touch, row)
             lost += row["plastic_work_J"][drops]
-            law = self.law(drops)  # with its memory of this impact
+            law = self.problem.law_at(self.law(drops), speed)  # with its memory of this impact
         self.dissipated[drops] += lost - row["plastic_work_J"][drops]
         self.plastic[drops] += row["plastic_work_J"][drops]
         separation = row["separation_speed_m_s"][drops]

@@ -9,13 +9,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibroimpact.calibration.speed_function import SpeedFunction
 from vibroimpact.contact.hysteretic import HystereticLaw
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.contact.laws.adams_impact import AdamsImpact
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.hunt_crossley import HuntCrossley
 from vibroimpact.contact.registry import contact_laws
+from vibroimpact.contact.speed_function import SpeedFunction
 from vibroimpact.errors import InputError
 from vibroimpact.exporting.contact_parameters import approach_speeds
 from vibroimpact.exporting.drop import Drop

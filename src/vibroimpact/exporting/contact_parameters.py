@@ -11,12 +11,12 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.bodies.body import Body
 from vibroimpact.bodies.rigid import rigid_plate
-from vibroimpact.calibration.speed_function import SpeedFunction
 from vibroimpact.contact.kelvin_voigt import KelvinVoigtLaw
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.contact.laws.adams_impact import AdamsImpact
 from vibroimpact.contact.laws.adams_poisson import AdamsPoisson
 from vibroimpact.contact.power_law import PowerLaw, SphereLaw
+from vibroimpact.contact.speed_function import SpeedFunction
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.restitution import law_achieving
 from vibroimpact.dynamics.simulate import simulate
@@ -54,6 +54,13 @@ def laws_of_impacts(drop: Drop) -> list[ContactLaw]:
     if drop.function is None:
         return list(drop.laws[: len(speeds)])
     return [law_at(drop.laws[0], *drop.function, speed) for speed in speeds]
+
+
+def laws_at_impacts(problem: Problem, speeds: Floats) -> tuple[ContactLaw, ...]:
+    """Return the contact laws of the impacts of a drop, with functions of the approach speed evaluated at those of its impacts [m/s]."""
+    if not problem.by_speed or not len(speeds):
+        return problem.laws
+    return tuple(problem.law_at(problem.law_of(impact), float(speed)) for impact, speed in enumerate(speeds))
 
 
 def law_at(law: ContactLaw, name: str, function: SpeedFunction, speed: float) -> ContactLaw:

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from vibroimpact.arrays import Floats
-from vibroimpact.calibration.speed_function import SpeedFunction
 from vibroimpact.contact.law import ContactLaw
+from vibroimpact.contact.speed_function import SpeedFunction
 from vibroimpact.dynamics.oblique.statement import Oblique
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.sensors.recording import Signal

@@ -7,13 +7,14 @@ from pathlib import Path
 from typing import Any
 
 from vibroimpact.calibration.file_contents import CALIBRATION
-from vibroimpact.calibration.speed_function import SpeedFunction
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.motion import motion_of
 from vibroimpact.cases.oblique import normal_motion_of, oblique_of
 from vibroimpact.cases.reader import load_case, read_case
-from vibroimpact.cases.rigid import contact_laws_of, deforms, elastic_names, mass_of_sphere, rigid_problem
+from vibroimpact.cases.rigid import by_speed_of, deforms, elastic_names, mass_of_sphere, rigid_problem
+from vibroimpact.contact.speed_function import SpeedFunction
 from vibroimpact.errors import InputError
+from vibroimpact.exporting.contact_parameters import laws_at_impacts
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.files.check_sums import CHECK_SUMS, DamageError, check_file, read_sealed
 from vibroimpact.files.hdf5 import short_reason
@@ -61,6 +62,9 @@ def drop_of_result(result: Result, case: Case, function: tuple[str, SpeedFunctio
         A parameter of the contact law as a function of the approach speed.
     """
     _check_flat(case)
+    if function is not None and by_speed_of(case):
+        words = f"{function[0]} is fitted over the approach speed, and another parameter is given as a function of it"
+        raise InputError(f"{words}; give that as a number", f"contact.{next(iter(by_speed_of(case)))}")
     found, motion = result.deflection, normal_motion_of(case)
     surface = {} if found is None else {"time": found.time, "x": found.x, "y": found.y, "height": found.height.astype(float)}
     if found is not None:
@@ -81,7 +85,7 @@ def drop_of_result(result: Result, case: Case, function: tuple[str, SpeedFunctio
         motion=motion_of(case),
         in_air=case.drop.air is not None,
         in_liquid=case.contact.local.liquid is not None,
-        laws=contact_laws_of(case),
+        laws=laws_at_impacts(rigid_problem(case), result.impacts["approach_speed_m_s"]),
         function=function,
         elastic=tuple(elastic_names(case)),
         local_element=case.contact.local.local_compliance == "identified",

@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 
 from vibroimpact.calibration.single_impacts import first_approach_speed
-from vibroimpact.calibration.speed_function import SpeedFunction
+from vibroimpact.contact.speed_function import SpeedFunction
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.errors import InputError
-from vibroimpact.exporting.contact_parameters import law_at
+from vibroimpact.exporting.contact_parameters import law_at, laws_at_impacts
 from vibroimpact.exporting.drop import Drop
 
 _PASSES = 50
@@ -44,6 +44,7 @@ def as_rigid(drop: Drop) -> Drop:
     return replace(
         drop,
         name=f"{drop.name}, rigid" if deforms else drop.name,
+        laws=laws_at_impacts(drop.rigid, response.impacts["approach_speed_m_s"]) if drop.rigid.by_speed else drop.laws,
         rigid=None,
         original_impacts=drop.impacts if deforms else {},
         end_time=float(response.end_time[0]),

@@ -124,7 +124,8 @@ class Result:
         deflection = float(self.peaks.get("plate", {}).get("max_bending_m") or math.nan)
         modes = {body: (part, self.frequencies(body)[-1]) for body, part in self.truncation.items()}
         theory = plate_theory_error(self.deformation, self.impacts)
-        return DropSummary(force, depth, duration, speed, deflection, modes, self.change_by_impact, theory)
+        slowest = float(self.impacts["approach_speed_m_s"].min())
+        return DropSummary(force, depth, duration, speed, deflection, modes, self.change_by_impact, theory, slowest)
 
     @property
     def name(self) -> str:

@@ -20,7 +20,7 @@ from vibroimpact.cases.fields.quantities import quantity_of
 from vibroimpact.cases.motion import motion_length
 from vibroimpact.cases.oblique import friction_law_of, is_oblique
 from vibroimpact.cases.pair import contact_pair, is_free_sphere
-from vibroimpact.cases.rigid import contact_laws_of, deforms, elastic_names, impact_limit, mass_of_sphere, touch_speed
+from vibroimpact.cases.rigid import by_speed_of, contact_laws_of, deforms, elastic_names, impact_limit, mass_of_sphere, touch_speed
 from vibroimpact.cases.schema import SensorSection
 from vibroimpact.contact.law import CompliantLaw, unit_of
 from vibroimpact.dynamics.liquid import restitution_kept
@@ -63,10 +63,14 @@ def case_explained(case: Case, aside: Container[str] = ()) -> RenderableType:
         *([] if case.drop.air is None else [("air", fluid_words(case.drop.air.model_dump(exclude_none=True)))]),
         ("contact law", f"{case.contact.law}: {laws[0].equation}"),
     ]
+    functions = by_speed_of(case)
     # a list in the case gives one law per impact: parameters that differ are shown for each
     for item in fields(laws[0]):
         values = [getattr(law, item.name) for law in laws]
         if values[0] is None or (item.metadata["memory"] and not any(values)):
+            continue
+        if item.name in functions:
+            rows.append((f"  {item.name}", f"{unit_of(item, 1)}: {functions[item.name].words}".removeprefix(": ")))
             continue
         shown = (
             ", ".join(f"{value:.9g}" for value in values) if len(set(values)) > 1 else f"{values[0]:.9g}" if values[0] is not None else "-"

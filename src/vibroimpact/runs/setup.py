@@ -15,6 +15,7 @@ from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.marks import Arrow, Label, Line, Mark, Outline
 from vibroimpact.contact.law import unit_of
 from vibroimpact.contact.registry import contact_laws, friction_laws
+from vibroimpact.contact.speed_function import of_table
 from vibroimpact.results.result import Result
 from vibroimpact.runs.chart_data import touch_height
 from vibroimpact.runs.deflection_chart import sensor_marks
@@ -216,6 +217,9 @@ def _law_words(contact: Mapping[str, Any]) -> str:
         if value is None or (item.metadata.get("memory") and not np.any(value)):
             continue
         unit = unit_of(item, contact.get("exponent", 1))
+        if isinstance(value, Mapping):
+            found.append(f"{key.replace('_', ' ')} {of_table(value).words}")
+            continue
         numbers = [as_given(float(one), unit) for one in (value if isinstance(value, Sequence) else [value])]
         found.append(f"{key.replace('_', ' ')} {', '.join(numbers)}")
     return f"{name}: {', '.join(found)}" if found else name

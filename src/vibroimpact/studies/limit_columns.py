@@ -15,6 +15,7 @@ from vibroimpact.cases.conditions import Conditions, DropSummary
 from vibroimpact.cases.keys import with_values
 from vibroimpact.cases.limit import limits, numbers_of
 from vibroimpact.cases.limits.plate_waves import plate_theory_error
+from vibroimpact.cases.rigid import by_speed_of
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.dynamics.bending import largest_bending
 from vibroimpact.dynamics.change_by_impact import change_by_impact
@@ -68,7 +69,7 @@ def batch_conditions(case: Case, arrays: Mapping[str, Values], law: ContactLaw, 
     of_law = (key for key in arrays if key.startswith("contact.") and not key.startswith("contact.liquid."))
     given_elsewhere = {key: arrays[key] for key in arrays.keys() - set(of_law)}
     table = cast("ResolvedCase", with_values(resolved_case(case), given_elsewhere))
-    given = {item.name: getattr(law, item.name) for item in fields(law)}
+    given = {item.name: getattr(law, item.name) for item in fields(law) if item.name not in by_speed_of(case)}
     table["contact"] |= {name: value for name, value in given.items() if value is not None}
     return Conditions(table, _seen(peaks))
 

@@ -276,6 +276,8 @@
       const [unit, size] = MULTIPLES[one.unit] ? MULTIPLES[one.unit](one.name) : [unitWith(contact.exponent, one.unit), 1];
       const described = { path: ["contact", one.name], label: words(one.name), unit, size, meaning: `${one.meaning} Allowed: ${one.allowed || "any number"}.` };
       if (Array.isArray(value)) { rows.push(listField(controls, described)); continue; }
+      // a function of the approach speed is kept as the case has it
+      if (value && typeof value === "object") { rows.push(make("p", { class: "note", text: `${words(one.name)}: a function of the approach speed, as the case gives it.` })); continue; }
       if (typeof value !== "number") { rows.push(openField(controls, { ...described, hint: one.default })); continue; }
       const number = value / size, part = /at most 1\b/.test(one.allowed) || (one.name === "restitution");
       const ends = part ? { low: 0.01, high: 1 } : number > 0 ? { low: number / 30, high: number * 30, log: true } : { low: 0, high: 1 };

@@ -38,6 +38,7 @@ def restitution_document(found: Restitutions) -> dict[str, Any]:
             "rounding": found.rounding,
             "rows": restitution_rows(found),
             "fits": fits_document(found.laws, found.confidence),
+            "by_speed": None if found.function is None else found.function.table(),
             "doubts": list(found.doubts),
         },
     }

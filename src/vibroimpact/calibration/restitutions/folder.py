@@ -11,7 +11,7 @@ from vibroimpact.calibration.bounces.charts import restitution_chart
 from vibroimpact.calibration.bounces.tables import law_sentences
 from vibroimpact.calibration.restitutions.document import restitution_document, restitution_rows
 from vibroimpact.calibration.restitutions.restitutions import Restitutions
-from vibroimpact.calibration.restitutions.text import noise_sentence, restitution_cells, status_sentence
+from vibroimpact.calibration.restitutions.text import case_sentence, noise_sentence, restitution_cells, status_sentence
 from vibroimpact.charts.figures_folder import write_figures
 from vibroimpact.charts.made import made_charts
 from vibroimpact.report.page import render_page
@@ -64,7 +64,7 @@ def save_restitutions(found: Restitutions, directory: str | PathLike[str], *, fo
             charts,
             name=Path(found.source).name,
             status=status_sentence(found),
-            fits=law_sentences(found),
+            fits=[sentence for sentence in (*law_sentences(found), case_sentence(found)) if sentence],
             doubts=found.doubts,
             headers=headers,
             rows=cells,

@@ -8,9 +8,10 @@ from os import PathLike
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.calibration.bounces.speed_laws import SpeedLaw, speed_laws
+from vibroimpact.calibration.bounces.speed_laws import LINEAR, SpeedLaw, speed_laws
 from vibroimpact.calibration.fitting import half_width
 from vibroimpact.calibration.impact_table import DEVIATION, check_counts, check_positive, is_impact_table, read_impact_table
+from vibroimpact.contact.speed_function import SpeedFunction
 from vibroimpact.errors import InputError
 from vibroimpact.measurements.table_file import TableFile
 
@@ -42,6 +43,17 @@ class Restitutions:
         Confidence level of intervals.
     doubts : tuple of str
         Warnings, as sentences.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> import vibroimpact as vi
+    >>> with TemporaryDirectory() as folder:
+    ...     with open(f"{folder}/ev.csv", "w") as file:
+    ...         _ = file.write("speed [m/s],restitution\\n1,0.81\\n2,0.78\\n4,0.74\\n")
+    ...     found = vi.read_restitutions(f"{folder}/ev.csv")
+    >>> found.rounding, found.laws[1](2.0).round(3).item(), found.function.fastest
+    (0.01, 0.784, 4.0)
     """
 
     source: str
@@ -53,6 +65,16 @@ class Restitutions:
     laws: list[SpeedLaw]
     confidence: float
     doubts: tuple[str, ...]
+
+    @property
+    def function(self) -> SpeedFunction | None:
+        """The linear fit as a function of the approach speed, as a case takes it; None if there is none, or it leaves 0 to 1."""
+        linear = [law for law in self.laws if law.name == LINEAR]
+        if not linear:
+            return None
+        ends = float(self.approach_speed.min()), float(self.approach_speed.max())
+        found = SpeedFunction((float(linear[0].coefficients[0]), float(linear[0].coefficients[1])), *ends)
+        return found if found.extremes[0] > 0.0 and found.extremes[1] <= 1.0 else None
 
     @property
     def intervals(self) -> Floats:

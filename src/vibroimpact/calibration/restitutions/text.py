@@ -12,6 +12,7 @@ from vibroimpact.calibration.bounces.tables import law_sentences
 from vibroimpact.calibration.report import Cells
 from vibroimpact.calibration.restitutions.restitutions import Restitutions
 from vibroimpact.calibration.text import cells_table
+from vibroimpact.contact.speed_function import toml_of
 from vibroimpact.units.display import MISSING, column_texts
 
 
@@ -48,6 +49,11 @@ def noise_sentence(found: Restitutions) -> str:
     return f"The intervals of the fits follow from {of}, and from {rounded}; speeds are taken as exact.{means}"
 
 
+def case_sentence(found: Restitutions) -> str:
+    """Return the linear fit as a case takes it; "" without one."""
+    return "" if found.function is None else f'In a case: law = "newton", restitution = {toml_of(found.function)}'
+
+
 def restitution_summary(found: Restitutions) -> RenderableType:
     """Return the restitutions, the fits and the warnings."""
     parts: list[RenderableType] = [
@@ -57,7 +63,7 @@ def restitution_summary(found: Restitutions) -> RenderableType:
         cells_table(restitution_cells(found)),
         Text(),
         Text("Restitution over the approach speed", style="bold"),
-        *(Text(f" {sentence}") for sentence in law_sentences(found)),
+        *(Text(f" {sentence}") for sentence in (*law_sentences(found), case_sentence(found)) if sentence),
         Text(),
         Text(noise_sentence(found)),
     ]

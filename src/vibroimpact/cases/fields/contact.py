@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
-from typing import Any
+from dataclasses import Field, dataclass, fields
+from typing import Any, TypeAlias
 
+from vibroimpact.cases.fields.by_speed import by_speed_schema, read_by_speed
 from vibroimpact.cases.fields.friction import FrictionTable, friction_schema, read_friction
 from vibroimpact.cases.fields.local import LocalSection
 from vibroimpact.cases.fields.quantities import quantity_schema, read_quantity
@@ -13,19 +14,23 @@ from vibroimpact.cases.fields.section import read_table
 from vibroimpact.cases.fields.size_limits import MOST_OF_A_LIST, check_count
 from vibroimpact.contact.law import ContactLaw, unit_of
 from vibroimpact.contact.registry import contact_laws, find_contact_law
+from vibroimpact.contact.speed_function import BySpeed, SpeedFunction, SpeedTable
 from vibroimpact.errors import InputError, choices, listed
 from vibroimpact.shown import shown
+
+Parameter: TypeAlias = float | tuple[float, ...] | BySpeed
+"""The value of a parameter of a contact law: a number, one per impact, or a function of the approach speed."""
 
 
 @dataclass(frozen=True)
 class ContactSection:
     """Name and parameters [SI] of a contact law, how it is combined with the local deformation of elastic bodies (`local`), and friction.
 
-    A tuple has one value per impact; its last value holds for all later impacts.
+    A tuple has one value per impact; its last value holds for all later impacts. A parameter may be a function of the approach speed.
     """
 
     law: str
-    parameters: Mapping[str, float | tuple[float, ...]]
+    parameters: Mapping[str, Parameter]
     local: LocalSection = LocalSection()
     friction: FrictionTable | None = None
 
@@ -44,7 +49,7 @@ def read_contact(value: Any) -> ContactSection:
     known = {item.name: item for item in fields(law)}
     # the SI unit of a stiffness depends on the exponent of the law
     exponent = value.get("exponent", known["exponent"].default if "exponent" in known else 1.0)
-    parameters: dict[str, float | tuple[float, ...]] = {}
+    parameters: dict[str, Parameter] = {}
     for key, given in value.items():
         if key in ("law", "friction") or key in LocalSection.model_fields:
             continue
@@ -58,6 +63,11 @@ def read_contact(value: Any) -> ContactSection:
                     raise InputError("the list is empty; it must have one value an impact, the last one goes on")
                 check_count(len(given), MOST_OF_A_LIST, "values")
                 parameters[key] = tuple(read_quantity(item, unit, allowed) for item in given)
+            elif isinstance(given, dict):
+                if not varies_with_speed(known[key]):
+                    words = "it follows from the bodies, and can't be a function of the approach speed"
+                    raise InputError(f"{words}; give a number, or a list with one value per impact")
+                parameters[key] = read_by_speed(given, unit, allowed)
             else:
                 parameters[key] = read_quantity(given, unit, allowed)
         except InputError as error:
@@ -65,6 +75,18 @@ def read_contact(value: Any) -> ContactSection:
     local = {key: value[key] for key in LocalSection.model_fields if key in value}
     friction = read_friction(value["friction"]) if "friction" in value else None
     return ContactSection(law.name, parameters, read_table(LocalSection, local), friction)
+
+
+def varies_with_speed(item: Field[Any]) -> bool:
+    """Return whether a parameter may be a function of the approach speed: if it follows neither from the bodies nor is an exponent."""
+    return not (item.metadata["from_pair"] or item.metadata["memory"] or item.name == "exponent")
+
+
+def in_table(value: Parameter) -> Any:
+    """Return the value of a parameter as the table of a case has it."""
+    if isinstance(value, (SpeedFunction, SpeedTable)):
+        return value.table()
+    return list(value) if isinstance(value, tuple) else value
 
 
 def law_of(value: Any) -> type[ContactLaw]:
@@ -103,5 +125,8 @@ def _law_schema(law: type[ContactLaw], more: Mapping[str, Any]) -> dict[str, Any
     properties: dict[str, Any] = {"law": {"const": law.name, "description": f"{law.equation} ({law.source})"}, **more}
     for item in fields(law):
         one = quantity_schema(item.metadata["unit"], item.metadata["meaning"])
-        properties[item.name] = {"anyOf": [one, {"type": "array", "items": one, "minItems": 1}], "description": one["description"]}
+        forms = [one, {"type": "array", "items": one, "minItems": 1}]
+        if varies_with_speed(item):
+            forms += by_speed_schema(item.metadata["unit"], item.metadata["meaning"])
+        properties[item.name] = {"anyOf": forms, "description": one["description"]}
     return {"type": "object", "properties": properties, "required": ["law"], "additionalProperties": False}

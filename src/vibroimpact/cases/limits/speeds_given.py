@@ -1,0 +1,43 @@
+"""Approach speeds beyond those for which a parameter of the contact law is given as a function of the speed."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from vibroimpact.arrays import Array
+from vibroimpact.cases.conditions import Conditions
+from vibroimpact.cases.limit import Limit
+
+_FAR = 1.05  # times a speed at an end
+
+
+def _number(drops: Conditions) -> Array:
+    if not drops.by_speed:
+        return math.nan
+    fastest, slowest = (min(one.fastest for one in drops.by_speed.values()), max(one.slowest for one in drops.by_speed.values()))
+    return np.fmax(drops.summary.speed / fastest, slowest / np.fmin(drops.summary.slowest, drops.summary.speed))
+
+
+def _sentence(drop: Conditions, number: float) -> str:
+    name, one = next(iter(drop.by_speed.items()))
+    slow, fast = float(np.fmin(drop.summary.slowest, drop.summary.speed)), float(drop.summary.speed)
+    speeds = f"{fast:.4g} m/s" if slow == fast else f"{slow:.4g} to {fast:.4g} m/s"
+    return (
+        f"contact.{name} is given for approach speeds from {one.slowest:.4g} to {one.fastest:.4g} m/s, and impacts come at {speeds}: "
+        "beyond the ends the value at the nearest one holds; give it for more speeds"
+    )
+
+
+LIMITS = (
+    Limit(
+        name="speeds_given",
+        title="speeds of a function",
+        meaning="approach speed over the highest, or lowest over the approach speed, for which a parameter of the law is given",
+        threshold=_FAR,
+        number=_number,
+        sentence=_sentence,
+        shown=lambda number: f"{number:.3g} times",
+    ),
+)
