@@ -171,10 +171,10 @@ def _without_scatter(falls: Falls, channel: Channel, errors: dict[str, BayesErro
     """Return the Bayes errors without scatter of the amplitude, which are not larger than those with it."""
     exact, found = replace(channel, gain=0.0, place=0.0), {}
     for one in OBSERVATIONS:
-        alike = [
-            other for other in OBSERVATIONS if _exact_quantities(other) == _exact_quantities(one)
-        ]  # a known position and an unknown one
-        if "impulse" not in _exact_quantities(one):
+        quantities = _exact_quantities(one)
+        # with a known position and with an unknown one
+        alike = [other for other in OBSERVATIONS if _exact_quantities(other) == quantities]
+        if "impulse" not in quantities:
             found[one.name] = errors[one.name]
         elif alike[0].name in found:
             found[one.name] = found[alike[0].name]
