@@ -82,6 +82,14 @@ def given_up_to(speed: float) -> dict[str, Any]:
     return {"contact": {"law": "tsuji", "restitution": restitution}, "drop": {"height": 0.025 + 1.0 / 19.6133}}
 
 
+def in_air(speed: float, **changes: Any) -> dict[str, Any]:
+    return {"drop": {"speed": speed, "air": True}, **changes}
+
+
+def in_water(speed: float) -> dict[str, Any]:
+    return {"drop": {"speed": speed}, "contact": {"law": "tsuji", "restitution": 0.6, "liquid": True}}
+
+
 @pytest.mark.parametrize(
     ("name", "threshold", "below", "beyond", "words"),
     [
@@ -91,6 +99,10 @@ def given_up_to(speed: float) -> dict[str, Any]:
         ("adhesion", 0.01, small(2e-5), small(1e-5), ["J/m^2", "stick below", '"jkr"']),
         ("plate_edge", 1.0, near_edge(0.045), near_edge(0.0453), ["half space is too stiff", "move drop.position"]),
         ("full_damping", 1.0, fading("9 um"), fading("10 um"), ["never acts in full", "calibrate"]),
+        # Reynolds number 1.2 v 2 R / 1.81e-5 in air, 998 v 2 R / 1e-3 in water, of a radius of 25 mm
+        ("drag_coefficient", 1.0, in_air(90.0), in_air(91.0), ["Reynolds number", "drop.air.drag_coefficient"]),
+        ("drag_coefficient", 1.0, in_water(5.9), in_water(6.1), ["Reynolds number", "uncertain"]),
+        ("mach", 0.3, in_air(102.0), in_air(104.0), ["speed of sound", "drop.speed"]),
         ("speeds_given", 1.05, given_up_to(0.96), given_up_to(0.95), ["is given for approach speeds", "the nearest one holds"]),
     ],
 )
