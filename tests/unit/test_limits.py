@@ -124,6 +124,13 @@ def test_a_deep_contact_is_doubted_with_its_strain() -> None:
     assert "0.31 of the sphere's" in doubt
 
 
+def test_what_a_thin_plate_gives_way_is_no_contact_radius() -> None:
+    """Hertz's contact radius at 0.3 N is 0.0007 of the radius; the indentation of a foil would stand for 0.4 of it."""
+    case = quiet(plate=ELASTIC)
+    assert not any("strains" in doubt for doubt in told(case, depth=0.4**2 * 0.025, force=0.3))
+    assert any("strains" in doubt for doubt in told(case, depth=0.4**2 * 0.025, force=3e8))
+
+
 def test_a_plate_that_stretches_is_doubted_with_how_much_stiffer_it_is() -> None:
     case = quiet(plate=ELASTIC)
     assert not any("stretches" in doubt for doubt in told(case, deflection=0.00099))
