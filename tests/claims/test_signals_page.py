@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from stated import says
 from vibroimpact.signals import baseline
+from vibroimpact.signals.bounces import touches
+from vibroimpact.signals.reading import coded_sound
 
 PAGE = "docs/signals.md"
 
@@ -14,3 +16,8 @@ def test_numbers_of_the_baseline() -> None:
     says(PAGE, "removed only if it exceeds {} of its standard deviations", baseline._SURE)
     says(PAGE, "neither does one of fewer than {} samples", baseline._LEAST)
     assert baseline._LARGE == 0.1  # "of more than a tenth of the largest magnitude"
+
+
+def test_numbers_of_coded_sound() -> None:
+    assert touches._FLOOR_OF_CODED == 1e-3  # "down to a thousandth of the largest power"
+    says(PAGE, "their times are refined within {} ms", 1e3 * coded_sound._BLUR)
