@@ -59,7 +59,7 @@ def _records(file: FileIO, path: Path) -> Iterator[Record]:
         raise InputError(f'sound in {path.suffix} needs PyAV, which is not installed: pip install "vibroimpact[audio]"') from None
     logging.set_level(None)  # what FFmpeg has to say is an error here, or of no account
     try:
-        with av.open(_Opened(file), format=FORMATS[path.suffix.lower()]) as container:
+        with av.open(_Opened(file), "r", format=FORMATS[path.suffix.lower()]) as container:
             if not container.streams.audio:
                 raise InputError(f"there is no sound in it; {SOUND.what}")
             stream = container.streams.audio[0]
@@ -96,7 +96,9 @@ def _samples(container: InputContainer, stream: AudioStream, rate: float) -> tup
 
     plain = av.AudioResampler(format="dblp")
     channels = stream.codec_context.channels
-    blocks, samples, faults = [np.empty((channels, 0))], 0, ()
+    blocks: list[Floats] = [np.empty((channels, 0))]
+    samples = 0
+    faults: tuple[str, ...] = ()
     try:
         for frame in container.decode(stream):
             for block in plain.resample(frame):
@@ -106,12 +108,12 @@ def _samples(container: InputContainer, stream: AudioStream, rate: float) -> tup
                 if block.layout.nb_channels != channels or block.sample_rate != rate:
                     raise InputError("its rate or its number of channels changes on the way; keep one part")
                 check_memory(16.0 * channels * samples, "its samples need", SOUND.smaller)
-                blocks.append(block.to_ndarray())
+                blocks.append(block.to_ndarray().astype(np.float64, copy=False))
     except av.FFmpegError as error:
         if not samples:
             raise
         faults = (f"it is damaged, or cut off, {samples / rate:.4g} s after its begin ({error}); what comes after is left out",)
-    blocks += [block.to_ndarray() for block in plain.resample(None)]
+    blocks += [block.to_ndarray().astype(np.float64, copy=False) for block in plain.resample(None)]
     return np.concatenate(blocks, axis=1), faults
 
 
