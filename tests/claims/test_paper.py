@@ -8,7 +8,6 @@ from __future__ import annotations
 import re
 from functools import cache
 
-
 import vibroimpact as vi
 from stated import ROOT, says
 from vibroimpact.paper.printed import printed
