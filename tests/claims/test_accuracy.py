@@ -13,6 +13,7 @@ from golden import PROBLEMS
 from stated import says
 from support import plain_case
 from vibroimpact.cases.limit import limits
+from vibroimpact.cases.limits import modes_left_out
 from vibroimpact.cases.limits.finite_sphere import force_lacking
 from vibroimpact.dynamics.energy import CLOSURE_LIMIT, CLOSURE_USUAL
 
@@ -115,6 +116,9 @@ def test_what_is_said_of_other_assumptions() -> None:
     says(TRUST, "an error of the force below {} %", 100.0 * threshold["plate_waves"])
     says(TRUST, "deflection below {} of the thickness", threshold["plate_deflection"])
     says(TRUST, "loss of speed below {} %", 100.0 * threshold["air_drag"])
+    says(TRUST, "above {} %, or below one and a half periods, it raises a doubt", 100.0 * modes_left_out._TRUNCATED)
+    assert modes_left_out._CYCLES == 1.5
+    assert modes_left_out._ENOUGH == 3.0
 
 
 def test_what_is_said_of_a_wrong_modulus() -> None:
