@@ -7,6 +7,7 @@ import pytest
 
 from stated import says
 from vibroimpact.bodies.elastic import plate_recipe
+from vibroimpact.cases.elastic import modes
 from vibroimpact.materials import find_material
 from vibroimpact.meshes.geometry import GEOMETRY, MOST_SECONDS
 from vibroimpact.meshes.text_files import MESH
@@ -35,6 +36,8 @@ def test_constants_of_the_estimate() -> None:
 
 
 def test_limits() -> None:
+    says(PAGE, "if the mass of the mesh deviates by more than {} %", 100.0 * modes._MESH_OFF)
+    says(PAGE, "A mass that differs by more than {} % from that of the case", 100.0 * modes._WEIGHT_OFF)
     says(PAGE, "A mesh may have at most {} GB", MESH.largest / 1e9)
     says(PAGE, "a geometry at most {} MB and {} minutes", GEOMETRY.largest / 1e6, MOST_SECONDS / 60.0)
     says(PAGE, "when it exceeds {} GB", store._LARGEST / 1e9)
@@ -46,7 +49,7 @@ def test_the_default_sphere() -> None:
     model = computed_model(Recipe(SphereOfSolids(1.0, 8), 1.0, 2.0 * 1.28, 0.28, (), Reduction(modes=20)))  # the speed of shear is 1
     exact = np.repeat([2.501133, 2.643768, 3.488696], [5, 5, 3])
     errors = model.angular_frequencies[:13] / exact - 1.0
-    says(PAGE, "the lowest modes are accurate to {} % with eight elements across", 100.0 * float(np.abs(errors).max()))
+    says(PAGE, "the lowest thirteen modes are accurate to {} % with eight elements across", 100.0 * float(np.abs(errors).max()))
 
 
 @pytest.mark.slow
