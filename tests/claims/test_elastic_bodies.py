@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from stated import says
 from vibroimpact.bodies.elastic import plate_recipe
@@ -12,7 +13,7 @@ from vibroimpact.materials import find_material
 from vibroimpact.meshes.geometry import GEOMETRY, MOST_SECONDS
 from vibroimpact.meshes.text_files import MESH
 from vibroimpact.structures import frequency_error, store
-from vibroimpact.structures.plate_waves import bending_error
+from vibroimpact.structures.plate_waves import bending_error, stretching_error, wave_numbers
 from vibroimpact.structures.recipe import PlateOfPlates, Recipe, Reduction, SphereOfSolids, computed_model
 from vibroimpact.structures.supports.patch import Patch
 
@@ -28,6 +29,13 @@ def test_error_of_plate_theory() -> None:
     """Of Mindlin's bending wave, at wavelengths of so many thicknesses."""
     errors = [100.0 * abs(float(bending_error(np.array([2.0 * np.pi / thicknesses]), 0.3)[0])) for thicknesses in (6.0, 4.0, 2.0)]
     says(PAGE, "bending: {} % at wavelengths of six thicknesses, {} % at four, {} % at two", *errors)
+    steel, thickness = find_material("steel-paper"), 0.008
+    stretched = []
+    for thicknesses in (6.0, 2.0):
+        wave = 2.0 * np.pi / (thicknesses * thickness)
+        omega = float(brentq(lambda at, wave=wave: float(wave_numbers(np.array([at]), thickness, steel)[0]) - wave, 1e3, 1e8))
+        stretched.append(100.0 * float(stretching_error(np.array([omega]), thickness, steel)[0]))
+    says(PAGE, "stretching, {} to {} times that at the same frequencies", stretched[0] / errors[0], stretched[1] / errors[2])
 
 
 def test_constants_of_the_estimate() -> None:
