@@ -6,6 +6,7 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
+import pytest
 
 import vibroimpact as vi
 from stated import says
@@ -110,3 +111,38 @@ def test_springs_in_two_directions() -> None:
 
 def test_gravity_turns_the_slip() -> None:
     says(PAGE, "(about {} mrad in 0.1 ms at 1 m/s)", 1e3 * vi.Problem.gravity * 1e-4 / 1.0)
+
+
+@pytest.mark.slow
+def test_what_limits_the_motion_along_an_elastic_plate() -> None:
+    """Drops whose friction is computed with a tolerance of 1e-9, and of 1e-13."""
+    random = np.random.default_rng(5)
+    of_velocity, of_energy = [], []
+    for _ in range(8):
+        plate = {"size": [0.2, 0.15, random.uniform(0.003, 0.01)], "material": "steel", "model": "elastic", "modes": 20, "damping": 0.01}
+        case = {
+            "sphere": {"radius": random.uniform(0.005, 0.02), "material": "steel"},
+            "plate": {**plate, "supports": "simply-supported"},
+            "drop": {
+                "speed": random.uniform(0.3, 3.0),
+                "angle": f"{random.uniform(5, 70)} deg",
+                "position": [random.uniform(-0.05, 0.05), 0.02],
+            },
+        }
+        coefficient = random.uniform(0.1, 0.3)
+        for law in ("mdr", "mindlin"):
+            contact = {"law": "hunt-crossley", "restitution": 0.8, "friction": {"law": law, "coefficient": coefficient}}
+            usual, exact = (
+                vi.simulate(
+                    vi.read_case({"schema_version": 1, **case, "contact": contact, "run": {"impacts": 1, "tolerance": one}})
+                ).impacts
+                for one in (1e-9, 1e-13)
+            )
+            for axis in "xy":
+                name = f"separation_velocity_{axis}_m_s"
+                of_velocity.append(abs(usual[name][0] - exact[name][0]) / case["drop"]["speed"])
+            of_energy.append(abs(usual["friction_lost_J"][0] / exact["friction_lost_J"][0] - 1.0))
+    says(PAGE, "from {} to {} velocities along the plate after an impact change by less than {} of the approach speed", 1e-9, 1e-13, 2e-4)
+    assert max(of_velocity) < 2e-4
+    says(PAGE, "and the energy lost by friction by less than {} %", 1.0)
+    assert 1e-6 < max(of_energy) < 0.01
