@@ -85,8 +85,7 @@ def test_drifting_forces() -> None:
 
 
 def test_edges_of_forces() -> None:
-    says(PAGE, "the sampling interval and {} % of the contact", 100.0 * force_pulses._EDGE)
-    assert force_pulses._STEP == 0.25
+    says(PAGE, "by noise, sampling and {} % of the contact", 100.0 * force_pulses._EDGE)
     says(PAGE, "fewer than {} samples in a contact", force_record._COARSE)
 
 
