@@ -36,7 +36,7 @@ _WHOLE = ("result.nc", "dataset.nc", "study.nc")
 def read_records(path: str | PathLike[str]) -> Iterator[Record]:
     """Yield the records of a file, or of a folder.
 
-    Read are CSV tables with a column `time [s]` and a column with its unit for each channel, WAV files (8 to 32 bits, floating point),
+    Read are CSV tables with a column `time [s]` and a column with its unit for each channel, WAV files (8 to 64 bits, floating point),
     with the extra `audio` M4A, MP3, Ogg and FLAC files,
     functions of time in universal files (dataset 58) and NetCDF-4 files with a dimension of time; of a folder the signals of its
     `result.nc`, `dataset.nc` or `study.nc`, else of all files of these formats in it. Values are in SI; those of sound are parts
