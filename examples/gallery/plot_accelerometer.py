@@ -10,7 +10,7 @@ filter and the sampling.
 # %%
 # One impact, several measuring chains
 # ------------------------------------
-# The impact is computed once; the signals of any instrument follow from the result, as sensors do not affect the plate.
+# The impact is computed once; the signals of any instrument follow from the result, as sensors do not affect the plate in this model.
 from dataclasses import replace
 
 import matplotlib.pyplot as plt
@@ -61,7 +61,7 @@ clipped = recorded(resonance=30e3, range=1500.0)
 # Aliasing, resonance and overload
 # --------------------------------
 # Without a filter, components above 25 kHz are aliased into the band of a signal sampled at 50 kHz. The resonance increases the peak, and
-# the range clips it, which the signal reports as overload. The filter of a delta-sigma converter passes only frequencies below 22.5 kHz.
+# the range clips it, which the signal reports as overload. The default filter, that of a delta-sigma converter, is flat up to 22.5 kHz.
 assert np.allclose(
     aliased.value, ideal.value[::8][: len(aliased.value)], atol=1e-6 * np.abs(ideal.value).max()
 )

@@ -17,7 +17,7 @@ import numpy as np
 
 import vibroimpact as vi
 
-modulus, surface_energy, density = 1.7e9, 0.1, 1050.0  # polystyrene on silica
+modulus, surface_energy, density = 1.7e9, 0.1, 1050.0  # Pa, J/m^2, kg/m^3: chosen values
 
 
 def laws_of(radius):
@@ -51,8 +51,8 @@ assert abs(history["force_N"].min() / -pull_off - 1.0) < 1e-3
 # %%
 # Sticking velocity
 # -----------------
-# Without other losses the energy lost at separation is :math:`7.09\, (w^5 R^4 / E^{*2})^{1/3}` (Thornton and Ning 1998), which gives the
-# sticking velocity.
+# Without other losses, the energy that a grain loses to adhesion is :math:`7.09\, (w^5 R^4 / E^{*2})^{1/3}` (Thornton and Ning 1998), which
+# gives the sticking velocity.
 radii = np.array([0.3e-6, 1e-6, 3e-6, 10e-6])
 sticks = np.sqrt(
     2.0
@@ -92,7 +92,7 @@ left.text(
 left.set(
     xlabel="Indentation [nm]",
     ylabel="Force over the pull-off force [-]",
-    title="A grain of 2 µm at 0.8 m/s",
+    title="A grain of 2 µm in diameter at 0.8 m/s",
 )
 speeds = np.geomspace(0.01, 20.0, 120)
 for one, colour in zip(

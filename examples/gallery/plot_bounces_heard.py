@@ -2,8 +2,8 @@
 Restitution from the sound of bounces
 =====================================
 
-The times between the bounces of a ball give its speeds, and their ratios the restitution, independent of the microphone. Bounces are
-detected in a sound record with noise, mains hum and clicks, and the restitution of each is estimated with its interval.
+The times between the bounces of a ball give its speeds, and their ratios the restitution, whatever the sensitivity of the microphone.
+Bounces are detected in a sound record with noise, mains hum and clicks, and the restitution is estimated with its intervals.
 """
 
 # %%

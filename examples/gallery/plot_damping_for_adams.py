@@ -3,7 +3,7 @@ Damping of Adams' IMPACT function from rebound heights
 ======================================================
 
 The damping of Adams' IMPACT function cannot be measured directly, but rebound heights can, with a ruler and a camera. From four of them
-follow the damping at each approach speed, its interval, and the values in the units of the dialog: newtons, millimetres and seconds.
+follow the damping at the four approach speeds, its intervals, and the values in the units of the dialog: newtons, millimetres and seconds.
 """
 
 # %%
@@ -45,7 +45,7 @@ for speed, damping in zip(found.observations.speeds, found.values, strict=True):
     print(f"Damping            {1e-3 * damping:.4f} N s/mm for an impact at {speed:.2f} m/s")
 
 # %%
-# The doubts are those of a run: the rebound is matched whatever the limits, but the force and the indentation depend on them.
+# The doubts are those of a run: the rebound can be matched beyond the limits of the theory, but force and indentation are then doubtful.
 print(*found.doubts, sep="\n")
 
 # %%
@@ -56,7 +56,7 @@ assert np.all((found.intervals[:, 0] < printed) & (printed < found.intervals[:, 
 # %%
 # Check and chart
 # ---------------
-# The calibrated case runs as any other, and reproduces the measured rebound heights.
+# The calibrated case runs as any other, and reproduces the rebound heights within 2 mm.
 response = vi.simulate(vi.calibrated_case(question.case, found))
 assert np.allclose(
     response.impacts["rebound_height_m"][:4], [2.411, 1.457, 0.885, 0.541], atol=2e-3

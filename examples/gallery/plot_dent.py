@@ -43,7 +43,7 @@ for ratio, restitution in {
 # %%
 # Force-indentation hysteresis
 # ----------------------------
-# At 3 m/s the contact of each law is loaded, yields, and is unloaded along a steeper curve. The enclosed area is the plastic work.
+# At 3 m/s the contact of each law is loaded, and unloaded along a steeper curve. The enclosed area is the energy lost.
 loops = {}
 for name, law in {
     "thornton": thornton,

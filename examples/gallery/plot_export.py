@@ -2,7 +2,7 @@
 Export of a contact model to Adams, LAMMPS, YADE, MuJoCo and EXUDYN
 ===================================================================
 
-A calibrated contact is exported to five programs, each with the contact laws that it supports. The file for Adams is read back and
+A contact is exported to five programs. The file for Adams is read back and
 integrated by SciPy in its own units; the rebounds agree with those of the run.
 """
 

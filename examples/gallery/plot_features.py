@@ -2,14 +2,14 @@
 Signal features of geophone packets
 ===================================
 
-The record of a geophone on a river bed contains the impacts of several grains. It is divided into packets, as in bedload measurement, and
-some sixty features describe each packet: the peak amplitude grows with the mass of the grain.
+A synthetic record of a geophone below a plate contains the impacts of several grains. It is divided into packets, as in bedload
+measurement, and some sixty features describe each packet: the peak amplitude grows with the mass of the grain.
 """
 
 # %%
 # A record of several grains
 # --------------------------
-# Seven grains of quartz of different sizes strike the plate of a river bed one after another; their signals are superposed.
+# Seven grains of quartz of different sizes strike a steel plate one after another; their signals are joined end to end, with noise.
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -59,7 +59,7 @@ record = vi.Record("geophone", value + 1e-4 * random.standard_normal(len(value))
 # %%
 # Packets
 # -------
-# A packet begins where the envelope reaches a threshold, and ends when it has stayed below the threshold for the dead time.
+# A packet begins where the envelope reaches a threshold, and ends where it falls below the threshold for longer than the dead time.
 packets = vi.find_packets(record, threshold=0.02, dead_time=5e-3)
 assert len(packets.onset) == len(diameters)
 assert np.abs(packets.onset / rate - (0.02 + pause * np.arange(len(diameters)))).max() < 3e-3

@@ -9,8 +9,8 @@ the sphere are estimated, with 95 % intervals.
 # %%
 # Synthetic records
 # -----------------
-# The records are simulated with noise 40 dB below the signal; the case used for the identification does not contain the true radius, speed
-# and position.
+# The records are simulated, with noise 40 dB below the vibration after the impact; the case used for the identification does not contain
+# the true radius, speed and position.
 import matplotlib.pyplot as plt
 import numpy as np
 

@@ -2,7 +2,7 @@
 Phase portraits of all contact laws
 ===================================
 
-The impact of a grain is computed with every contact law of the library at the same speed. In the plane of indentation and velocity an
+The impact of a grain is computed with all contact laws of the library at the same speed. In the plane of indentation and velocity an
 elastic impact is symmetric, a damped one has a lower rebound velocity, a plastic one leaves a dent, and an adhesive one has a tensile phase
 before separation.
 """
@@ -10,8 +10,9 @@ before separation.
 # %%
 # One impact under each law
 # -------------------------
-# A grain of 20 µm in diameter hits a plate of the same polymer at 0.3 m/s: small enough for adhesion, fast enough to yield. The case
-# supplies Hertz's stiffness and the effective mass; the other parameters of the laws are specified here.
+# A grain of 20 µm in diameter hits a plate of the same polymer at 0.3 m/s: with the chosen strengths and work of adhesion, small enough for
+# adhesion and fast enough to yield. What follows from the bodies, such as Hertz's stiffness and the effective mass, is supplied by the
+# case.
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -63,7 +64,8 @@ assert abs(bounced["tsuji"] - 0.5) < 1e-6
 # %%
 # Comparison
 # ----------
-# Velocity against indentation for each law, with Hertz's elastic impact as a grey area: approach at the bottom, rebound at the top.
+# Velocity against indentation for each law, with Hertz's elastic impact as a grey area: approach at the bottom, rebound at the top. Laws
+# without a force (``newton``, ``jackson-green-marghitu``) are vertical lines.
 plt.style.use("vibroimpact.charts.print")
 figure, panels = plt.subplots(
     5, 5, figsize=(7.0, 7.0), sharex=True, sharey=True, layout="constrained"

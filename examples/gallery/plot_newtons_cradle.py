@@ -2,21 +2,21 @@
 Newton's cradle with Hertz contacts
 ===================================
 
-One ball hits four that touch, and according to textbooks the last one leaves with the full speed. Hertz's contacts overlap in time, so that
-the last ball has 98.9 % of the speed and the first rebounds, as Hinch and Saint-Jean found in 1999; with a gap of a tenth of a millimetre
-the textbook result holds.
+One ball hits four that touch. If they collided in pairs, one after another, the last would leave with the full speed and the others would
+stop. Hertz's contacts overlap in time, so that the last ball has 98.9 % of the speed and the first rebounds; with gaps of a tenth of a
+millimetre the last ball leaves with the full speed to 1e-5.
 """
 
 # %%
 # Five balls in a row
 # -------------------
-# A system has any number of bodies and of contacts, which may be closed at the same time.
+# A system has several bodies and contacts; contacts may be closed at the same time.
 import matplotlib.pyplot as plt
 import numpy as np
 
 import vibroimpact as vi
 
-law = vi.find_contact_law("hertz")(stiffness=1e9)  # balls of steel, some 30 mm in diameter
+law = vi.find_contact_law("hertz")(stiffness=1e9)  # N/m^1.5
 
 
 def cradle(gap):

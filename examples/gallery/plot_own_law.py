@@ -49,7 +49,7 @@ class Lining(CompliantLaw):
 # %%
 # Impact of a rock on the lining
 # ------------------------------
-# The law is used in a problem like any other.
+# The law is used in a problem like those of the library.
 rock = vi.rigid_sphere(25e-3, vi.find_material("granite"))
 
 

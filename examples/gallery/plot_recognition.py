@@ -3,8 +3,8 @@ Leakage in cross-validation of impact classifiers
 =================================================
 
 Classifiers are trained on signals of coal and gangue for which the Bayes error of one impact of an unseen rock is known in closed form.
-Tested on rocks that are not in the training data they agree with this bound within their intervals; with signals split at random they
-appear to exceed it, because they recognise the individual rocks.
+Tested on rocks that are not in the training data they stay below the accuracy that it allows; with signals split at random they appear to
+exceed it, as the signals of one rock are then in both parts.
 """
 
 # %%

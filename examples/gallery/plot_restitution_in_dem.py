@@ -2,8 +2,8 @@
 Specified and achieved restitution of contact laws in DEM
 =========================================================
 
-The restitution that is entered in a discrete-element program is a parameter of a contact law, not the ratio of the speeds. Six laws are
-evaluated over the whole range of this parameter: with some of them a sphere that should not rebound at all keeps two thirds of its speed.
+With many contact laws the restitution that is entered in a discrete-element program is a parameter, not the ratio of the speeds. Six laws
+are evaluated for parameters from 0.05 to 1: with some of them a sphere that should not rebound at all keeps two thirds of its speed.
 """
 
 # %%

@@ -2,8 +2,8 @@
 Transition from sliding to rolling after an oblique impact
 ==========================================================
 
-A sphere that lands on a plate with a tangential velocity slides first and rolls at the end. Friction reduces its velocity by two sevenths,
-whatever the coefficient; with a smaller coefficient this takes longer. With sufficient backspin the sphere returns.
+A sphere that lands on a plate with a tangential velocity slides first and rolls at the end. Without spin, friction reduces its velocity by
+two sevenths, whatever the coefficient; with a smaller coefficient this takes longer. With sufficient backspin the sphere returns.
 """
 
 # %%

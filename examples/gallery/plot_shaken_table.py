@@ -23,9 +23,9 @@ exists = np.pi * (1.0 - restitution) / (1.0 + restitution)
 doubles = np.hypot(exists, 2.0 * (1.0 + restitution**2) / (1.0 + restitution) ** 2)
 
 # %%
-# Batch of a hundred accelerations
-# --------------------------------
-# Any number in a problem may be an array, and only the ratio of the accelerations matters: the batch has one table motion and as many
+# Batch of accelerations
+# ----------------------
+# Numbers in a problem may be arrays, and only the ratio of the accelerations matters: the batch has one table motion and as many
 # values of gravity. Each ball starts nearly in phase with the table; after fifty bounces of transient the flights of the next thirty are
 # recorded.
 strength = np.append(np.linspace(1.02 * exists, doubles, 24), np.linspace(1.01 * doubles, 2.0, 70))

@@ -2,9 +2,8 @@
 Impact of a rock on a vibrating screen deck
 ===========================================
 
-A rock of 20 kg falls on the deck of a screen, 80 kg on springs, whose frame vibrates. The motions of deck and rock are coupled: the rock
-bounces, chatters, rides and is launched again, in agreement with SciPy's integration of both bodies and their contact within a tenth of a
-micrometre over a second.
+A rock of 20 kg falls on the deck of a screen, 80 kg on springs, whose frame vibrates. The motions of deck and rock are coupled; the motion
+of the rock agrees with SciPy's integration of both bodies and their contact within a tenth of a micrometre over a second.
 """
 
 # %%

@@ -2,7 +2,7 @@
 Parameter study: contact force and yield against size and drop height
 =====================================================================
 
-Which rocks dent a plate? A study computes drops of granite spheres of fifty sizes from forty heights in about a second, and records the
+Which rocks dent a plate? A study computes drops of granite spheres of fifty sizes from forty heights, and records the
 largest force and the contact pressure relative to the yield limit of the plate. The pressure is independent of the size of the sphere.
 """
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from bounces_in_oil import TRACKS, computed_restitution, speed_at_touch
+import vibroimpact as vi
+from bounces_in_oil import OIL_DENSITY, TRACKS, VISCOSITY, computed_restitution, fall_in, speed_at_touch
 from oblique_measured import ALL, ANGLES, FRICTION, MEASURED, RADIUS, SLIPPING, SPEED, STICKING, fitted_friction, tangential_restitution
 from river_plate import amplitudes, class_limit
 from stated import says
@@ -37,7 +38,7 @@ def test_oblique_impacts() -> None:
     worst = int(above.argmax())
     says(
         PAGE,
-        "is up to {} above a measured one of {}, that at {} degrees",
+        "is up to {} above the measured one, which is {} there, at {} degrees",
         above[worst],
         MEASURED[worst],
         np.degrees(ANGLES[worst]),
@@ -58,7 +59,7 @@ def test_the_river_plate() -> None:
     off = [100.0 * (np.median(amplitudes(size)) / class_limit(size) - 1.0) for size in sizes]
     says(
         PAGE,
-        "At {} m/s: {} % ({} mm), {} % ({} mm), {} % ({} mm), {} % ({} mm), {} % ({} mm), {} % ({} mm)",
+        "At an assumed {} m/s: {} % ({} mm), {} % ({} mm), {} % ({} mm), {} % ({} mm), {} % ({} mm), {} % ({} mm)",
         1.0,
         *(value for pair in zip(off, sizes, strict=True) for value in pair),
     )
@@ -70,3 +71,9 @@ def test_three_bounces_in_oil() -> None:
         before, after = map(speed_at_touch, track)
         off.append(100.0 * (computed_restitution(before) * before / after - 1.0))
     says(PAGE, "to these and other measurements | {} %, {} %, {} %", *off)
+
+
+def test_the_falls_before_bounces_in_oil() -> None:
+    oil = vi.Liquid(density=OIL_DENSITY, viscosity=VISCOSITY)
+    off = [1e6 * float(np.abs(np.subtract(*fall_in(stokes, oil))).max()) for stokes in (152, 82)]
+    says(PAGE, "height and speed at the first measured point | at most {} µm and {} µm", *off)
