@@ -3,7 +3,7 @@ Air drag in a drop test
 =======================
 
 A quartz grain of 0.1 mm that is dropped from 2 m reaches its terminal velocity; a pebble of 60 mm loses 0.3 % of its speed. For particles
-of a few millimetres, neglected drag biases a restitution that is computed from rebound heights: it appears as a loss in the contact.
+of up to a few millimetres, neglected drag biases a restitution that is computed from rebound heights: it appears as a loss in the contact.
 """
 
 # %%

@@ -3,7 +3,7 @@ Specified and achieved restitution of contact laws in DEM
 =========================================================
 
 With many contact laws the restitution that is entered in a discrete-element program is a parameter, not the ratio of the speeds. Six laws
-are evaluated for parameters from 0.05 to 1: with some of them a sphere that should not rebound at all keeps two thirds of its speed.
+are evaluated for parameters from 0.05 to 1: with some of them a sphere that should hardly rebound keeps about two thirds of its speed.
 """
 
 # %%
