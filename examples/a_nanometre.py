@@ -46,4 +46,4 @@ below.semilogy(number, predicted, "-", color="#0b4f8a", label="predicted by the 
 below.axhline(1.0, color="#6b6b6b", linewidth=0.7)
 below.set(xlabel="impact", ylabel="relative change [-]", ylim=(1e-10, 1e6))
 below.legend(frameon=False)
-figure.savefig("a_nanometre.png", dpi=130)
+figure.savefig("a-nanometre.png", dpi=130)
