@@ -21,7 +21,7 @@ def mean_error(friction: str, rows: slice) -> float:
 def test_oblique_impacts() -> None:
     says(
         PAGE,
-        "alumina, {} mm, on thick glass, {} m/s; four angles of {} to {} degrees",
+        "alumina, {} mm in diameter, on thick glass, {} m/s; four angles of {} to {} degrees",
         2e3 * RADIUS,
         SPEED,
         *np.degrees(ANGLES[STICKING])[[0, -1]],
@@ -32,8 +32,13 @@ def test_oblique_impacts() -> None:
     says(
         PAGE, "{} with Coulomb's friction alone, {} to {} with single springs", mean_error("coulomb", STICKING), min(springs), max(springs)
     )
-    says(PAGE, "mean error {}, with Coulomb's friction alone {}", mean_error("mdr", SLIPPING), mean_error("coulomb", SLIPPING))
-    assert all(mean_error(law, SLIPPING) <= mean_error("mdr", SLIPPING) for law in ("mindlin", "mindlin-rescale", "mindlin-force"))
+    for law in ("mdr", "mindlin", "mindlin-rescale", "mindlin-force"):
+        says(
+            PAGE,
+            "mean error {} with `mdr` and with single springs, {} with Coulomb's friction alone",
+            mean_error(law, SLIPPING),
+            mean_error("coulomb", SLIPPING),
+        )
     above = np.array([tangential_restitution(law) - MEASURED for law in ("mindlin", "mindlin-rescale", "mindlin-force")]).max(axis=0)
     worst = int(above.argmax())
     says(

@@ -136,7 +136,7 @@ def test_the_moving_picture() -> None:
     says(
         INDEX,
         "A rock of {} mm in diameter, dropped from {} m onto a steel plate of {} mm on four feet: {} ms, slowed down {2} times, "
-        "deflection magnified {} times ({} mm at most), {} g at the sensor",
+        "deflection magnified {} times ({} mm at most)",
         2e3 * shown["RADIUS"],
         float(case["drop"]["height"].removesuffix(" m")),
         float(case["plate"]["size"][2].removesuffix(" mm")),
@@ -144,5 +144,4 @@ def test_the_moving_picture() -> None:
         slower,
         shown["EXAGGERATION"],
         -1e3 * shown["heights"].min(),
-        np.abs(shown["heard"]).max(),
     )
