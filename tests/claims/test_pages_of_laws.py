@@ -128,7 +128,8 @@ def test_rebounds_without_the_clip_of_adams() -> None:
         vi.simulate(dataclasses.replace(problem, laws=laws)).impacts["rebound_height_m"] for laws in (problem.laws, pulling)
     )
     lower = 100.0 * (1.0 - without / with_clip)
-    says("docs/laws/adams-impact.md", "the rebound heights of the case `paper:type1-variable` are {} to {} % lower", lower.min(), lower.max())
+    ends = lower.min(), lower.max()
+    says("docs/laws/adams-impact.md", "the rebound heights of the case `paper:type1-variable` are {} to {} % lower", *ends)
 
 
 def test_the_speed_of_full_plasticity_of_the_default_of_meyer() -> None:

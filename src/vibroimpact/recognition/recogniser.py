@@ -192,7 +192,7 @@ def save_recogniser(recogniser: Recogniser, folder: Path) -> None:
 
 
 def load_recogniser(directory: str | PathLike[str]) -> Recogniser:
-    """Return a saved classifier; nothing in its files can run code.
+    """Return a saved classifier, which is an ONNX graph and a card in JSON.
 
     Parameters
     ----------

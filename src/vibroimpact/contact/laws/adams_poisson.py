@@ -17,7 +17,7 @@ class AdamsPoisson(TwoPhaseLaw):
 
     Notes
     -----
-    The parameters are those of the POISSON contact of Adams. Without gravity, on a plate that does not vibrate, both the
+    The parameters are those of the POISSON contact of Adams. Without gravity, between rigid bodies, both the
     ratio of the impulses and that of the speeds are e. The force falls at the deepest point from :math:`p\delta` to
     :math:`e^2 p\delta`.
 

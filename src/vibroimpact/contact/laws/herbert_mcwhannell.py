@@ -1,4 +1,4 @@
-"""Herbert and McWhannell's law: hysteretic damping from the shape of the pulse."""
+"""Herbert and McWhannell's law: hysteretic damping."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Hunt and Crossley's law: the first hysteretic damping."""
+"""Hunt and Crossley's law: hysteretic damping."""
 
 from __future__ import annotations
 
