@@ -66,11 +66,10 @@ def _velocity(result: Result) -> str:
     if not len(impacts["time_s"]):
         return "The sphere does not touch the plate in this run."
     approach, separation = float(impacts["approach_speed_m_s"][0]), float(impacts["separation_speed_m_s"][0])
-    slope = "" if "air_lost_J" in impacts else " Between impacts the slope is the acceleration of gravity."
     return (
         f"In impact 1 the sphere arrives at {text(approach, 'm/s')} and leaves at {text(separation, 'm/s')}"
         f"{', relative to the plate' if 'plate_velocity_m_s' in impacts else ''}: "
-        f"a restitution of {fixed(separation / approach, 4)}.{slope}"
+        f"a restitution of {fixed(separation / approach, 4)}."
     )
 
 
