@@ -25,8 +25,8 @@ class LinearSpringDashpot(KelvinVoigtLaw):
 
     Notes
     -----
-    The contact ends at zero overlap, and the dashpot may pull before that. Without gravity, and with the effective mass
-    given here, the restitution is the one asked for. The force jumps at first touch from zero to :math:`c\dot\delta_0`.
+    The contact ends at zero overlap, and the dashpot may pull before that. Without gravity the restitution of an
+    impact with this effective mass is the one asked for. The force jumps at first touch from zero to :math:`c\dot\delta_0`.
 
     References
     ----------

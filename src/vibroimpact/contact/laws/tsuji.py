@@ -21,8 +21,8 @@ class Tsuji(RestitutionForMassLaw, SphereLaw):
 
     Notes
     -----
-    A change of variables makes the motion that of a damped linear oscillator: without gravity, and with the effective mass
-    given here, the restitution is the one asked for at any speed. The contact ends at zero overlap and may pull before that,
+    A change of variables makes the motion that of a damped linear oscillator: without gravity the restitution of an
+    impact with this effective mass is the one asked for at any speed. The contact ends at zero overlap and may pull before that,
     as in the published solution; with the tension cut, 0.5 would give 0.55.
 
     References
