@@ -50,8 +50,10 @@ def correlate(
         typer.Option(
             "--band",
             metavar="FROM,TO",
-            help='Band of frequencies, such as "100 Hz, 5 kHz"; by default from half the lowest mode to the highest, or to what the sensors '
-            "pass.",
+            help=(
+                'Band of frequencies, such as "100 Hz, 5 kHz"; by default from half the lowest mode to the highest, or to what the sensors '
+                "pass."
+            ),
         ),
     ] = None,
     changes: Changes = None,
