@@ -1,4 +1,4 @@
-"""The subpackages in their layers, each with its contents and its number of lines.
+"""The subpackages in groups, each with its contents.
 
 Draws the figure of docs/architecture.md.
 """
@@ -14,7 +14,7 @@ from matplotlib.patches import FancyBboxPatch
 import vibroimpact
 
 PACKAGE = Path(vibroimpact.__file__).parent
-FLOORS = {  # top to bottom: name of a layer, its colour, its subpackages and their contents
+FLOORS = {  # top to bottom: name of a group, its colour, its subpackages and their contents
     "commands and page": ("#e4e4e4", {"cli": "commands, help,\nexit status", "app": "the live page"}),
     "tasks": (
         "#a9c4dc",
@@ -56,7 +56,7 @@ FLOORS = {  # top to bottom: name of a layer, its colour, its subpackages and th
             "dynamics": "problem, simulate, response;\nrigid, phase_plane, vibrating, sensors",
             "bodies": "sphere, plate",
             "structures": "meshes, supports, modes,\nreduction, store",
-            "contact": f"{len(vibroimpact.contact_laws())} laws, pair, statics",
+            "contact": "laws, pair, statics",
         },
     ),
     "base": (
@@ -74,33 +74,20 @@ SHOWN = {room for _, rooms in FLOORS.values() for room in rooms}
 assert {place.parent.name for place in PACKAGE.glob("*/__init__.py")} <= SHOWN, "a subpackage is not in the figure"
 
 
-def lines_of(room: str) -> int:
-    """Return the number of lines of a subpackage, or of the modules outside all of them."""
-    place = PACKAGE / room
-    files = list(place.rglob("*.py")) if place.is_dir() else [PACKAGE / "materials.py"]
-    if room == "modules":
-        files = [file for file in PACKAGE.glob("*.py") if file.name != "materials.py"]
-    return sum(len(file.read_text(encoding="utf-8").splitlines()) for file in files)
-
-
 figure, axes = plt.subplots(figsize=(11.0, 6.2))
 axes.set(xlim=(-0.17, 1.0), ylim=(0.0, len(FLOORS)))
 axes.axis("off")
-total = 0
 for number, (floor, (colour, rooms)) in enumerate(reversed(FLOORS.items())):
     axes.text(-0.165, number + 0.5, floor, va="center", fontsize=10, style="italic")
     width = 1.0 / len(rooms)
     for place, (room, holds) in enumerate(rooms.items()):
-        size = lines_of(room)
-        total += size
         box = FancyBboxPatch(
             (place * width + 0.006, number + 0.1), width - 0.012, 0.8, boxstyle="round,pad=0,rounding_size=0.012", fc=colour, ec="#6b6b6b"
         )
         axes.add_patch(box)
         middle = (place + 0.5) * width
-        axes.text(middle, number + 0.72, room, ha="center", va="center", fontsize=10, weight="bold")
-        axes.text(middle, number + 0.45, holds, ha="center", va="center", fontsize=7.5)
-        axes.text(middle, number + 0.2, f"{size:,} lines", ha="center", va="center", fontsize=7, color="#444444")
+        axes.text(middle, number + 0.66, room, ha="center", va="center", fontsize=10, weight="bold")
+        axes.text(middle, number + 0.36, holds, ha="center", va="center", fontsize=7.5)
 figure.tight_layout(pad=0.3)
 figure.savefig("architecture.png", dpi=110)
-print(f"architecture.png: {total:,} lines in {sum(len(rooms) for _, rooms in FLOORS.values())} subpackages")
+print("architecture.png")

@@ -13,11 +13,12 @@ PAGE = ROOT / "docs" / "validation.md"
 PROSE = Path(__file__).with_suffix(".md")
 """The text of the page, with placeholders for the generated tables."""
 KINDS = {
-    "closed form": "analytical solutions and published formulas, evaluated in the tests; benchmarks of other programs that have one",
+    "closed form": "analytical solutions, published formulas and signals of known parameters, evaluated in the tests; benchmarks with a "
+    "closed form",
     "published computation": "published numerical results without a closed form, printed or digitized from figures",
     "other program": "other programs and libraries, run for the same case, or their recorded results",
-    "own independent computation": "integrations, series and finite elements by the same authors, without the solvers of the package; some "
-    "take its formulas of contact laws",
+    "own independent computation": "integrations, series and finite elements by the same authors; some take formulas of contact laws, "
+    "contact forces, modes or elements of the package",
     "consistency": "no external reference: limits, conservation laws, round trips, convergence, another method of the package",
     "fitted to published numbers": "published numbers to which an input of the case was fitted here: the fit meets them; no prediction",
     "experiment": "measurements; friction and restitution measured in the same series, nothing fitted to the compared values",
@@ -82,7 +83,7 @@ def part(row: dict[str, Any]) -> float:
 
 
 def summary(rows: list[dict[str, Any]]) -> list[str]:
-    """For each kind: the numbers of references, comparisons and values, and the comparison with the largest deviation."""
+    """For each kind: the numbers of references, comparisons and values, and the comparison with the largest deviation; see `part`."""
     table = ["| kind | description | references | comparisons | values | largest relative deviation |", "|---|---|---|---|---|---|"]
     for kind, some in ((kind, [row for row in rows if row["kind"] == kind]) for kind in get_args(Kind)):
         if some:
@@ -97,10 +98,11 @@ def measured(rows: list[dict[str, Any]]) -> list[str]:
     """A sentence on how many comparisons are with measured values, and of which kinds."""
     counts = {kind: sum(row["kind"] == kind for row in rows) for kind in MEASURED}
     kinds = ", ".join(f"{counts[kind]} *{kind}*" for kind in MEASURED)
-    predicted = sum(row["points"] for row in rows if row["kind"] == MEASURED[0])
+    predicted = [row for row in rows if row["kind"] == MEASURED[0]]
+    assert len({(*row["theirs"], row["points"], row["opponent"]) for row in predicted}) == 1, "other values than those of one series"
     return [
         f"Of these {len(rows):,} comparisons {sum(counts.values())} are with measured values: {kinds}. Only the first kind tests a "
-        f"prediction, in {predicted} values.",
+        f"prediction, in the same {predicted[0]['points']} measured values under {len(predicted)} friction laws.",
         "",
     ]
 

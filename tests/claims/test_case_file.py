@@ -14,7 +14,9 @@ from stated import ROOT, says
 from vibroimpact.bodies.elastic import plate_recipe
 from vibroimpact.calibration.section import CalibrateSection
 from vibroimpact.cases.fields import quantities, size_limits
+from vibroimpact.cases.limit import limits
 from vibroimpact.cli import main
+from vibroimpact.dynamics.problem import MOST_IMPACTS
 from vibroimpact.materials import find_material
 from vibroimpact.structures.recipe import Reduction
 from vibroimpact.units.reading import to_si
@@ -35,9 +37,15 @@ def case_of(folder: Path, text: str, **changes: Any) -> vi.Case:
 
 
 def test_defaults_of_the_drop(tmp_path: Path, blocks: list[str]) -> None:
-    problem = case_of(tmp_path, blocks[0].replace("gravity = 9.8\n", "")).to_problem()
+    problem, newton = case_of(tmp_path, blocks[0].replace("gravity = 9.8\n", "")).to_problem(), vi.find_contact_law("newton")
     says(PAGE, "| {} by default; 0 is allowed", problem.gravity)
     says(PAGE, "at the end of a contact: {} by default", problem.tolerance)
+    says(PAGE, "or all if a `duration` is given; {} at most", MOST_IMPACTS)
+    with pytest.raises(vi.InputError, match="impacts"):
+        case_of(tmp_path, blocks[0], **{"run.impacts": MOST_IMPACTS + 1})
+    bounced = vi.simulate(vi.Problem(sphere=vi.Body(1.0, 0.1), plate=vi.rigid_plate(), laws=(newton(restitution=0.5),), speed=2.0))
+    says(PAGE, "but at least {} of the first approach speed", float(bounced.rest.speed[0]) / 2.0)
+    says(PAGE, "with a [doubt](limits.md) from {} % beyond them on", 100.0 * (limits()["speeds_given"].threshold - 1.0))
     air, water = vi.Air(), vi.Liquid()
     says(PAGE, "({} kg/m^3), ", air.density)
     says(PAGE, "({} Pa s), or a constant", air.viscosity)
@@ -75,13 +83,13 @@ def test_default_of_a_margin() -> None:
 
 def test_limits_of_size() -> None:
     """Each limit itself is tested in tests/unit/test_hostile_input.py."""
-    limits = size_limits
-    says(PAGE, "files larger than {} MB, tables and lists nested more than {} deep", limits.MOST_BYTES / 1e6, limits.DEEPEST)
-    says(PAGE, "more than {} values, strings of more than {} characters", limits.MOST_VALUES, limits.LONGEST_TEXT)
-    says(PAGE, "and keys of more than {}, more than {} sensors or supports", limits.LONGEST_KEY, limits.MOST_ITEMS)
-    says(PAGE, "more than {} values of a parameter, integers beyond {} bits", limits.MOST_OF_A_LIST, limits.LARGEST_WHOLE.bit_length() + 1)
+    most = size_limits
+    says(PAGE, "files larger than {} MB, tables and lists nested more than {} deep", most.MOST_BYTES / 1e6, most.DEEPEST)
+    says(PAGE, "more than {} values, strings of more than {} characters", most.MOST_VALUES, most.LONGEST_TEXT)
+    says(PAGE, "and keys of more than {}, more than {} sensors or supports", most.LONGEST_KEY, most.MOST_ITEMS)
+    says(PAGE, "more than {} values of a parameter, integers beyond {} bits", most.MOST_OF_A_LIST, most.LARGEST_WHOLE.bit_length() + 1)
     says(PAGE, "quantities smaller than {} or larger than {} in SI", quantities.SMALLEST, quantities.LARGEST)
-    says(PAGE, "Names are one line of at most {} printable characters", limits.LONGEST_NAME)
+    says(PAGE, "Names are one line of at most {} printable characters", most.LONGEST_NAME)
 
 
 @pytest.mark.parametrize("changes", [{"contact.stiffness": 16176}, {"contact.damping_max": 180000}, {"run.duration": 0.001}])

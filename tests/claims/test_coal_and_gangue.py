@@ -41,7 +41,6 @@ def test_contact_times_of_coal_and_gangue() -> None:
     times = {}
     for name, density, modulus, radius in (
         ("coal", 1380, 2.5e9, 0.025),
-        ("gangue", 2550, 20e9, 0.025),
         ("large gangue", 2550, 20e9, 0.05),
     ):
         material = {"density": density, "youngs_modulus": modulus, "poissons_ratio": 0.28}
@@ -53,13 +52,6 @@ def test_contact_times_of_coal_and_gangue() -> None:
         "at 8.8 m/s, the contact of gangue of 50 mm radius lasts {} µs, that of coal of 25 mm {} µs",
         times["large gangue"],
         times["coal"],
-    )
-    says(
-        BOUNDS,
-        "that of coal of 25 mm ({} µs) is nearer to that of gangue of 50 mm ({} µs) than to that of gangue of 25 mm ({} µs)",
-        times["coal"],
-        times["large gangue"],
-        times["gangue"],
     )
 
 

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from stated import says
 from vibroimpact.bodies.elastic import plate_recipe
+from vibroimpact.cases.elastic import modes
 from vibroimpact.materials import find_material
 from vibroimpact.meshes.geometry import GEOMETRY, MOST_SECONDS
 from vibroimpact.meshes.text_files import MESH
 from vibroimpact.structures import frequency_error, store
-from vibroimpact.structures.plate_waves import bending_error
+from vibroimpact.structures.plate_waves import bending_error, stretching_error, wave_numbers
 from vibroimpact.structures.recipe import PlateOfPlates, Recipe, Reduction, SphereOfSolids, computed_model
 from vibroimpact.structures.supports.patch import Patch
 
@@ -27,6 +29,13 @@ def test_error_of_plate_theory() -> None:
     """Of Mindlin's bending wave, at wavelengths of so many thicknesses."""
     errors = [100.0 * abs(float(bending_error(np.array([2.0 * np.pi / thicknesses]), 0.3)[0])) for thicknesses in (6.0, 4.0, 2.0)]
     says(PAGE, "bending: {} % at wavelengths of six thicknesses, {} % at four, {} % at two", *errors)
+    steel, thickness = find_material("steel-paper"), 0.008
+    stretched = []
+    for thicknesses in (6.0, 2.0):
+        wave = 2.0 * np.pi / (thicknesses * thickness)
+        omega = float(brentq(lambda at, wave=wave: float(wave_numbers(np.array([at]), thickness, steel)[0]) - wave, 1e3, 1e8))
+        stretched.append(100.0 * float(stretching_error(np.array([omega]), thickness, steel)[0]))
+    says(PAGE, "stretching, {} to {} times that at the same frequencies", stretched[0] / errors[0], stretched[1] / errors[2])
 
 
 def test_constants_of_the_estimate() -> None:
@@ -35,6 +44,8 @@ def test_constants_of_the_estimate() -> None:
 
 
 def test_limits() -> None:
+    says(PAGE, "if the mass of the mesh deviates by more than {} %", 100.0 * modes._MESH_OFF)
+    says(PAGE, "A mass that differs by more than {} % from that of the case", 100.0 * modes._WEIGHT_OFF)
     says(PAGE, "A mesh may have at most {} GB", MESH.largest / 1e9)
     says(PAGE, "a geometry at most {} MB and {} minutes", GEOMETRY.largest / 1e6, MOST_SECONDS / 60.0)
     says(PAGE, "when it exceeds {} GB", store._LARGEST / 1e9)
@@ -46,7 +57,7 @@ def test_the_default_sphere() -> None:
     model = computed_model(Recipe(SphereOfSolids(1.0, 8), 1.0, 2.0 * 1.28, 0.28, (), Reduction(modes=20)))  # the speed of shear is 1
     exact = np.repeat([2.501133, 2.643768, 3.488696], [5, 5, 3])
     errors = model.angular_frequencies[:13] / exact - 1.0
-    says(PAGE, "the lowest modes are accurate to {} % with eight elements across", 100.0 * float(np.abs(errors).max()))
+    says(PAGE, "the lowest thirteen modes are accurate to {} % with eight elements across", 100.0 * float(np.abs(errors).max()))
 
 
 @pytest.mark.slow

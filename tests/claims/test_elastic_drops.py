@@ -18,8 +18,9 @@ from oracles.three_dimensional_plate import PMMA, STEEL, Plate, drop
 from stated import ROOT, says
 from support import plain_case
 from vibroimpact.cases import sensor_doubts
+from vibroimpact.cases.fields.size_limits import MOST_ITEMS
 from vibroimpact.cases.limits import modes_left_out, plate_waves, small_contact
-from vibroimpact.dynamics.sensors import antialias, overload
+from vibroimpact.dynamics.sensors import antialias
 from vibroimpact.dynamics.vibrating import visit
 from vibroimpact.structures.plate_waves import bending_factor
 from vibroimpact.structures.sphere_compliance import finite_sphere_factor
@@ -75,6 +76,7 @@ def test_two_drops_a_nanometre_apart() -> None:
     says(PAGE, "which grows from less than {} to some per cent in four impacts", 1e-9)
     assert 0.01 < apart[3] < 0.2
     assert apart[4:].min() > 0.05
+    says(PAGE, "(how much depends on rounding) and by more than {} % from the fifth on", 5.0)
     case = {**shown["case"], "plate": {**shown["case"]["plate"], "damping": 0.01}}
     problem = vi.read_case(case).to_problem()
     first, second = (vi.simulate(replace(problem, height=height)).impacts["max_force_N"] for height in (1.0, 1.0 + 1e-9))
@@ -91,7 +93,7 @@ def test_sensitivity_of_a_rigid_drop() -> None:
         return float(vi.simulate(vi.read_case(case)).impacts["max_force_N"][0])
 
     low, high = 4.0, 4.04
-    says(PAGE, "For a rigid drop from a height it would be {}", math.log(force(high) / force(low)) / math.log(high / low))
+    says(PAGE, "For a rigid drop from a height by Hertz's law it would be {}", math.log(force(high) / force(low)) / math.log(high / low))
 
 
 @pytest.mark.slow
@@ -145,4 +147,4 @@ def test_thresholds_of_doubts() -> None:
 
 def test_constants() -> None:
     says(PAGE, "a ride is integrated for {} steps", visit.MOST_STEPS)
-    says(PAGE, "of {} points per period of the resonance", overload._PER_PERIOD)
+    says(PAGE, "Sensors may be at up to {} points of the plate", MOST_ITEMS)

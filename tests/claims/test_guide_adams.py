@@ -61,7 +61,7 @@ def test_the_defaults_of_the_dialog() -> None:
     says(PAGE, "and of {} at 3 m/s", faster)
     says(PAGE, "with the dialog's defaults below {} everywhere", round(max(achieved(defaults, response)) + 0.05, 1))
     part = float(vi.achieved_restitution(defaults, mass=1.0, speed=1.0))
-    says(PAGE, "such a part has {} at 1 m/s", part)
+    says(PAGE, "a mass of 1 kg has {} at 1 m/s", part)
     says(PAGE, "speed=1.0) # {}", part)
 
 

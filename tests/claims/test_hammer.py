@@ -13,6 +13,8 @@ import pytest
 import vibroimpact as vi
 from hammered import RATE, a_case, hammered, records
 from stated import ROOT, says
+from vibroimpact.signals.decay import find
+from vibroimpact.signals.estimate import Estimate
 
 PAGE = "docs/hammer.md"
 
@@ -52,6 +54,11 @@ def test_as_drawn() -> None:
 def test_corrected() -> None:
     again = example()["again"]
     says(PAGE, "the residual is {} %, most of it noise, and FRAC {}", 100.0 * float(again.relative_residual[0]), float(again.frac[0]))
+
+
+def test_what_of_damping_is_not_told() -> None:
+    says(PAGE, "is wider than from {} to {} times its value", *Estimate(1.0, find._VAGUE, logarithmic=True).interval)
+    says(PAGE, "Modes with damping ratios above {} are not reported", find._WIDEST)
 
 
 @pytest.mark.slow

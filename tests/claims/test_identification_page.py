@@ -10,6 +10,5 @@ PAGE = "docs/identification.md"
 
 def test_constants() -> None:
     says(PAGE, "leaves more than {} % of the records", 100.0 * doubts._PART)
-    says(PAGE, "is evaluated by Gauss's rule, as {} modes", plate._LEFT_OUT)
     says(PAGE, "with standard deviations of {} and one", sphere._NEXT_OCTAVE)
     says(PAGE, "the spread of this difference over {} positions", plate._PLACES)

@@ -10,11 +10,12 @@ from support import plain_case
 from vibroimpact.cases import sensor_doubts
 from vibroimpact.cases.elastic import modes
 from vibroimpact.cases.limit import limits
-from vibroimpact.cases.limits import edge, modes_left_out
+from vibroimpact.cases.limits import edge, fast_flight, modes_left_out
 from vibroimpact.cases.limits.adhesion import WORK_OF_ADHESION
 from vibroimpact.cases.limits.finite_sphere import force_lacking
 from vibroimpact.dynamics.air import AIR_DENSITY
 from vibroimpact.dynamics.change_by_impact import RELATIVE_CHANGE
+from vibroimpact.dynamics.fluid import HIGHEST_REYNOLDS
 from vibroimpact.dynamics.liquid import CRITICAL_STOKES
 from vibroimpact.structures.sphere_compliance import FITTED
 
@@ -37,6 +38,13 @@ def test_thresholds() -> None:
     says(PAGE, "over the tensile strength | above {} |", threshold("sphere_strength"))
     says(PAGE, "(Clift and Gauvin 1970; {} kg/m^3)", AIR_DENSITY)
     says(PAGE, "| above {} % | the loss, and the speed with drag", threshold("air_drag", 100.0))
+    says(
+        PAGE,
+        "Reynolds number at first touch over {}, for flights in air or in a liquid, unless a drag coefficient is given | above {} |",
+        HIGHEST_REYNOLDS,
+        threshold("drag_coefficient"),
+    )
+    says(PAGE, "the speed of sound in air at 20 C, {} m/s, for flights in air | above {} |", fast_flight._SPEED_OF_SOUND, threshold("mach"))
     says(PAGE, "below a Stokes number of about {} (Joseph", CRITICAL_STOKES)
     says(PAGE, "over its thickness | above {} |", threshold("plate_deflection"))
     says(PAGE, "| {} contact radii (rigid plate) or {} thicknesses (elastic)", edge._RADII, edge._THICKNESSES)

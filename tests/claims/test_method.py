@@ -11,31 +11,21 @@ from bounces_in_oil import DIAMETER, DRY_RESTITUTION, OIL_DENSITY, TRACKS, VISCO
 from stated import says
 from support import plain_case
 from vibroimpact.cases.rigid import touch_speed
-from vibroimpact.contact.laws.adams_impact import AdamsImpact
 from vibroimpact.contact.laws.hertz import Hertz
-from vibroimpact.dynamics import liquid, simulate
+from vibroimpact.dynamics import air, liquid
 from vibroimpact.dynamics.phase_plane import contact_solver
-from vibroimpact.dynamics.rigid.contact_in_time import nodes_per_stretch
 from vibroimpact.dynamics.vibrating import visit
 
 PAGE = "docs/method.md"
-TOLERANCE = 1e-9  # the default
 WATER, QUARTZ = vi.Liquid(), 2650.0
 
 
-def test_nodes_and_bounds() -> None:
-    hertz = Hertz(stiffness=1e8)
-    table = contact_solver._nodes_per_segment(hertz, TOLERANCE)
-    history = contact_solver._nodes_per_segment(hertz, max(TOLERANCE / simulate._HISTORY, contact_solver._TIGHTEST))
-    assert hertz.root == 2
-    says(PAGE, "at the default tolerance, {} in the runs with histories and {} in those without", history, table)
-    cut = AdamsImpact(stiffness=1e8, damping_max=1.0, full_damping_penetration=1e-4)
-    assert contact_solver._nodes_per_segment(cut, TOLERANCE) == table + 8  # the page has it in words
+def test_bounds() -> None:
     says(PAGE, "a restitution below {} or not at all", contact_solver._LEAST_RESTITUTION)
-    says(PAGE, "the Radau rule ({} at the default tolerance)", nodes_per_stretch(TOLERANCE))
-    says(PAGE, "Below a tolerance of {} every contact", contact_solver._TIGHTEST)
+    says(PAGE, "all contacts below a tolerance of {}.", contact_solver._TIGHTEST)
     says(PAGE, "It is integrated for {} steps of contact", visit.MOST_STEPS)
     says(PAGE, "up to that time with at most {};", visit.MOST_STEPS_TO_A_TIME)
+    says(PAGE, "more than {} % is refused", 100.0 * air._DENSEST)
 
 
 def test_hertz_about_equilibrium() -> None:

@@ -15,10 +15,11 @@ from oblique_measured import ALL, ALUMINA, ANGLES, FRICTION, GLASS, MEASURED, SL
 from stated import says
 from support import blocks, module_at, plain_case
 from vibroimpact.calibration import force_pulses, force_record, joint_flights, position_record
+from vibroimpact.calibration.calibrated_drops import MOST_IMPACTS
 from vibroimpact.calibration.evaluate_measurement import _MATTERS
 from vibroimpact.calibration.noise import standard_deviations
-from vibroimpact.calibration.section import _MEASURED
 from vibroimpact.contact.pair import effective_shear_modulus
+from vibroimpact.measurements.table_file import TABLE
 from vibroimpact.signals.bounces import chain, touches
 from vibroimpact.signals.bounces.find import _DOUBLE
 
@@ -55,7 +56,11 @@ def test_what_remains() -> None:
 
 
 def test_sizes_of_files() -> None:
-    says(PAGE, "A file has at most {} MB", 1e-6 * _MEASURED.largest)
+    says(PAGE, "A table has at most {} MB", 1e-6 * TABLE.largest)
+
+
+def test_impacts_that_are_matched() -> None:
+    says(PAGE, "at most the first {} impacts", MOST_IMPACTS)
 
 
 @pytest.mark.slow
@@ -80,7 +85,7 @@ def test_drifting_forces() -> None:
 
 
 def test_edges_of_forces() -> None:
-    says(PAGE, "the sampling interval and {} % of the contact", 100.0 * force_pulses._EDGE)
+    says(PAGE, "by noise, sampling and {} % of the contact", 100.0 * force_pulses._EDGE)
     says(PAGE, "fewer than {} samples in a contact", force_record._COARSE)
 
 
@@ -97,7 +102,9 @@ def test_zero_of_a_record_of_positions() -> None:
     says(PAGE, "an elastic Hertzian impact within {} %", 100.0 * joint_flights._CONTACT_DEVIATION)
     says(PAGE, "or a clock by more than {} %, is refused", 100.0 * position_record._CLOCK_OFF)
     says(PAGE, "a tenth of the radius, the clock by more than {} %", 100.0 * position_record._LARGE_CLOCK)
+    says(PAGE, "about a line by more than noise and {} % of the lowest rebound", 100.0 * position_record._LARGE_SCATTER)
     assert position_record._LARGE_ZERO == 0.1
+    assert position_record._SURE == 3.0
     assert position_record._FAR == 0.5
 
 
@@ -117,7 +124,8 @@ def test_a_contact_in_a_flight() -> None:
 def test_how_bounces_are_found() -> None:
     says(PAGE, "rumble below {} Hz", touches._LOWEST)
     says(PAGE, "over the next 2 ms exceeds that over the last {} ms by {} standard deviations", 1e3 * touches.WINDOW, touches._ABOVE)
-    says(PAGE, "Touches with {} % of their energy in three samples are clicks", 100.0 * touches._PART)
+    says(PAGE, "the {} clearest are kept", touches.MOST)
+    says(PAGE, "Touches with more than {} % of their energy in three samples are clicks", 100.0 * touches._PART)
     says(PAGE, "by a factor between {} and {} that changes slowly", chain.LOWEST, chain.HIGHEST)
     slowly = 100.0 * chain._SLOWLY
     says(PAGE, "by {} % from bounce to bounce (standard deviation) and {} % at most", slowly, slowly * chain._FURTHEST)

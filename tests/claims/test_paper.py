@@ -8,8 +8,6 @@ from __future__ import annotations
 import re
 from functools import cache
 
-import numpy as np
-
 import vibroimpact as vi
 from stated import ROOT, says
 from vibroimpact.paper.printed import printed
@@ -20,7 +18,6 @@ from vibroimpact.paper.runs import Runs
 GUIDE = "docs/guides/reproduce-the-paper.md"
 PAGE = "docs/reproduction.md"
 README = "README.md"
-INDEX = "docs/index.md"
 
 
 @cache
@@ -100,9 +97,3 @@ def test_the_drop_that_the_guide_describes() -> None:
     says(GUIDE, "The printed results are those for {} mm", 1e3 * penetration)
     higher = vi.simulate(vi.load_case("paper:type1-theory", {"drop.height": "6 m"})).impacts
     says(GUIDE, "# {}: force grows as speed^1.2", higher["max_force_N"][0] / impacts["max_force_N"][0])
-
-
-def test_dampings_found_by_calibration() -> None:
-    found = runs().calibration.values
-    off = 100 * np.abs(found / [printed(f"damping.{impact}").value for impact in range(1, 6)] - 1).max()
-    says(INDEX, "that differ from them by at most {} %", np.ceil(100 * off) / 100)

@@ -12,6 +12,7 @@ from knocks import BAYES_ERROR, write_knocks
 from stated import says
 from vibroimpact.recognition.bound import _SURE
 from vibroimpact.recognition.recognise import MOST_SIGNALS
+from vibroimpact.recognition.recogniser import _DIFFERENT
 from vibroimpact.recognition.robustness import LEVELS
 from vibroimpact.recognition.scores import Score
 
@@ -41,8 +42,9 @@ def test_settings_and_population() -> None:
     says(PAGE, "If there are more than {} signals", MOST_SIGNALS)
     per_cent = Score(50.0, np.linspace(0.0, 100.0, 1001), np.zeros(1))
     says(PAGE, "**Intervals** of {} % by bootstrap", per_cent.high - per_cent.low)
-    says(PAGE, "with a confidence of {} %, the way in which", _SURE)
+    says(PAGE, "with a confidence of {} %, the result reports *leak*", _SURE)
     says(PAGE, "below the bound in {} % of the bootstrap draws", _SURE)
+    says(PAGE, "of the trained classifier for {} % of the signals or more", 100.0 * (1.0 - _DIFFERENT))
     says(PAGE, "white noise from {} to {} dB", max(LEVELS), min(LEVELS))
     sweep = vi.load_sweep("signals:coal-gangue").whole_table["sweep"]
     over, classes = sweep["over"], {name: one["over"] for name, one in sweep["classes"].items()}

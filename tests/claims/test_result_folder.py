@@ -14,7 +14,7 @@ from stated import ROOT, says
 from vibroimpact.dynamics.change_by_impact import RELATIVE_CHANGE
 from vibroimpact.dynamics.energy import CLOSURE_LIMIT
 from vibroimpact.files.hdf5 import FORMAT
-from vibroimpact.results import deflection, surface_grid
+from vibroimpact.results import deflection, fine_history, surface_grid
 from vibroimpact.results.csv_files import MOST_CSV_SAMPLES
 from vibroimpact.runs import paraview
 from vibroimpact.signals.bounces.touches import WINDOW
@@ -31,7 +31,8 @@ def test_limits_of_files() -> None:
     says(PAGE, "(the sensitivity times {}, or times", RELATIVE_CHANGE)
     says(PAGE, "at about {} points and up to {} times, starting", surface_grid.POINTS, deflection._FRAMES)
     says(PAGE, "if it has at most {} samples; longer ones", MOST_CSV_SAMPLES)
-    says(PAGE, "with up to {} of these times (fewer if they would take more than {} MB)", paraview._FRAMES, paraview._MOST_BYTES / 1e6)
+    says(PAGE, "with up to {} of these times (fewer if they would take more than {} MB;", paraview._FRAMES, paraview._MOST_BYTES / 1e6)
+    says(PAGE, "with up to {} additional points per body after each of the first", fine_history._MOST)
     says(PAGE, "the value of largest magnitude within {} ms", 1e3 * WINDOW)
     says(PAGE, "A run in which it exceeds {} is an error", CLOSURE_LIMIT)
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from stated import says
-from vibroimpact.signals import baseline
+from vibroimpact.signals import baseline, registry
+from vibroimpact.signals.bounces import touches
+from vibroimpact.signals.reading import coded_sound, equal_steps
 
 PAGE = "docs/signals.md"
 
@@ -12,5 +14,17 @@ def test_numbers_of_the_baseline() -> None:
     says(PAGE, "divided into up to {} blocks", baseline._BLOCKS)
     says(PAGE, "only if quiet blocks span {} % of the record", 100.0 * baseline._WIDE)
     says(PAGE, "removed only if it exceeds {} of its standard deviations", baseline._SURE)
-    says(PAGE, "neither does one of fewer than {} samples", baseline._LEAST)
+    says(PAGE, "A record of fewer than {} samples has no baseline", baseline._LEAST)
+    says(PAGE, "of {} samples or more, that are not equally spaced", equal_steps._FEWEST)
+    assert equal_steps._LONGEST_STEP == 3.0
+    assert equal_steps._LARGEST_JITTER == 0.5
     assert baseline._LARGE == 0.1  # "of more than a tenth of the largest magnitude"
+
+
+def test_numbers_of_coded_sound() -> None:
+    assert touches._FLOOR_OF_CODED == 1e-3  # "down to a thousandth of the largest power"
+    says(PAGE, "their times are refined within {} ms", 1e3 * coded_sound._BLUR)
+
+
+def test_number_of_features() -> None:
+    says(PAGE, "`vibroimpact features` computes {} of them", len(registry.features()))

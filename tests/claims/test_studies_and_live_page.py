@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
-from stated import page_text, says
+import re
+from pathlib import Path
+
+import vibroimpact as vi
+from stated import ROOT, page_text, says
 from vibroimpact.app.draft import _POINTS, _TOLERANCE
 from vibroimpact.app.limits import (
     LONGEST_RUN,
@@ -19,8 +23,9 @@ from vibroimpact.app.server import MOST_WINDOWS
 from vibroimpact.app.session import _SHORT
 from vibroimpact.cli.studies import MOST_BYTES_UNCONFIRMED, MOST_DROPS_UNCONFIRMED
 from vibroimpact.studies.compute_points import _TOGETHER
-from vibroimpact.studies.compute_study import _ELASTIC_CHUNK
+from vibroimpact.studies.report.tables import doubt_sentences
 from vibroimpact.studies.section import MOST_DROPS
+from vibroimpact.studies.sensitivity import MOST_LEFT_OUT
 
 STUDIES = "docs/studies.md"
 LIVE = "docs/live-page.md"
@@ -30,8 +35,14 @@ def test_sizes_of_studies() -> None:
     says(STUDIES, "More than {} drops, or {} GB of results, are computed only with", MOST_DROPS_UNCONFIRMED, 1e-9 * MOST_BYTES_UNCONFIRMED)
     assert "the maximum is ten million" in page_text(STUDIES)
     assert MOST_DROPS == 10_000_000
-    says(STUDIES, "static problems of {} contact points at a time", _TOGETHER)
-    says(STUDIES, "and drops of elastic bodies, are computed in batches of {}", _ELASTIC_CHUNK)
+    says(STUDIES, "and drops of elastic bodies, are computed in batches of {}", _TOGETHER)
+    says(STUDIES, "not if more than {} % of the points have no value", 100.0 * MOST_LEFT_OUT)
+
+
+def test_doubts_of_a_study(tmp_path: Path) -> None:
+    study = vi.read_study(vi.run_sweep(vi.load_sweep("paper:sweep"), tmp_path / "sizes"))
+    (shown,) = re.findall(r"^Doubt: (.+)\.$", (ROOT / STUDIES).read_text(encoding="utf-8"), re.M)
+    assert shown in [doubt.replace("\N{NO-BREAK SPACE}", " ") for doubt in doubt_sentences(study)]
 
 
 def test_drafts() -> None:

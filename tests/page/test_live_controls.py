@@ -87,6 +87,8 @@ def test_every_field_takes_all_digits(case: str, page: Page, server: Server) -> 
     open_live(page, server, CASES[case])
     for key in keys(page, "input[type=number]"):
         field = row(page, key).locator("input[type=number]")
+        if not field.input_value():  # a parameter that is not given, such as a dissipation beside a restitution
+            continue
         whole = key.split(".")[-1] in ("modes", "impacts")
         value = float(field.input_value()) or 1.0
         wanted = value + 1 if whole else float(f"{value * 1.01:.4g}") + 1.2345e-9 * abs(value)

@@ -30,8 +30,7 @@ INFERRED = Against(
     "the paper, the rebound height from which the penetration depth is inferred",
     "fitted to published numbers",
     "calibration, identification and studies",
-    "Study on the Vibroimpact Response of the Particle Elastic Impact on the Metal Plate, Shock and Vibration, section 3.2; "
-    "0.1 mm is the default of Adams",
+    "Study on the Vibroimpact Response of the Particle Elastic Impact on the Metal Plate, Shock and Vibration, section 3.2",
 )
 
 

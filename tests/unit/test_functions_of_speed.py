@@ -164,9 +164,9 @@ def test_what_is_refused(function: dict[str, Any], words: str) -> None:
     assert words in str(refused.value)
 
 
-@pytest.mark.parametrize("key", ["stiffness", "exponent"])
-def test_what_follows_from_the_bodies_is_no_function(key: str) -> None:
-    with pytest.raises(vi.InputError, match=f"contact.{key}: it follows from the bodies"):
+@pytest.mark.parametrize(("key", "why"), [("stiffness", "it follows from the bodies"), ("exponent", "it is an exponent")])
+def test_what_follows_from_the_bodies_is_no_function(key: str, why: str) -> None:
+    with pytest.raises(vi.InputError, match=f"contact.{key}: {why}"):
         case_of("rigid", {"law": "flores", "restitution": 0.7, key: {"speed": [1, 2], "value": [1.5, 1.5]}})
 
 

@@ -82,6 +82,14 @@ def given_up_to(speed: float) -> dict[str, Any]:
     return {"contact": {"law": "tsuji", "restitution": restitution}, "drop": {"height": 0.025 + 1.0 / 19.6133}}
 
 
+def in_air(speed: float, **changes: Any) -> dict[str, Any]:
+    return {"drop": {"speed": speed, "air": True}, **changes}
+
+
+def in_water(speed: float) -> dict[str, Any]:
+    return {"drop": {"speed": speed}, "contact": {"law": "tsuji", "restitution": 0.6, "liquid": True}}
+
+
 @pytest.mark.parametrize(
     ("name", "threshold", "below", "beyond", "words"),
     [
@@ -91,6 +99,10 @@ def given_up_to(speed: float) -> dict[str, Any]:
         ("adhesion", 0.01, small(2e-5), small(1e-5), ["J/m^2", "stick below", '"jkr"']),
         ("plate_edge", 1.0, near_edge(0.045), near_edge(0.0453), ["half space is too stiff", "move drop.position"]),
         ("full_damping", 1.0, fading("9 um"), fading("10 um"), ["never acts in full", "calibrate"]),
+        # Reynolds number 1.2 v 2 R / 1.81e-5 in air, 998 v 2 R / 1e-3 in water, of a radius of 25 mm
+        ("drag_coefficient", 1.0, in_air(90.0), in_air(91.0), ["Reynolds number", "drop.air.drag_coefficient"]),
+        ("drag_coefficient", 1.0, in_water(5.9), in_water(6.1), ["Reynolds number", "uncertain"]),
+        ("mach", 0.3, in_air(102.0), in_air(104.0), ["speed of sound", "drop.speed"]),
         ("speeds_given", 1.05, given_up_to(0.96), given_up_to(0.95), ["is given for approach speeds", "the nearest one holds"]),
     ],
 )
@@ -110,6 +122,13 @@ def test_a_deep_contact_is_doubted_with_its_strain() -> None:
     assert not any("strains" in doubt for doubt in told(case, depth=0.29**2 * 0.025))
     (doubt,) = (doubt for doubt in told(case, depth=0.31**2 * 0.025) if "strains" in doubt)
     assert "0.31 of the sphere's" in doubt
+
+
+def test_what_a_thin_plate_gives_way_is_no_contact_radius() -> None:
+    """Hertz's contact radius at 0.3 N is 0.0007 of the radius; the indentation of a foil would stand for 0.4 of it."""
+    case = quiet(plate=ELASTIC)
+    assert not any("strains" in doubt for doubt in told(case, depth=0.4**2 * 0.025, force=0.3))
+    assert any("strains" in doubt for doubt in told(case, depth=0.4**2 * 0.025, force=3e8))
 
 
 def test_a_plate_that_stretches_is_doubted_with_how_much_stiffer_it_is() -> None:

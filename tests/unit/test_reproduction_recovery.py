@@ -107,7 +107,7 @@ def test_the_section_says_that_the_printed_penetration_is_not_it(runs: Runs) -> 
     assert not section.rows, "section 3.1 has the row"
     assert "no second solution" in section.conclusion[0]
     assert "0.00001 m, is met by none of the 2" in section.conclusion[1]
-    assert "misprint: the paper's own numbers are those of 0.1000 mm" in section.conclusion[1]
+    assert "The paper's other numbers are those of 0.1000 mm" in section.conclusion[1]
     evidence, parabolas = section.tables
     assert len(evidence.cells) == 11
     assert all(len(row) == len(evidence.headers) for row in evidence.cells)

@@ -154,7 +154,11 @@ def test_few_speeds_are_said_and_one_row_is_read(tmp_path: Path) -> None:
     path.write_text("speed [m/s],e\n1,0.8\n", encoding="utf-8")
     found = vi.read_restitutions(path)
     assert [law.name for law in found.laws] == ["constant"]
-    assert "fewer than three speeds" in found.doubts[0]
+    assert "only a constant is fitted" in found.doubts[0]
+    path.write_text("speed [m/s],e\n1,0.8\n2,0.7\n2,0.71\n", encoding="utf-8")
+    found = vi.read_restitutions(path)
+    assert [law.name for law in found.laws] == ["constant", "linear", "power"]
+    assert not found.doubts
 
 
 def test_counts_weight_the_target_of_a_case(tmp_path: Path) -> None:

@@ -248,3 +248,11 @@ def test_a_value_for_each_impact() -> None:
     twice = [HertzEstimate(result.case).stiffness] * 2
     derived = HertzEstimate({**result.case, "contact": {"law": "hertz", "stiffness": twice}}).derived_parameters
     assert derived == {"stiffness"}
+
+
+@pytest.mark.parametrize("size", [[0.1, 0.1, 0.045], [0.05, 0.2, 0.1], [2.0, 1.0, 0.001], [0.01, 0.01, 0.009]])
+@pytest.mark.parametrize("element", ["plate", "solid"])
+def test_what_is_chosen_by_default_is_never_doubted(size: list[float], element: str) -> None:
+    mesh = {"element": element} if element == "solid" else {}
+    found = slips(resolved_case(vi.read_case(plain_case(plate={**ELASTIC, "size": size, **mesh}))))
+    assert not [doubt for doubt in found if not doubt.startswith("plate.size")]

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
-from support import one_in
+from support import one_in, plain_case
 from vibrating import STIFFNESS, drop_on, modes_of, random_modes
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.laws.adams_impact import AdamsImpact
@@ -192,3 +192,14 @@ def test_surfaces_do_not_pass_through_each_other(seed: int) -> None:
     apart = (found["force_N"] == 0.0) & (found["indentation_m"] == 0.0)
     assert apart.mean() > 0.5
     assert (found["position_m"] - 0.025 - found["plate_deflection_m"])[apart].min() > -1e-12
+
+
+def test_a_foil_that_cannot_be_integrated_names_a_tolerance_that_works() -> None:
+    """A ball on a foil of 20 um sinks by thousands of thicknesses."""
+    foil = {"size": [0.1, 0.1, 20e-6], "material": "steel", "model": "elastic", "modes": 20, "supports": "simply-supported"}
+    case = plain_case(sphere={"radius": 0.01, "material": "steel"}, plate=foil, drop={"height": 0.3}, run={"impacts": 2})
+    with pytest.raises(vi.ComputationError, match=r"try a larger tolerance \(run\.tolerance, up to 1e-6\)"):
+        vi.simulate(vi.read_case(case))
+    case["run"]["tolerance"] = 1e-7
+    response = vi.simulate(vi.read_case(case))
+    assert len(response.impacts["time_s"]) == 2

@@ -117,6 +117,7 @@ def bound_of(
         errors[one.name] = _error(falls, heard, one, _TESTED, seed)
         remaining[one.name] = _remaining(falls, heard, one)
         tell(number + 1)
+    errors = _bounded_by_less(errors)
     few, found = _some(falls, _FALLS_OF_MAP), np.empty((BANDWIDTHS.size, SIGNAL_TO_NOISE.size))
     for place, (bandwidth, ratio) in enumerate((one, other) for one in BANDWIDTHS for other in SIGNAL_TO_NOISE):
         there = replace(heard, bandwidth=float(bandwidth), signal_to_noise=float(ratio))
@@ -182,7 +183,29 @@ def _without_scatter(falls: Falls, channel: Channel, errors: dict[str, BayesErro
             error = _error(falls, exact, one, _TESTED, seed)
             upper = min(error.upper, *(errors[other.name].upper for other in alike))
             found[one.name] = error._replace(lower=min(error.lower, upper), upper=upper)
+    return _bounded_by_less(found)
+
+
+def _bounded_by_less(errors: dict[str, BayesError]) -> dict[str, BayesError]:
+    """Return Bayes errors whose upper bounds are not above those of observations that contain less.
+
+    A further quantity can be disregarded. The estimate does not do so: the more is measured, the fewer falls are as likely as the one
+    tested.
+    """
+    found = {}
+    for one in OBSERVATIONS:
+        least = min((errors[other.name] for other in OBSERVATIONS if _contains(one, other)), key=lambda error: error.upper)
+        own = errors[one.name]
+        if least.upper < own.upper:
+            own = own._replace(lower=min(own.lower, least.upper), upper=least.upper, standard_error=least.standard_error)
+        found[one.name] = own
     return found
+
+
+def _contains(one: Observation, other: Observation) -> bool:
+    """Return whether one observation contains what another does; an impulse at a known position contains that at an unknown one."""
+    seen = {*one.quantities, "far impulse"} if "impulse" in one.quantities else {*one.quantities}
+    return seen >= {*other.quantities}
 
 
 def _exact_quantities(one: Observation) -> tuple[str, ...]:

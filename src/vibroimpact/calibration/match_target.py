@@ -74,7 +74,7 @@ def match_drop(
         tell(0.3)
         if set(weights) != {"separation_speed"}:
             break  # the rebound is not matched exactly: the approach speeds remain those of the target
-        # a law that releases before the overlap has vanished returns slightly faster than it separated
+        # under a law that releases before the overlap has vanished the sphere comes back slightly slower than it separated
         after = return_speeds(problem, tuned.respond(at, values, np.arange(len(at)))["next_speed"][:-1])
         if np.allclose(after, at[1:], rtol=1e-10, atol=0.0):
             break

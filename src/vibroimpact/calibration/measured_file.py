@@ -30,6 +30,7 @@ from vibroimpact.measurements.record_file import SPHERE_ACCELERATION, is_univers
 from vibroimpact.measurements.table_file import TableFile, strictly_increasing
 from vibroimpact.signals.bounces.find import find_bounces
 from vibroimpact.signals.one_record import one_record
+from vibroimpact.signals.reading.coded_sound import FORMATS as CODED_SOUND
 
 _MATCHABLE = {name: quantity.unit for name, quantity in MATCHABLE.items()}
 _COLUMNS = {
@@ -46,7 +47,7 @@ _COLUMNS = {
     **_MATCHABLE,
     **{f"{name}{DEVIATION}": unit for name, unit in {"restitution": "", "rebound_height": "m", **_MATCHABLE}.items()},
 }
-_HEARD = (".wav", ".nc", ".nc4", ".h5")
+_HEARD = (".wav", *CODED_SOUND, ".nc", ".nc4", ".h5")
 """Endings of files that are records of sound or vibration, in which bounces are heard."""
 
 _RECORDED = ("position", "force", "sphere_acceleration")

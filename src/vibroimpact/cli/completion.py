@@ -17,7 +17,7 @@ PROGRAM, VARIABLE = "vibroimpact", "_VIBROIMPACT_COMPLETE"
 WORDS = Path(__file__).with_name("completion.json")
 """The names and keys, which `completion_words` collects."""
 
-RECORDS = (".wav", ".csv", ".txt", ".uff", ".unv", ".nc", ".nc4", ".h5")
+RECORDS = (".wav", ".m4a", ".mp3", ".ogg", ".opus", ".flac", ".csv", ".txt", ".uff", ".unv", ".nc", ".nc4", ".h5")
 """Endings of the files of records."""
 
 _LIBRARY = Path(__file__).parents[1] / "cases" / "library"

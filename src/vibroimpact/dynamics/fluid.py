@@ -11,6 +11,9 @@ import numpy as np
 from vibroimpact.arrays import Array, Bools, Drops
 from vibroimpact.errors import InputError
 
+HIGHEST_REYNOLDS = 3e5
+"""Reynolds number up to which `drag_coefficient` holds; the boundary layer of a smooth sphere becomes turbulent above it."""
+
 _STILL = 1e-30  # m/s, for a speed of zero, at which Stokes' drag is none
 
 

@@ -49,7 +49,7 @@ def section_5_1(runs: Runs) -> ReportSection:
         "Section 5.1: force, acceleration and rebound in Types 1, 2 and 3",
         (
             "Types 2 and 3 are computed in three ways. Consistent: the contact law contains the quasi-static and the modes the dynamic "
-            "deformation, so that no compliance is counted twice; this is the motion of elastic bodies with this contact law. The sphere's "
+            "deformation, so that no compliance is counted twice. The sphere's "
             f"modes have a damping ratio of {ratio:g} there, which is assumed, and the plate's the default of Adams. Superposed: law "
             "and modes in series, as in a multibody program with flexible bodies. Identified: a spring and a dashpot in series with "
             "the law represent the sphere, fitted to the force and the rebound that are printed for Type 2, and tested on Type 3.",
@@ -150,8 +150,7 @@ def section_5_2(runs: Runs) -> ReportSection:
             "The printed values are compared with the other printed numbers, which indicates how they were obtained, and with the three "
             "treatments. The strain energy is that of the modes, as a multibody program reports it; in the consistent treatment the "
             "contact law contains most of the sphere's strain energy, and in the identified one the spring that represents the sphere. "
-            "A sphere that strikes the centre of a plate along the normal does not rotate: the printed rotation is rounding error, as is "
-            "the computed one.",
+            "Without friction a sphere that strikes the centre of a plate along the normal does not rotate.",
         ),
         tuple(rows),
         conclusion=(_force_and_fall(runs),),

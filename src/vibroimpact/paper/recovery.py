@@ -233,7 +233,7 @@ def recovery_section(runs: Runs) -> ReportSection:
             _printed_words(found),
             _round_value_words(found, runs),
             "Established: with Lankarani and Nikravesh's law as the theory, and with the printed dampings in IMPACT clipped at zero, the "
-            "printed numbers are those of these two values. A hypothesis: that the authors used the round ones.",
+            "printed numbers used here agree with these two values. A hypothesis: that the authors used the round ones.",
         ),
     )
 
@@ -293,7 +293,7 @@ def _printed_words(found: RecoveredParameters) -> str:
     if any(met):
         return words
     own = fixed(1e3 * found.penetration.value, 4)
-    return f"{words} It is a misprint: the paper's own numbers are those of {own} mm, and 0.1 mm is the default of Adams."
+    return f"{words} The paper's other numbers are those of {own} mm, so that it seems to be a misprint."
 
 
 def _round_value_words(found: RecoveredParameters, runs: Runs) -> str:

@@ -39,7 +39,7 @@ class Verdict(Enum):
 
 @dataclass(frozen=True)
 class Explanation:
-    """A falsifiable explanation of a difference: the range in which the printed value must lie.
+    """An explanation of a difference: the range in which the printed value must lie.
 
     Parameters
     ----------

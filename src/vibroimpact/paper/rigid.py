@@ -81,7 +81,7 @@ def damping_section(runs: Runs) -> ReportSection:
     """Return the section on the calibrated dampings and their function of the approach speed."""
     found = runs.calibration
     within = dampings_within(runs, _SEEN)
-    reason = f"chosen by hand: any from {{:.2f}} to {{:.2f}} N s/m gives the theory's rebound height to {100.0 * _SEEN:g} %"
+    reason = f"a hypothesis, chosen by hand: any from {{:.2f}} to {{:.2f}} N s/m gives the theory's rebound height to {100.0 * _SEEN:g} %"
     rows = [
         ComparedValue(
             printed(f"damping.{impact}"),

@@ -216,10 +216,10 @@ def _introduction(runs: Runs) -> tuple[str, ...]:
     durations = runs.response("type1-theory").impacts["duration_s"]
     chance = float(gaps.max() / step) ** len(gaps)
     return (
-        f"The simulation had one output every {1e3 * step:.2f} ms, and a contact lasts {1e3 * durations.min():.2f} to "
-        f"{1e3 * durations.max():.2f} ms. A peak read from samples is too low, as the samples miss the exact one. The first table "
-        "compares the errors of exact peaks with those that can be read from samples of the theory and of the simulation, and with those "
-        "printed [%].",
+        f"By the printed numbers the simulation had one output every {1e3 * step:.2f} ms, and a contact lasts "
+        f"{1e3 * durations.min():.2f} to {1e3 * durations.max():.2f} ms. A peak read from samples is too low, as the samples miss the "
+        "exact one. The first table compares the errors of exact peaks with those that can be read from samples of the theory and of the "
+        "simulation, and with those printed [%].",
         f"Outputs every {1e3 * step:.2f} ms do not give the printed errors. If they were read off samples, these left no more "
         f"than {1e6 * gaps.max():.0f} µs free round the deepest point, in {len(gaps)} contacts; at a random phase the chance of "
         f"that is {digits(chance, 1)}. With equal steps at a random phase the likeliest step in contact is {1e6 * gaps.max():.0f} µs, and "
@@ -262,14 +262,15 @@ def _conclusion(runs: Runs, instants: tuple[ImpliedInstants, ...]) -> tuple[str,
         f"{inside} of {len(_ERRORS)} printed errors lie within the range of samples {1e6 * spacing:.0f} µs apart, which was found from the "
         "compressions; in the verdicts of Table 2 each compression is compared with the spacing implied by the other contacts. The "
         "ranges are wide: they show that sampling can be the cause, not that it is the only one.",
-        f"If so, the theory was sampled too, but more finely: the largest force printed, {printed('type1.max_force').text} N, and its "
-        f"printed error imply a peak of {implied:.3f} N, {100.0 * (1.0 - implied / theory.value):.3f} % below the exact "
-        f"{theory.value:.3f} N. Where a printed force error is less than the exact one, it is the peak of the theory that was missed.",
+        f"If so, the theory would have been sampled too, but more finely: the largest force printed, {printed('type1.max_force').text} N, "
+        f"and its printed error imply a peak of {implied:.3f} N, {100.0 * (1.0 - implied / theory.value):.3f} % below the exact "
+        f"{theory.value:.3f} N. Where a printed force error is less than the exact one, the peak of the theory would have been "
+        "missed.",
         f"Compression and force are largest at different times. In {len(distances)} of {len(instants)} contacts both printed errors are "
         f"those of an instant, and the two lie {1e6 * min(distances):.1f} to {1e6 * max(distances):.1f} µs apart; with so few contacts, "
         "and two instants to choose from for each error, that is no evidence that both were read at one time.",
         "Established: the printed errors of Table 2 are not those of exact peaks, as the errors in the text are; most are too large, "
-        f"as missed peaks make them; and a plain output every {1e3 * step:.2f} ms would scatter them far more. A hypothesis: that the "
+        f"as missed peaks make them; and an output every {1e3 * step:.2f} ms alone would scatter them far more. A hypothesis: that the "
         "solver's own steps, or further outputs at the contact, were plotted, so that there was a sample near each peak.",
     )
 

@@ -116,7 +116,8 @@ def _resolved_words(runs: Runs) -> str:
         f"mesh, since at a node the compliance of these modes is {compliance[0]:.3g} and {compliance[1]:.3g} nm/N, and that of a solid "
         f"under a point load is infinite. The paper prints {_compared_text(paper_impact(runs, 2))}, the speed from the height of the "
         f"rebound. According to the program's own check the coarse mesh is too coarse: {superposed(runs, 2, 'coarse').facts['doubts']}. "
-        f"The paper's own mesh has lost {_lost_mass(runs)} of its mass, so that it is another one."
+        f"The printed forces and accelerations imply that the paper's own mesh has lost {_lost_mass(runs)} of its mass, so that it "
+        "would be another one."
     )
 
 
@@ -135,8 +136,7 @@ def _method_words(runs: Runs) -> str:
         f"numerically. In steps of {_microseconds(step)} µs, {duration / step:.1f} to the resolved contact, the method dissipates "
         f"{lost['integrator_J']} of the {whole:.3f} J of Type 2, the damping of the contact {lost['contact_dissipated_J']} and that of "
         f"the modes {lost['modal_damping_J']}; the sphere keeps {lost['kinetic_J']}. These are means over {len(PHASES)} places of the "
-        "touch in a step, on the coarse mesh. The numerical dissipation decreases in proportion to the step, and the run converges to "
-        "the resolved one."
+        "touch in a step, on the coarse mesh."
     )
 
 
@@ -205,7 +205,7 @@ def _counter_evidence(runs: Runs) -> str:
         f"a touch at the end of a step, unless they were calculated by hand. With the touch there, Type 3 has {off[0]} force, {off[1]} "
         f"rebound height and {off[2]} strain energy "
         f"than printed. And the printed energies imply a fall of {deep[0]:.2f} and {deep[1]:.2f} mm beyond touch in Types 2 and 3, where "
-        f"unresolved runs give {ranges[0]} and {ranges[1]}, and every resolved run more."
+        f"unresolved runs give {ranges[0]} and {ranges[1]}, and the three treatments, which are resolved, more."
     )
 
 
@@ -223,7 +223,7 @@ def _outcome(runs: Runs, rows: tuple[ComparedValue, ...]) -> str:
         for name in ("max_force", "rebound_height")
     ]
     return (
-        f"So the hypothesis explains {' and '.join(parts)} in Type 3, each by itself; at the best place of the touch the three of the "
+        f"So {' and '.join(parts)} in Type 3 agree with the hypothesis, each by itself; at the best place of the touch the three of the "
         f"sphere are jointly off by {_percent_text(float(together.min()))} (root mean square). The test is not sharp: the identified "
         f"treatment, fitted to force and rebound of Type 2, comes near those of Type 3 as well (force {beside[0]}, rebound height "
         f"{beside[1]}). This shows that an unresolved run of a model whose resolved rebound is {faster:.1f} times as fast can agree "

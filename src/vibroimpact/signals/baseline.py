@@ -150,9 +150,12 @@ def is_large(baseline: Floats | float, peak: Floats | float) -> Any:
 
 def removed_of(baseline: Floats) -> Removed:
     """Return what a baseline removes: its mean and its span."""
-    if not baseline.any():
+    scale = float(np.abs(baseline).max(initial=0.0))
+    if scale == 0.0:
         return Removed(0.0, 0.0)
-    return Removed(float(baseline.mean()), float(np.ptp(baseline)))
+    # the sum of samples near the largest number is infinite
+    shares = baseline / scale
+    return Removed(scale * float(shares.mean()), scale * float(np.ptp(shares)))
 
 
 def _levels(value: Floats) -> _Levels:

@@ -10,6 +10,8 @@ from pathlib import Path
 from vibroimpact.errors import InputError
 from vibroimpact.files.reading import with_path
 from vibroimpact.measurements.universal_file import is_universal
+from vibroimpact.signals.reading.coded_sound import FORMATS as CODED_SOUND
+from vibroimpact.signals.reading.coded_sound import coded_records
 from vibroimpact.signals.reading.netcdf import netcdf_records
 from vibroimpact.signals.reading.table import table_records
 from vibroimpact.signals.reading.universal import universal_records
@@ -25,6 +27,7 @@ _READERS = {
     ".nc": netcdf_records,
     ".nc4": netcdf_records,
     ".h5": netcdf_records,
+    **dict.fromkeys(CODED_SOUND, coded_records),
 }
 _WHOLE = ("result.nc", "dataset.nc", "study.nc")
 """Files that hold all signals of a folder of this program."""
@@ -33,9 +36,10 @@ _WHOLE = ("result.nc", "dataset.nc", "study.nc")
 def read_records(path: str | PathLike[str]) -> Iterator[Record]:
     """Yield the records of a file, or of a folder.
 
-    Read are CSV tables with a column `time [s]` and a column with its unit for each channel, WAV files (8 to 32 bits, floating point),
+    Read are CSV tables with a column `time [s]` and a column with its unit for each channel, WAV files (8 to 64 bits, floating point),
+    with the extra `audio` M4A, MP3, Ogg and FLAC files,
     functions of time in universal files (dataset 58) and NetCDF-4 files with a dimension of time; of a folder the signals of its
-    `result.nc`, `dataset.nc` or `study.nc`, else of all files of these formats in it. Values are in SI; those of WAV files are parts
+    `result.nc`, `dataset.nc` or `study.nc`, else of all files of these formats in it. Values are in SI; those of sound are parts
     of full scale, unless an export of this program says what full scale is.
 
     Parameters

@@ -44,6 +44,8 @@ class Record:
         The baseline that was removed from the samples; None if none was sought yet.
     recorded : array, shape (samples,), optional
         The samples as they were recorded, if a baseline was removed.
+    blur : float, default 0
+        Time over which a coder with losses may have spread what begins suddenly [s].
 
     Raises
     ------
@@ -65,6 +67,7 @@ class Record:
     doubts: tuple[str, ...] = ()
     removed: Removed | None = None
     recorded: Floats | None = None
+    blur: float = 0.0
 
     def __post_init__(self) -> None:
         value = real_numbers(self.value).astype(np.float64, copy=False)

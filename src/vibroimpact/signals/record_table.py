@@ -33,15 +33,13 @@ class RecordTable:
     Parameters
     ----------
     records : list of Record
-        The records, without their samples.
+        The records, without their samples; `removed` of each has the mean and the span of the baseline that was removed.
     names : tuple of str
         Names of the features.
     values : array, shape (records, features)
         The values, in the units `features()[name].unit_for(record.unit)`; NaN where there is none.
     reasons : array of int, shape (records, features)
         Why there is none, as members of `Reason`; 0 where there is one.
-
-    The mean and the span of the baseline that was removed from a record are in its `removed`.
 
     Examples
     --------

@@ -289,7 +289,9 @@ def _dimension_words(unit: pint.Unit) -> str:
 
 def _known_unit(text: str) -> pint.Unit:
     try:
-        return _parse_unit(text)
+        unit = _parse_unit(text)
+        _ = unit.dimensionality  # pint makes it at the first use, and has none for products of decibels
+        return unit
     except Exception as error:  # pint raises many kinds for a unit that it can't read
         raise InputError(f'{shown(text, 80)} is not a unit that is known; write it as "N/mm^1.5", "N s/m" or "kg/s"') from error
 

@@ -132,7 +132,7 @@ def read_restitutions(path: str | PathLike[str], *, confidence: float = 0.95) ->
     deviation = np.full(len(speed), np.nan) if known is None else scale * known / np.sqrt(count)
     variance = np.nan_to_num(deviation) ** 2 + (scale * rounding) ** 2 / 12.0
     laws = speed_laws(speed, restitution, np.diag(variance), count)
-    return Restitutions(str(path), speed, restitution, deviation, count, rounding, laws, confidence, _doubts(table, restitution, speed))
+    return Restitutions(str(path), speed, restitution, deviation, count, rounding, laws, confidence, _doubts(table, restitution, laws))
 
 
 def rounding_step(values: Floats) -> float:
@@ -160,13 +160,14 @@ def _check_height(table: TableFile, restitution: Floats) -> None:
         raise InputError(f"{table.path}, line {table.lines[wrong[0]]}: {words}; {hint}")
 
 
-def _doubts(table: TableFile, restitution: Floats, speed: Floats) -> tuple[str, ...]:
+def _doubts(table: TableFile, restitution: Floats, laws: list[SpeedLaw]) -> tuple[str, ...]:
     found = []
     above = np.flatnonzero(restitution > 1.0)
     if above.size:
         worst = int(np.argmax(restitution))
         words = f"the restitution in line {table.lines[worst]} is {restitution[worst]:.4g}: more than 1 gains energy"
         found.append(f"{words}; a case takes 1 at most")
-    if len(np.unique(speed)) < 3:
-        found.append("at fewer than three speeds nothing tells a dependence on the speed from scatter: only a constant is fitted")
+    if len(laws) == 1:
+        words = "of fewer than three restitutions, or at one speed, nothing tells a dependence on the speed from scatter"
+        found.append(f"{words}: only a constant is fitted")
     return tuple(found)

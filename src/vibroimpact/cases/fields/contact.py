@@ -65,8 +65,9 @@ def read_contact(value: Any) -> ContactSection:
                 parameters[key] = tuple(read_quantity(item, unit, allowed) for item in given)
             elif isinstance(given, dict):
                 if not varies_with_speed(known[key]):
-                    words = "it follows from the bodies, and can't be a function of the approach speed"
-                    raise InputError(f"{words}; give a number, or a list with one value per impact")
+                    why = "it is an exponent" if key == "exponent" else "it follows from the bodies"
+                    words = "and can't be a function of the approach speed; give a number, or a list with one value per impact"
+                    raise InputError(f"{why}, {words}")
                 parameters[key] = read_by_speed(given, unit, allowed)
             else:
                 parameters[key] = read_quantity(given, unit, allowed)

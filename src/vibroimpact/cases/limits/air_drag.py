@@ -52,7 +52,7 @@ def _sentence(drop: Conditions, lost: float) -> str:
     speed = math.sqrt(2.0 * drop.case["drop"]["gravity"] * fall)
     return (
         f"in air the first touch would be {percent_less(lost).removeprefix('-')} slower than in the vacuum that this drop falls through, "
-        f"and each rebound loses speed again; give drop.air = true, where bodies are rigid, or drop.speed = {speed * (1.0 - lost):.4g} in "
+        f"and each rebound loses speed again; give drop.air = true, or drop.speed = {speed * (1.0 - lost):.4g} in "
         "place of the height to begin with that speed"
     )
 

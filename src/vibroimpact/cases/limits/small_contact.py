@@ -10,7 +10,11 @@ from vibroimpact.cases.limit import Limit
 
 
 def _number(drops: Conditions) -> Array:
-    return np.sqrt(drops.summary.depth / drops.effective_radius)
+    by_depth = np.sqrt(drops.summary.depth / drops.effective_radius)
+    if "elastic" not in (drops.model("sphere"), drops.model("plate")):
+        return by_depth
+    # the indentation includes the deflection of elastic bodies near the contact, which takes no contact radius
+    return np.fmin(by_depth, drops.contact_radius / drops.effective_radius)
 
 
 def _sentence(drop: Conditions, part: float) -> str:

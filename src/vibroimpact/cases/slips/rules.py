@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.cases.slips.hertz_estimate import HertzEstimate
-from vibroimpact.cases.slips.plausible import PlausibleRange, Rule, count_text, number_text, ratio_text
+from vibroimpact.cases.slips.plausible import PlausibleRange, count_text, number_text, ratio_text
 
 _GRAVITY = 9.8  # m/s^2, for the weight on springs, independent of drop.gravity
 
@@ -73,9 +73,15 @@ def sphere_radius(estimate: HertzEstimate, table: Mapping[str, Any]) -> Plausibl
     )
 
 
-def part_of_plate(part: float, words: str) -> Rule:
-    """Return the rule of a length that is at most a fraction `part` of the longer side of the plate."""
-    return lambda estimate, table: PlausibleRange(high=part * estimate.across, above=words)
+def element_size(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
+    """Return the range of the size of the elements of a plate."""
+    return PlausibleRange(high=estimate.across, above="is more than the plate is long")
+
+
+def margin(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
+    """Return the range of the width of the elements along edges; by default it follows the thickness, also of a block."""
+    high = max(0.5 * estimate.across, 2.0 * estimate.size[2])
+    return PlausibleRange(high=high, above="is more than half the plate and twice its thickness")
 
 
 def support_stiffness(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:

@@ -50,19 +50,18 @@ def _anchor(heading: str) -> str:
 
 
 _OPENING = (
-    f"Each number of {PAPER}, compared with the computed one, and each of its figures that shows a result, drawn from the computation "
-    "(figures 1 and 2 are sketches of its notation). A rock sphere falls from 4 m onto a steel plate and bounces: both rigid (Type 1), "
-    "the sphere elastic (Type 2), both elastic (Type 3).",
+    f"The numbers that {PAPER} prints, compared with computed ones, and its figures 3 to 23, drawn from the computation. A rock sphere "
+    "falls from 4 m onto a steel plate and bounces: both rigid (Type 1), the sphere elastic (Type 2), both elastic (Type 3).",
     "A value counts as reproduced if it agrees within half a unit of the last digit printed, or keeps a printed bound. It counts as "
-    "explained if a falsifiable hypothesis gives a range that contains the printed value; as fitted if the model was fitted to it, so that "
-    "the agreement is no evidence; otherwise as not reproduced. The drop height and the full-damping penetration, printed with one digit, "
-    "are taken as exact. The verdicts are computed. Rows are counted: a value that is computed in three ways has three rows.",
+    "explained if a hypothesis gives a value or a range with which it agrees within its digits; as fitted if the model was fitted to it, "
+    "so that the agreement is no evidence; otherwise as not reproduced. The drop height and the full-damping penetration, printed with "
+    "one digit, are taken as exact. The verdicts are computed. Rows are counted: a value that is computed in three ways has three rows.",
     "What a verdict shows depends on the kind of the comparison, which is counted apart:",
     "- result: computed from the inputs of the paper, and from what was assumed or inferred from other printed numbers; the printed value "
     "itself was not used.\n"
-    "- inferred: the restitution of the theory is not printed, and the full-damping penetration is misprinted. Both were inferred from the "
-    "printed numbers of this kind and then rounded. That these agree shows that two values are compatible with all of them; none of "
-    "them by itself is evidence.\n"
+    "- inferred: the restitution of the theory is not printed, and the full-damping penetration is taken for a misprint. Both were "
+    "inferred from printed numbers of this kind and then rounded. That these agree shows that two values are compatible with all of them; "
+    "none of them by itself is evidence.\n"
     "- fitted model: computed by a model with parameters that were fitted to printed results of Type 2, the fitted ones and the others.\n"
     "- arithmetic: calculated from other printed results; it compares the paper with itself, and no simulation is involved.\n"
     "- input: what the paper assumes, compared with the shipped case.",
@@ -74,9 +73,9 @@ _IN_SHORT = (
     "with one restitution and one full-damping penetration, which were inferred from them. Force and acceleration are not met: the "
     "computed ones are 1.3 % larger. Table 2 is not met either; it is compatible with peaks read from samples, by ranges 3.9 to 12.4 "
     "percentage points wide. The results printed for elastic bodies (Types 2 and 3) are not reproduced by any setting that was tried, "
-    "neither with a consistent model nor with the superposed one of multibody programs; the results that agree are bounds, or printed "
-    "with one digit. An unresolved run is a hypothesis: it approximates force, rebound and strain energy of the sphere, but not its fall "
-    "beyond touch, the order of the forces, or the energies of the plate.",
+    "neither with a consistent model nor with the superposed one of multibody programs; the results that are reproduced are bounds, or "
+    "printed with one digit. An unresolved run is a hypothesis: it approximates force, rebound and strain energy of the sphere, but not "
+    "its fall beyond touch, the order of the forces, or the energies of the plate.",
 )
 
 

@@ -8,7 +8,7 @@ from scipy import fft
 from vibroimpact.arrays import Floats, Indices
 
 _BEFORE, _AFTER, _ASIDE = 0.5e-3, 3e-3, 1e-3
-"""What of a touch is compared, before and after it, and how far its time may move [s]."""
+"""What of a touch is compared, before and after it, and how far its time may move at least [s]."""
 
 _FINE = 400e3
 """Rate at which correlations are computed [Hz]; between its samples they are parabolas."""
@@ -21,7 +21,7 @@ _RESOLVED = 0.003
 _TINY = 1e-300
 
 
-def aligned(value: Floats, rate: float, sample: Indices) -> tuple[Floats, Floats]:
+def aligned(value: Floats, rate: float, sample: Indices, blur: float = 0.0) -> tuple[Floats, Floats]:
     r"""Return the times of touches, and their standard deviations.
 
     The sounds of bounces are alike: each is shifted to where it correlates best with the mean of the others, s (Woody 1967, Med. Biol. Eng.
@@ -36,7 +36,9 @@ def aligned(value: Floats, rate: float, sample: Indices) -> tuple[Floats, Floats
     rate : float
         Their rate [Hz].
     sample : array of int, shape (n,)
-        Where each touch begins, within 1 ms; three of them at least.
+        Where each touch begins, within 1 ms or `blur`; three of them at least.
+    blur : float, default 0
+        Time over which a coder spread what begins suddenly [s].
 
     Returns
     -------
@@ -51,7 +53,7 @@ def aligned(value: Floats, rate: float, sample: Indices) -> tuple[Floats, Floats
     >>> np.diff(found).round(1).tolist()
     [1440.3, 1919.7]
     """
-    before, after, aside = (max(2, round(span * rate)) for span in (_BEFORE, _AFTER, _ASIDE))
+    before, after, aside = (max(2, round(span * rate)) for span in (_BEFORE, _AFTER, max(_ASIDE, blur)))
     length = before + after + 2 * aside
     padded = np.pad(value, length)
     parts = np.stack([padded[at + length - before - aside : at + 2 * length - before - aside] for at in sample])

@@ -143,7 +143,7 @@ def find_bounces(record: Record, contact: float = 0.0) -> Bounces:
     record = without_baseline(record)
     doubts = _checked(record)
     value = without_hum(replace(record, value=record.value / np.abs(record.value).max()))
-    found = find_touches(value, record.rate)
+    found = find_touches(value, record.rate, record.blur)
     heard = np.flatnonzero(~found.click)
     if len(heard) < 3:
         said = ("no touch is", "one touch is", "two touches are")[len(heard)]
@@ -157,7 +157,7 @@ def find_bounces(record: Record, contact: float = 0.0) -> Bounces:
     reasons = _reasons(found, time, chain, others)
     strange = time[others[[reason == _ELSE for reason in reasons]]]
     doubts += _chance_doubts(time[chain], strange, record.duration)
-    at, deviation = aligned(value, record.rate, found.sample[chain])
+    at, deviation = aligned(value, record.rate, found.sample[chain], record.blur)
     if not np.all(np.diff(at) > max(contact * record.rate, 0.0)):
         raise InputError(f"the last bounces follow each other within {'the contact' if contact else 'their sounds'}; end the record sooner")
     window = max(FEWEST, round(WINDOW * record.rate))

@@ -25,6 +25,9 @@ _ABOVE, _LEAST = 5.5, 1.0
 _FLOOR = 1e-8
 """Power below which nothing is heard, as part of the largest."""
 
+_FLOOR_OF_CODED = 1e-3
+"""The same of sound that is coded with losses, where what is quieter is left out or added."""
+
 _QUIET = 1e-4
 """Part of the mean power around a touch below which a change of the power is none: filters of recorders sound before a touch."""
 
@@ -73,7 +76,7 @@ def without_hum(record: Record) -> Floats:
     return np.asarray(sosfilt(sections, record.value, zi=sosfilt_zi(sections) * record.value[0])[0])
 
 
-def find_touches(value: Floats, rate: float) -> Touches:
+def find_touches(value: Floats, rate: float, blur: float = 0.0) -> Touches:
     """Return the touches in samples from which hum is taken away.
 
     The logarithm of the power over 2 ms after each sample is compared with that over 2 ms before. Its fluctuation, by which the threshold
@@ -85,6 +88,8 @@ def find_touches(value: Floats, rate: float) -> Touches:
         The samples.
     rate : float
         Their rate [Hz].
+    blur : float, default 0
+        Time over which a coder spread what begins suddenly [s].
 
     Examples
     --------
@@ -101,7 +106,7 @@ def find_touches(value: Floats, rate: float) -> Touches:
         return none
     summed = np.concatenate([[0.0], np.cumsum(value**2)])
     power = summed[window:] - summed[:-window]  # over the window that begins at each sample
-    floor = _FLOOR * float(power.max())
+    floor = (_FLOOR_OF_CODED if blur else _FLOOR) * float(power.max())
     if not floor > 0.0:
         return none
     level = np.log(np.maximum(power, floor))

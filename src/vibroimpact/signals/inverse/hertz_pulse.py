@@ -59,7 +59,7 @@ def hertz_rise(part: Floats) -> tuple[Floats, Floats]:
     >>> time, _ = hertz_rise(np.array([0.5]))
     >>> top = hertz_pulse(np.array([0.5]))
     >>> round(float(time[0]), 4), round(float((hertz_pulse(time) / top)[0]), 6)
-    (0.2061, 0.5)
+    (0.2253, 0.5)
     """
     from scipy.special import beta, betainc
 

@@ -1,0 +1,74 @@
+"""Flights through air and liquids that are too fast for the drag coefficient that is taken."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+from vibroimpact.arrays import Array
+from vibroimpact.cases.conditions import Conditions
+from vibroimpact.cases.limit import Limit
+from vibroimpact.dynamics.fluid import HIGHEST_REYNOLDS
+
+_SPEED_OF_SOUND = 343.0
+"""Speed of sound in air at 20 C [m/s]."""
+
+
+def _reynolds(drops: Conditions) -> Array:
+    medium = _medium(drops)
+    if medium is None or "viscosity" not in medium:
+        return math.nan
+    return medium["density"] * drops.summary.speed * 2.0 * drops.radius / medium["viscosity"]
+
+
+def _medium(drops: Conditions) -> Mapping[str, Array] | None:
+    """Return the table of the air or the liquid in which the sphere falls, None in a vacuum."""
+    found: Mapping[str, Array] | None = drops.case["drop"].get("air") or drops.case["contact"].get("liquid")
+    return found
+
+
+def _drag_sentence(drop: Conditions, number: float) -> str:
+    remedy = (
+        "give the one that was measured as drop.air.drag_coefficient"
+        if drop.case["drop"].get("air") is not None
+        else "take the speeds after flights for uncertain"
+    )
+    return (
+        f"the Reynolds number of the flight reaches {HIGHEST_REYNOLDS * number:.2g}: from about {HIGHEST_REYNOLDS:g} on the drag "
+        f"coefficient of a smooth sphere falls to a fraction of the 0.5 that is taken, of a rough one earlier; {remedy}"
+    )
+
+
+def _mach(drops: Conditions) -> Array:
+    if drops.case["drop"].get("air") is None:
+        return math.nan
+    return drops.summary.speed / _SPEED_OF_SOUND
+
+
+def _sound_sentence(drop: Conditions, number: float) -> str:
+    return (
+        f"the sphere flies at {number:.2g} of the speed of sound in air at 20 C, and its compression increases the drag, which is that of "
+        "slow flight here; begin with the speed at first touch, drop.speed, and take the rebounds for uncertain"
+    )
+
+
+LIMITS = (
+    Limit(
+        name="drag_coefficient",
+        title="drag at high speed",
+        meaning=f"Reynolds number at first touch over {HIGHEST_REYNOLDS:g}, up to which the drag coefficient holds",
+        threshold=1.0,
+        number=lambda drops: _reynolds(drops) / HIGHEST_REYNOLDS,
+        sentence=_drag_sentence,
+        shown=lambda number: f"Re {HIGHEST_REYNOLDS * number:.2g}",
+    ),
+    Limit(
+        name="mach",
+        title="compression of air",
+        meaning="speed at first touch over the speed of sound in air at 20 C",
+        threshold=0.3,
+        number=_mach,
+        sentence=_sound_sentence,
+        shown=lambda number: f"Mach {number:.2g}",
+    ),
+)

@@ -1,0 +1,127 @@
+"""Records from the sound files of phones, by PyAV (FFmpeg): M4A, MP3, Ogg and FLAC.
+
+The format is that of the name, and the file is handed over opened: nothing that a file refers to is opened besides it.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from io import SEEK_CUR, SEEK_END, SEEK_SET, FileIO
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.errors import InputError
+from vibroimpact.files.reading import FileKind, opened, with_path
+from vibroimpact.signals.record import Record, checked_rate
+from vibroimpact.structures.free_memory import check_memory
+
+if TYPE_CHECKING:
+    from av import AudioStream
+    from av.container import InputContainer
+
+FORMATS = {".m4a": "mp4", ".mp3": "mp3", ".ogg": "ogg", ".opus": "ogg", ".flac": "flac"}
+"""Endings of files with coded sound, and FFmpeg's names of their formats."""
+
+SOUND = FileKind("a sound file is M4A, MP3, Ogg or FLAC", 1_000_000_000, "keep the part with the impacts")
+"""Requirements on a file with coded sound."""
+
+_BLUR = 4e-3
+"""Time over which coders with losses spread what begins suddenly [s]: of a beat, up to 4 ms were measured (`test_coded_sound.py`)."""
+
+_LONGEST = 6 * 3600.0
+"""Longest sound [s]: a block of silence takes a few bytes, so that the size of a file does not bound it."""
+
+
+def coded_records(path: Path) -> Iterator[Record]:
+    """Yield the channels of a file with coded sound, with full scale as 1; a coding with losses is a doubt.
+
+    Raises
+    ------
+    InputError
+        If the file can't be read or has no sound, or PyAV is not installed.
+    """
+    try:
+        with opened(path, SOUND) as file:
+            yield from _records(file, path)
+    except InputError as error:
+        raise with_path(path, error) from None
+
+
+def _records(file: FileIO, path: Path) -> Iterator[Record]:
+    try:
+        import av
+        from av import logging
+    except ImportError:
+        raise InputError(f'sound in {path.suffix} needs PyAV, which is not installed: pip install "vibroimpact[audio]"') from None
+    logging.set_level(None)  # what FFmpeg has to say is an error here, or of no account
+    try:
+        with av.open(_Opened(file), "r", format=FORMATS[path.suffix.lower()]) as container:
+            if not container.streams.audio:
+                raise InputError(f"there is no sound in it; {SOUND.what}")
+            stream = container.streams.audio[0]
+            rate = checked_rate(float(stream.codec_context.sample_rate or 0.0))
+            value, faults = _samples(container, stream, rate)
+    except (av.FFmpegError, ValueError) as error:
+        raise InputError(f"it can't be read as its name says ({error}); {SOUND.what}") from None
+    except UnicodeDecodeError:
+        raise InputError(f"its labels are damaged; {SOUND.what}") from None
+    if not value.shape[1]:
+        raise InputError("there are no samples in it")
+    coded = (_loss_doubt(stream),) if stream.codec_context.codec.lossy and not stream.codec_context.codec.lossless else ()
+    blur = _BLUR if coded else 0.0
+    for number, channel in enumerate(value):
+        name = path.stem if len(value) == 1 else f"{path.stem} {number + 1}"
+        yield Record(name, channel, rate, "1", doubts=(*faults, *coded), blur=blur)
+
+
+class _Opened:
+    """An opened file for FFmpeg, which seeks before the begin of files that are too short: there this stays at it."""
+
+    def __init__(self, file: FileIO) -> None:
+        self.read, self.tell, self._file = file.read, file.tell, file
+
+    def seek(self, offset: int, whence: int = SEEK_SET) -> int:
+        """Move to an offset [byte] from the begin, from here or from the end, and return where that is."""
+        origin = {SEEK_SET: 0, SEEK_CUR: self._file.tell(), SEEK_END: os.fstat(self._file.fileno()).st_size}[whence]
+        return self._file.seek(max(origin + offset, 0))
+
+
+def _samples(container: InputContainer, stream: AudioStream, rate: float) -> tuple[Floats, tuple[str, ...]]:
+    """Return the samples, (channels, samples), with full scale as 1, and a doubt where the file ends in a fault."""
+    import av
+
+    plain = av.AudioResampler(format="dblp")
+    channels = stream.codec_context.channels
+    blocks: list[Floats] = [np.empty((channels, 0))]
+    samples = 0
+    faults: tuple[str, ...] = ()
+    try:
+        for frame in container.decode(stream):
+            for block in plain.resample(frame):
+                samples += block.samples
+                if samples > _LONGEST * rate:
+                    raise InputError(f"it lasts longer than {_LONGEST / 3600.0:g} hours; {SOUND.smaller}")
+                if block.layout.nb_channels != channels or block.sample_rate != rate:
+                    raise InputError("its rate or its number of channels changes on the way; keep one part")
+                check_memory(16.0 * channels * samples, "its samples need", SOUND.smaller)
+                blocks.append(block.to_ndarray().astype(np.float64, copy=False))
+    except av.FFmpegError as error:
+        if not samples:
+            raise
+        faults = (f"it is damaged, or cut off, {samples / rate:.4g} s after its begin ({error}); what comes after is left out",)
+    blocks += [block.to_ndarray().astype(np.float64, copy=False) for block in plain.resample(None)]
+    return np.concatenate(blocks, axis=1), faults
+
+
+def _loss_doubt(stream: AudioStream) -> str:
+    bit_rate = stream.codec_context.bit_rate or stream.bit_rate
+    size = f" at {bit_rate / 1000.0:.0f} kbit/s" if bit_rate else ""
+    return (
+        f"its sound is coded with losses ({stream.codec_context.codec.canonical_name}{size}): what begins suddenly is spread over up to "
+        f"{1e3 * _BLUR:g} ms, and what is not heard is left out; intervals of times of touches include this, amplitudes, spectra and other "
+        "features do not: record in WAV or FLAC where these count"
+    )
