@@ -25,7 +25,7 @@ def save_figures(
     output: str | PathLike[str] | None = None,
     progress: Callable[[float], None] = lambda done: None,
 ) -> Path:
-    """Write the charts of a result folder or of a study as files of print quality: all of them or none.
+    """Write the charts of a result folder or of a study as files: all of them or none.
 
     Of a run also `plate.gif` is written, its plate in motion, if the plate deforms.
 

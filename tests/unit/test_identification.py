@@ -223,7 +223,7 @@ def test_too_few_modes_are_told() -> None:
 def test_places_that_sensors_do_not_tell_apart_are_named() -> None:
     case = small(sensors=[{"name": "a", "position": [0.1, 0.0], "rate": 20e3}, {"name": "b", "position": [-0.06, 0.0], "rate": 20e3}])
     found = vi.identify(case, its_records(case))
-    (doubt,) = (one for one in found.doubts if "explains the records as well" in one)
+    (doubt,) = (one for one in found.doubts if "explains the records about as well" in one)
     x, y = map(float, re.findall(r"-?\d+\.\d", doubt))
     assert (x, abs(y)) == pytest.approx((20.0, 10.0), abs=1.0)  # of a pulse, before the contact is fitted
     assert y * found.estimates["place_y_m"].value < 0.0

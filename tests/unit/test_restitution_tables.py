@@ -121,7 +121,7 @@ def test_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: py
         (
             "speed [m/s],restitution\n1,82\n2,80\n",
             (),
-            "line 2: the restitution is 82, and noise lifts none above 1.1; if it is in per",
+            "line 2: the restitution is 82, more than 1.1, which is not taken for noise; if it is in per",
         ),
         ("speed [m/s],restitution\n1,0.8\n2,-0.1\n", (), "line 3: restitution is -0.1; it must be greater than 0"),
         ("speed [m/s],restitution\n0,0.8\n2,0.7\n", (), "line 2: approach_speed is 0; it must be greater than 0"),

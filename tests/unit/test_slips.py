@@ -189,7 +189,7 @@ def test_swept_values_are_said_once_with_how_many(tmp_path: Path) -> None:
     table = study_table({"over": {"sphere.radius": [0.005, 10.0, 25.0]}}, drop={"speed": 3.0}, contact__stiffness=16176)
     study = read_sweep(table)
     (said,) = axis_slips(study)
-    assert said == 'sphere.radius: 2 of 3 values, such as 10 m, which is larger than a boulder; was 10 mm meant? Write "10 mm"'
+    assert said == 'sphere.radius: 2 of 3 values, such as 10 m, which is very large for a sphere; was 10 mm meant? Write "10 mm"'
     found = doubt_sentences(read_study(compute_study(study, tmp_path / "out")))
     assert [one.partition(":")[0] for one in found[:2]] == ["contact.stiffness", "sphere.radius"]
 

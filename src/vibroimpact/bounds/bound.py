@@ -135,8 +135,8 @@ SEEN_AT_BEST = "impulse, contact time and the time to the next impact"
 def least_error(falls: Falls, seed: int = 0) -> float:
     """Return the lower bound on the error of a classifier that sees `SEEN_AT_BEST` of single falls.
 
-    Impulse and contact time are heard far better than by real sensors: up to 50 kHz, 80 dB above the noise, with a sensitivity known to
-    0.1 %. A classifier that sees more, as the shape of the pulse, the position of the impact or further impacts, can have a lower error.
+    Impulse and contact time are measured up to 50 kHz, 80 dB above the noise, with a sensitivity known to 0.1 %. A classifier that sees
+    more, as the shape of the pulse, the position of the impact or further impacts, can have a lower error.
 
     Parameters
     ----------

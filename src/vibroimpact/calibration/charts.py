@@ -80,7 +80,7 @@ def _parameter_chart(found: Calibration) -> Chart:
     if found.as_given and not np.allclose(found.given, found.values, rtol=1e-3):
         marks.append(Points(speeds, found.given, "as the case gives it", "muted", found.observations.labels))
     panel = Panel(Axis("Approach speed", "m/s"), Axis(_begun(words), found.unit), tuple(marks))
-    caption = f"In a case it is {found.parameter}. Each impact by itself, and the polynomial through them."
+    caption = f"In a case it is {found.parameter}. Each impact by itself, and the polynomial fitted to them."
     if found.intervals is not None:
         caption += f" Bars: the interval of each impact at {100.0 * found.confidence:g} %."
     return Chart("parameter", f"{_begun(words)} over the approach speed", ((panel,),), caption, height=3.4)

@@ -54,7 +54,7 @@ def sensor_doubts(case: ResolvedCase, signals: Mapping[str, Signal], highest: fl
         if apart < _NEAR:
             part = _finite_or_zero(signal.uncertainty) + _thickness_error(case, signal, duration)
             cause = f"{apart:.2g} thicknesses from the contact, the motion through the thickness and the modes left out"
-            remedy = _remedy(signal, highest) if signal.uncertainty > _PROMISED else f"beyond {_NEAR:g} thicknesses plate theory holds"
+            remedy = _remedy(signal, highest) if signal.uncertainty > _PROMISED else f"place it {_NEAR:g} thicknesses or more away"
             alike.setdefault((cause, remedy), {})[name] = part
         elif signal.uncertainty > _PROMISED:
             cause = f"the modes of the plate left out (above {text(highest, 'Hz')}, at {signal.sensor.rate:g} samples per second)"

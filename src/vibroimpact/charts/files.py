@@ -1,4 +1,4 @@
-"""Charts written as files: PNG, SVG and PDF, of print quality."""
+"""Charts written as files: PNG, SVG and PDF."""
 
 from __future__ import annotations
 

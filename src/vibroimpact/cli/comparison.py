@@ -40,7 +40,9 @@ def compare(
     ] = None,
     achieving: Annotated[
         float | None,
-        typer.Option("--achieving", metavar="E", help="Tune each law so that the first impact achieves this restitution."),
+        typer.Option(
+            "--achieving", metavar="E", help="Tune each law to this restitution at the speed of the first impact, without gravity."
+        ),
     ] = None,
     output: Annotated[
         Path | None, typer.Option("-o", "--output", metavar="DIR", help="The folder to make; by default CASE-compared.")

@@ -43,11 +43,18 @@ def correlate(
     ] = None,
     window: Annotated[
         str | None,
-        typer.Option("--window", metavar="TIME", help="Compared time after first touch; by default until the next impact."),
+        typer.Option("--window", metavar="TIME", help="Compared time after first touch; by default to the next impact or the end."),
     ] = None,
     band: Annotated[
         str | None,
-        typer.Option("--band", metavar="FROM,TO", help='Band of frequencies, such as "100 Hz, 5 kHz"; by default that of the modes.'),
+        typer.Option(
+            "--band",
+            metavar="FROM,TO",
+            help=(
+                'Band of frequencies, such as "100 Hz, 5 kHz"; by default from half the lowest mode to the highest, or to what the sensors '
+                "pass."
+            ),
+        ),
     ] = None,
     changes: Changes = None,
     figures: Figures = False,

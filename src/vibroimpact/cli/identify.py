@@ -38,7 +38,7 @@ def identify(
         typer.Option("--place", metavar="X,Y", help='Position of the impact, such as "60 mm, 40 mm"; by default it is estimated.'),
     ] = None,
     window: Annotated[
-        str, typer.Option("--window", metavar="TIME", help="Time from first touch on that is used; it ends before the next impact.")
+        str, typer.Option("--window", metavar="TIME", help="Time from first touch on that is used; it must end before the next impact.")
     ] = "5 ms",
     frequency_error: Annotated[
         float,

@@ -62,7 +62,7 @@ def units(
 ) -> None:
     """Convert a contact parameter to another unit.
 
-    A stiffness in N/m^n is 1000^n times one in N/mm^n, not 1000 times.
+    The number of a stiffness in N/m^n is 1000^n times that in N/mm^n.
     """
     from vibroimpact.cli.unit_table import converted, unit_document, unit_table
     from vibroimpact.units.reading import parse_quantity

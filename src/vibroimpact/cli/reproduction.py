@@ -27,7 +27,7 @@ def reproduce(
     """Reproduce the numbers and figures of the paper. Each printed value is compared with the computed one.
 
     The report states for each value whether it is reproduced, explained, or not reproduced, and why, and whether it is a result or an input
-    or was inferred or fitted. It takes about a minute. An interrupted run is continued with the same command.
+    or was inferred or fitted. An interrupted run is continued with the same command.
 
     The parts: table1, section3.1, fig3, section3.2, fig4 to fig8, damping, table2, section4, fig9, section5.1, fig10 to fig13,
     section5.2, fig14 to fig17, section5.3, fig18 to fig23, conclusions, recovery, sampling, unresolved, corrections.

@@ -77,7 +77,7 @@ def dataset(
     memory: Memory = "500 MB",
     as_json: Json = False,
 ) -> None:
-    """Compute a data set of labelled signals. It has falls of rocks of several classes on several plates.
+    """Compute a data set of labelled signals. It has falls of rocks of several classes.
 
     Completed falls are kept if it is interrupted; --resume continues it. "vibroimpact recognise" trains classifiers on it.
     """

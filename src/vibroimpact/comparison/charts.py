@@ -99,7 +99,7 @@ def _loops_chart(results: Mapping[str, Result], roles: Mapping[str, str]) -> Cha
     parts = {name: contact_history(one, contacts_with_duration(one)[0]) for name, one in results.items()}
     marks = tuple(Line(part["indentation_m"], part["force_N"], name, roles[name]) for name, part in parts.items())
     panel = Panel(Axis("Indentation", "m"), Axis("Contact force", "N"), marks)
-    caption = "The area that a loop encloses is the energy lost." + _WITHOUT
+    caption = "Between rigid bodies the area that a loop encloses is the energy lost." + _WITHOUT
     return Chart("force_indentation", "Contact force over indentation, first impact", ((panel,),), caption, _HEIGHT)
 
 
@@ -118,7 +118,7 @@ def _restitution_chart(comparison: Comparison, roles: Mapping[str, str]) -> Char
     panel = Panel(speed, Axis("Separation speed over approach speed", range=(0.0, _TOP)), tuple(marks))
     caption = (
         "Lines: each law with the parameters of its first impact, on undeformed surfaces and without gravity. Symbols: the impacts of the "
-        "run; with a law that leaves a permanent dent, those after the first lie above its line. Dotted: the restitution asked of a law."
+        "run; with a law that leaves a dent, those after the first may lie above its line. Dotted: the restitution asked of a law."
     )
     return Chart("restitution", "Restitution achieved", ((panel,),), caption, _HEIGHT)
 

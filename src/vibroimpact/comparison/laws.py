@@ -35,7 +35,8 @@ def cases_under(case: Case, laws: Iterable[str], given: Mapping[str, Any] | None
     given : mapping of str, optional
         Parameters, as a case file would hold them: "KEY" for every law that has it, "LAW.KEY" for one.
     achieving : float, optional
-        Give each law the value of its free parameter with which the first impact achieves this restitution [-].
+        Give each law the value of its free parameter with which it achieves this restitution [-] at the speed of the first impact, without
+        gravity.
 
     Returns
     -------
@@ -116,7 +117,7 @@ def _can_be_left_out(case: Case, law: type[ContactLaw], contact: Mapping[str, An
 
 
 def _tuned(case: Case, table: Mapping[str, Any], parameter: str, achieving: float) -> Case:
-    """Return a case with the free parameter of its law tuned so that the first impact achieves a restitution."""
+    """Return a case with the free parameter of its law tuned to a restitution at the speed of the first impact."""
     law, speed = contact_laws_of(case)[0], touch_speed(case)
     tuned = law_achieving(law, achieving, contact_pair(case).effective_mass, speed)
     return read_case({**table, "contact": {**table["contact"], parameter: getattr(tuned, parameter)}})

@@ -72,7 +72,7 @@ class CompliantLaw(ContactLaw):
     contact_end: ClassVar[Literal["zero-indentation", "zero-force", "pull-off"]]
     """When the contact ends: at zero indentation, at zero force, or at the pull-off of an adhesive contact."""
     tension: ClassVar[Literal["none", "cut", "kept"]]
-    """Is the force of the formula tensile near the end of the contact? Never; yes, and clipped at zero; yes, and kept."""
+    """May the force of the formula be tensile in an impact on a rigid plate? No; yes, and clipped at zero; yes, and kept."""
 
     root: ClassVar[int] = 2
     """The force is smooth in this root of the indentation: 2 with powers such as 3/2, 4 with a power 1/4."""

@@ -51,7 +51,9 @@ class ViscoelasticLaw(CompliantLaw):
 class TwoPhaseLaw(CompliantLaw):
     """Mixin of the laws whose force differs in compression and restitution; the state tells the phase."""
 
-    turned: Array = memory("has the contact passed its deepest point? 1 if so", detail="1 once the contact has passed its deepest point.")
+    turned: Array = memory(
+        "has the indentation passed its first maximum? 1 if so", detail="1 once the indentation has passed its first maximum."
+    )
 
     def after_compression(self, deepest: Array) -> Self:
         """Return the law for the restitution phase, of the drops whose indentation has been positive."""

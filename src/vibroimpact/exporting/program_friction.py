@@ -94,7 +94,7 @@ def friction_notes(drop: Drop, program: str, written: FrictionLaw | None) -> lis
     if isinstance(written, CompliantFriction) and not hertz:
         notes.append(
             f"{program} takes the radius of the contact from the overlap; here it follows from the normal force with its damping. "
-            "Where the contact sticks, velocities differ by up to a sixth of the slip at a restitution of 0.7."
+            "Where the contact sticks, velocities along the plate differ."
         )
     if law.rolling_coefficient:
         given = f"contact.friction.rolling_coefficient, {law.rolling_coefficient:g},"

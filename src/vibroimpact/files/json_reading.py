@@ -10,7 +10,7 @@ from typing import Any
 from vibroimpact.errors import InputError
 from vibroimpact.files.reading import FileKind, read_bytes
 
-JSON_TABLE = FileKind("it is a table in JSON", 200_000_000, "no file of this program is so large")
+JSON_TABLE = FileKind("it is a table in JSON", 200_000_000, "larger files are not read")
 """Requirements on a JSON file of a result folder."""
 
 DEEPEST = 100

@@ -10,7 +10,7 @@ from vibroimpact.errors import InputError
 from vibroimpact.files.check_sums import DamageError
 from vibroimpact.files.reading import FileKind, read_text
 
-_OWN = FileKind("it is a case in TOML", 20_000_000, "no case is so large")
+_OWN = FileKind("it is a case in TOML", 20_000_000, "larger cases are not read")
 
 
 def parse_toml(text: str) -> dict[str, Any]:

@@ -39,7 +39,7 @@ def doubts_about(plate: Plate, measured: Measured, search: Search, sphere: Spher
         yield f"{words}; the intervals do not contain what the modes above lack; {more}"
     others = ", ".join(f"({1e3 * one.place[0]:.1f}, {1e3 * one.place[1]:.1f}) mm" for one in search.candidates[1:])
     if others:
-        yield f"a force at {others} explains the records as well; add a sensor off the axes of symmetry, or give the place"
+        yield f"a force at {others} explains the records about as well; add a sensor off the axes of symmetry, or give the place"
     at_edge = np.abs(sphere.parameters[:2]) >= 0.999 * np.array(plate.half)
     if sought and at_edge.any():
         yield "the place lies at the edge of the plate, where none is sought"
@@ -47,7 +47,7 @@ def doubts_about(plate: Plate, measured: Measured, search: Search, sphere: Spher
         yield "the fit of the sphere did not come to an end; its numbers are those of its last step"
     left = np.sqrt(np.mean(sphere.residual**2, axis=1))
     if measured.quiet and (ratio := float((left / measured.noise).max())) > _LEFT:
-        words = f"the fit leaves {ratio:.2g} times the noise before first touch: the model is not the plate"
+        words = f"the fit leaves {ratio:.2g} times the noise before first touch: the model differs from the plate"
         yield f"{words}; the intervals are wider by what it leaves, but do not contain a bias; state --frequency-error"
     if not measured.quiet:
         part = float((left / np.sqrt(np.mean(measured.value**2, axis=1))).max())

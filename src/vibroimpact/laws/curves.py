@@ -51,8 +51,8 @@ def law_chart(law: type[ContactLaw]) -> Chart:
     """Return the curves of a contact law with typical parameters, for a sphere on a plate without gravity.
 
     Left the force over the indentation at three approach speeds (not for an instantaneous law), right the restitution over the
-    approach speed. Elastic-plastic laws are shown with a steel sphere, from about the yield speed on; adhesive laws with a small
-    sphere, from about the sticking speed on; all others with the paper's rock sphere.
+    approach speed. Laws with a yield strength or yield pressure are shown with a steel sphere, adhesive laws with a small sphere, all
+    others with the paper's rock sphere.
 
     Parameters
     ----------

@@ -28,7 +28,7 @@ _ENDS = {
 }
 _TENSION = {
     "none": "The force is never tensile.",
-    "cut": "The formula would give a tensile force near the end; it is cut at zero.",
+    "cut": "Where the formula gives a tensile force, the force is zero.",
     "kept": "The force may be tensile before the end.",
 }
 

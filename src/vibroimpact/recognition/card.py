@@ -13,7 +13,7 @@ from vibroimpact.recognition.labelled_signals import GROUPS
 from vibroimpact.shown import shown
 
 FORMAT = "vibroimpact model 1"
-CARD_FILE = FileKind("a card is a table in JSON of some kilobytes", 20_000_000, "no card is so large")
+CARD_FILE = FileKind("a card is a table in JSON of some kilobytes", 20_000_000, "larger cards are not read")
 """Requirements on a card."""
 
 MOST_CLASSES, MOST_FEATURES = 100, 20_000

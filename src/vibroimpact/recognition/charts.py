@@ -64,7 +64,7 @@ def _scores_chart(found: Recognition) -> Chart:
     bound = ""
     if found.bayes_error is not None:
         counted = f"for {found.bayes_error_sees} alone" if found.bayes_error_sees else "that the data set states"
-        bound = f" Line: the Bayes error {counted}; a lower error means that a classifier has used more, or a leak."
+        bound = f" Line: the Bayes error {counted}; a lower error means that a classifier has used more, a leak, or chance."
     caption = (
         f"Error on test signals: with all signals of a {found.group} in either the training or the test data, and with signals split at "
         f"random. The difference is the optimistic bias of the random split. Thin lines: 95 % intervals, by bootstrap over {found.group}s."

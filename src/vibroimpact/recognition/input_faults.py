@@ -44,7 +44,8 @@ def check_signals(signals: LabelledSignals, group: str, folds: int) -> list[str]
         doubts.append(f"each signal has a {group} of its own, so the grouped split is a random split")
     if signals.total is not None and signals.total > len(signals):
         doubts.append(
-            f"of {signals.total:,} signals {len(signals):,} are used, those of whole groups drawn at random; failed drops are left out"
+            f"of {signals.total:,} signals {len(signals):,} are used: failed drops are left out, and of too many signals whole groups are "
+            "drawn at random"
         )
     return doubts
 

@@ -28,7 +28,7 @@ from vibroimpact.recognition.signal_features import by_name, features_of
 from vibroimpact.shown import shortened, shown, visible
 
 FOLDER, CARD, GRAPH = "model", "card.json", "model.onnx"
-_GRAPH_FILE = FileKind("a graph is a file in ONNX", 100_000_000, "no graph is so large; train on fewer signals")
+_GRAPH_FILE = FileKind("a graph is a file in ONNX", 100_000_000, "larger graphs are not read; train on fewer signals")
 _DIFFERENT = 0.005
 """Largest part of the training signals that the saved graph may take for another class, by rounding to single precision at a threshold."""
 _TOLERANCE = 1e-3
@@ -192,7 +192,7 @@ def save_recogniser(recogniser: Recogniser, folder: Path) -> None:
 
 
 def load_recogniser(directory: str | PathLike[str]) -> Recogniser:
-    """Return a saved classifier; nothing in its files can run code.
+    """Return a saved classifier, which is an ONNX graph and a card in JSON.
 
     Parameters
     ----------

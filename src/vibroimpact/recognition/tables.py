@@ -211,9 +211,9 @@ def sentences(found: Recognition) -> Iterator[str]:
         bound = (
             f"The lower bound on the error that the data set states is {least}."
             if found.bayes_error_sees is None
-            else f"The lower bound on the error of a classifier that sees only {found.bayes_error_sees}, each known better than by real "
-            f"sensors, is {least}. A classifier that sees more can be better. For a band, a noise and a scatter of a sensor vibroimpact "
-            "bound computes such bounds."
+            else f"The lower bound on the error of a classifier that sees only {found.bayes_error_sees}, measured up to 50 kHz and 80 dB "
+            f"above the noise, is {least}. A classifier that sees more can be better. For a band, a noise and a scatter of a sensor "
+            "vibroimpact bound computes such bounds."
         )
         yield f"{bound} The error of the best classifier is {_percent(best.error.value)} % ({_percents(best.error)} %)."
     hardest = [one for one in found.streams if one.impacts == max(row.impacts for row in found.streams)]

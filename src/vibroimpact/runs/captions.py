@@ -64,12 +64,12 @@ def _force(result: Result) -> str:
 def _velocity(result: Result) -> str:
     impacts = result.impacts
     if not len(impacts["time_s"]):
-        return "The sphere falls freely through the whole run."
+        return "The sphere does not touch the plate in this run."
     approach, separation = float(impacts["approach_speed_m_s"][0]), float(impacts["separation_speed_m_s"][0])
     return (
         f"In impact 1 the sphere arrives at {text(approach, 'm/s')} and leaves at {text(separation, 'm/s')}"
         f"{', relative to the plate' if 'plate_velocity_m_s' in impacts else ''}: "
-        f"a restitution of {fixed(separation / approach, 4)}. Between impacts the slope is the acceleration of gravity."
+        f"a restitution of {fixed(separation / approach, 4)}."
     )
 
 
@@ -141,7 +141,7 @@ def sphere_energy_caption(result: Result) -> str:
         f"{_part(left, put_in)}."
     )
     turning = float(history["sphere_rotational_J"].max())
-    return f"{words} The energy of its rotation stays below {digits(max(turning, 1e-15 * put_in), 1)}\u00a0J."
+    return f"{words} The energy of its rotation is at most {text(max(turning, 1e-15 * put_in), 'J', 2)}."
 
 
 def plate_motion_caption(result: Result) -> str:
@@ -152,9 +152,8 @@ def plate_motion_caption(result: Result) -> str:
     there = text(float(np.abs(result.history["plate_deflection_m"]).max()), "m")
     words = f"The centre of mass moves by up to {most[0]}, at up to {most[1]} and {most[2]}; the contact point by up to {there}."
     lowest = result.frequencies("plate")[0]
-    if lowest * float(result.impacts["duration_s"][0]) > 0.25:
-        return words
-    return f"{words} The lowest mode, of {digits(lowest)}\u00a0Hz, is slow: the sphere separates before the plate moves back."
+    periods = lowest * float(result.impacts["duration_s"][0])
+    return f"{words} The first contact lasts {digits(periods, 2)} periods of the lowest mode, of {digits(lowest)}\u00a0Hz."
 
 
 def plate_energy_caption(result: Result) -> str:

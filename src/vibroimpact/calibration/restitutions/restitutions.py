@@ -155,7 +155,7 @@ def _check_height(table: TableFile, restitution: Floats) -> None:
     wrong = np.flatnonzero(restitution > _MOST)
     if wrong.size:
         value = restitution[wrong[0]]
-        words = f"the restitution is {value:.4g}, and noise lifts none above {_MOST:g}"
+        words = f"the restitution is {value:.4g}, more than {_MOST:g}, which is not taken for noise"
         hint = "if it is in per cent, name its unit: restitution [%]" if value > 10.0 else "look at the speeds and their units"
         raise InputError(f"{table.path}, line {table.lines[wrong[0]]}: {words}; {hint}")
 

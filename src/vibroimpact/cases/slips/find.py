@@ -58,7 +58,7 @@ def slips(case: ResolvedCase, aside: Container[str] = ()) -> list[str]:
     ...     "drop": {"speed": 1.0}, "contact": {"law": "hertz"},
     ... })
     >>> slips(resolved_case(case))
-    ['sphere.radius: 25 m is larger than a boulder; was 25 mm meant? Write "25 mm"']
+    ['sphere.radius: 25 m is very large for a sphere; was 25 mm meant? Write "25 mm"']
     """
     found = []
     for checked, at, estimate in _checked_numbers(case):
@@ -85,7 +85,7 @@ def swept_slips(case: ResolvedCase, swept: Mapping[str, Any]) -> list[str]:
     >>> from vibroimpact.cases.build import resolved_case
     >>> case = resolved_case(vi.load_case("paper:type1-theory"))
     >>> swept_slips(case, {"sphere.radius": np.array([0.005, 10.0, 25.0])})
-    ['sphere.radius: 2 of 3 values, such as 10 m, which is larger than a boulder; was 10 mm meant? Write "10 mm"']
+    ['sphere.radius: 2 of 3 values, such as 10 m, which is very large for a sphere; was 10 mm meant? Write "10 mm"']
     """
     found = []
     for checked, at, estimate in _checked_numbers(case, swept):

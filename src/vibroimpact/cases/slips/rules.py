@@ -32,7 +32,7 @@ def density(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange
     return PlausibleRange(
         low=float(np.fmax(_DENSITY[0], least)),
         high=_DENSITY[1],
-        below=lambda value: "is lighter than any foam" if value < _DENSITY[0] else "is too light for anything as stiff",
+        below=lambda value: "is lighter than most foams" if value < _DENSITY[0] else "is very light for a material as stiff",
         above="is heavier than any metal",
     )
 
@@ -43,8 +43,8 @@ def elastic_modulus(estimate: HertzEstimate, table: Mapping[str, Any]) -> Plausi
     return PlausibleRange(
         low=next((least for end, least in _SOFTEST if weight < end), _MODULUS[0]),
         high=float(np.fmin(_MODULUS[1], weight * _LIGHTEST)),
-        below=lambda value: "is softer than any gel" if value < _MODULUS[0] else "is too soft for anything as heavy",
-        above=lambda value: "is stiffer than diamond" if value > _MODULUS[1] else "is too stiff for anything as light",
+        below=lambda value: "is as soft as a gel" if value < _MODULUS[0] else "is very soft for a material as heavy",
+        above=lambda value: "is stiffer than diamond" if value > _MODULUS[1] else "is very stiff for a material as light",
     )
 
 
@@ -53,7 +53,7 @@ def strength(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRang
     stiff = _nan_outside(table.get("youngs_modulus", table.get("effective_modulus", math.nan)), _MODULUS)
     return PlausibleRange(
         low=float(np.fmax(1e3, 5e-6 * stiff)),
-        below="is too weak for anything as stiff",
+        below="is very weak for a material as stiff",
     )
 
 
@@ -61,7 +61,7 @@ def plate_thickness(estimate: HertzEstimate, table: Mapping[str, Any]) -> Plausi
     """Return the range of the thickness of a plate."""
     return PlausibleRange(
         high=float(np.fmin(5.0, 4.0 * estimate.across)),
-        above=lambda value: "is thicker than any plate" if value > 5.0 else f"is much more than the plate is long, {estimate.across:g} m",
+        above=lambda value: "is very thick for a plate" if value > 5.0 else f"is much more than the plate is long, {estimate.across:g} m",
     )
 
 
@@ -69,7 +69,7 @@ def sphere_radius(estimate: HertzEstimate, table: Mapping[str, Any]) -> Plausibl
     """Return the range of the radius of a sphere."""
     return PlausibleRange(
         high=float(np.fmin(3.0, 4.0 * estimate.across)),
-        above=lambda value: "is larger than a boulder" if value > 3.0 else f"is far more than the plate is long, {estimate.across:g} m",
+        above=lambda value: "is very large for a sphere" if value > 3.0 else f"is far more than the plate is long, {estimate.across:g} m",
     )
 
 
@@ -91,7 +91,7 @@ def support_stiffness(estimate: HertzEstimate, table: Mapping[str, Any]) -> Plau
         low=weight / (4.0 * estimate.across),
         high=1e13,
         below=lambda value: f"would let the plate, which weighs {number_text(weight, 3)} N, sag by {number_text(weight / value, 2)} m",
-        above="is stiffer than any support",
+        above="is very stiff for a support",
     )
 
 
@@ -209,7 +209,7 @@ def sampling_rate(estimate: HertzEstimate, table: Mapping[str, Any]) -> Plausibl
         low=float(np.fmin(1000.0, 0.1 / lasts)) if table["quantity"] == "acceleration" else 10.0,
         high=1e9,
         below=lambda value: f"takes a sample every {number_text(1.0 / value, 2)} s, and the contact lasts about {number_text(lasts, 2)} s",
-        above="is faster than any converter",
+        above="is very fast for a converter of such signals",
     )
 
 

@@ -17,9 +17,8 @@ class AdamsPoisson(TwoPhaseLaw):
 
     Notes
     -----
-    Adams' manual names the two parameters of its POISSON contact, and says that the penalty only keeps the penetration
-    small and that the restitution sets the loss. This law has the same parameters and the same outcome, exactly: both
-    the ratio of the impulses and that of the speeds are e. The force falls at the deepest point from :math:`p\delta` to
+    The parameters are those of the POISSON contact of Adams. Without gravity, between rigid bodies, both the
+    ratio of the impulses and that of the speeds are e. The force falls at the deepest point from :math:`p\delta` to
     :math:`e^2 p\delta`.
 
     References
@@ -35,10 +34,10 @@ class AdamsPoisson(TwoPhaseLaw):
 
     name = "adams-poisson"
     equation = "F = p delta on approach, e^2 p delta on the way out"
-    source = "MSC Adams/Solver guide, statement CONTACT (parameters and outcome)"
+    source = "MSC Adams/Solver guide, statement CONTACT (parameters)"
     departure = (
-        "The course of the force is this software's: Adams' manual gives the parameters and the outcome only. What happens within the "
-        "contact (force, penetration, duration) is that of a linear spring and is no prediction of Adams."
+        "The course of the force is this software's: what happens within the contact (force, penetration, duration) is that of a linear "
+        "spring and is no prediction of Adams."
     )
     contact_end = "zero-indentation"
     tension = "none"

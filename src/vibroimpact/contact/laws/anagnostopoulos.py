@@ -18,8 +18,8 @@ class Anagnostopoulos(RestitutionForMassLaw, KelvinVoigtLaw):
 
     Notes
     -----
-    The element acts while the gap is closed, so it pulls shortly before the end; without gravity the restitution
-    is then exactly the one asked for. The force jumps at first touch.
+    The element acts while the bodies overlap, so that with e < 1 it pulls shortly before the end. Without gravity the
+    restitution of an impact with this effective mass is the one asked for. With e < 1 the force jumps at first touch.
 
     References
     ----------

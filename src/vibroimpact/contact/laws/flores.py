@@ -19,8 +19,7 @@ class Flores(HystereticLaw):
 
     Notes
     -----
-    For all e above 0. The restitution achieved is somewhat smaller than the one asked for: 0.7 gives 0.683,
-    0.3 gives 0.256.
+    For e < 1 the restitution achieved is smaller than the one asked for: 0.7 gives 0.683, 0.3 gives 0.256.
 
     References
     ----------

@@ -1,4 +1,4 @@
-"""Herbert and McWhannell's law: hysteretic damping from the shape of the pulse."""
+"""Herbert and McWhannell's law: hysteretic damping."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ class HerbertMcWhannell(HystereticLaw):
 
     Notes
     -----
-    Derived for e near 1. The restitution achieved is larger than the one asked for below 0.9: 0.7 gives 0.723,
-    and no value gives less than 0.487.
+    For e < 1 the restitution achieved is larger than the one asked for: 0.9 gives 0.901, 0.7 gives 0.723, and no value
+    gives less than 0.487.
 
     References
     ----------

@@ -19,8 +19,8 @@ class Hertz(PowerLaw):
 
     Notes
     -----
-    Nothing is lost, so the restitution is 1. Valid while the contact radius is small beside the sphere's
-    and nothing yields.
+    The law loses nothing: its restitution is 1. It is valid while the contact radius is small beside the sphere's and
+    nothing yields.
 
     References
     ----------

@@ -19,8 +19,7 @@ class HuGuo(HystereticLaw):
 
     Notes
     -----
-    For all e above 0. The restitution achieved is within 0.01 of the one asked for above 0.55: 0.7 gives 0.697,
-    0.3 gives 0.271.
+    The restitution achieved is within 0.01 of the one asked for above 0.55: 0.7 gives 0.697, 0.3 gives 0.271.
 
     References
     ----------

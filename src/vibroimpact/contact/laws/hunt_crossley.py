@@ -1,4 +1,4 @@
-"""Hunt and Crossley's law: the first hysteretic damping."""
+"""Hunt and Crossley's law: hysteretic damping."""
 
 from __future__ import annotations
 
@@ -29,11 +29,10 @@ class HuntCrossley(HystereticLaw):
 
     Notes
     -----
-    The former was derived for e near 1, from an energy loss that is small. The restitution achieved is larger than the one
-    asked for: 0.7 gives 0.768, and no value gives less than 0.487. With a dissipation the restitution falls with the
-    approach speed v, as that of a damping factor :math:`D = d v`, and :math:`d = \tfrac32 \alpha` in a restitution
-    :math:`1 - \alpha v` at low speeds. In Hunt and Crossley's notation :math:`d = \lambda / k`; Drake's `hunt_crossley_dissipation`
-    is d, Simbody's `dissipation` two thirds of d.
+    The relation with e is for e near 1. For e < 1 the restitution achieved is larger than the one asked for: 0.7 gives
+    0.768, and no value gives less than 0.487. With a dissipation the restitution falls with the approach speed v, and tends
+    to :math:`1 - \alpha v` with :math:`\alpha = \tfrac23 d` at low speeds. In Hunt and Crossley's notation
+    :math:`d = \lambda / k`.
 
     References
     ----------

@@ -1,4 +1,4 @@
-"""Jackson, Green and Marghitu's restitution: fit to finite-element results of elastic-plastic spheres."""
+"""Jackson, Green and Marghitu's restitution of elastic-plastic spheres: a fitted formula."""
 
 from __future__ import annotations
 
@@ -28,8 +28,7 @@ class JacksonGreenMarghitu(ElasticPairLaw, InstantaneousLaw):
 
     Notes
     -----
-    An instantaneous law: it gives the restitution and no force. Meant to compare the elastic-plastic laws with. The fits
-    rest on finite-element results up to :math:`V^*` of about 1000. Every impact falls on fresh material.
+    The law gives the restitution and no force. It keeps no dent: every impact falls on fresh material.
 
     References
     ----------
@@ -48,7 +47,7 @@ class JacksonGreenMarghitu(ElasticPairLaw, InstantaneousLaw):
         "e = 1 - 0.1 ln(V) ((V - 1)/59)^0.156 for 1 < V <= 60, 1 - 0.1 ln(60) - 0.11 ln(V/60) (V - 60)^(2.36 Sy/E*) beyond, V = v/v_c"
     )
     source = "Jackson, Green & Marghitu 2010, Nonlinear Dynamics 60:217"
-    departure = "Far beyond the speeds that were fitted the formula would turn negative: it is held at zero."
+    departure = "Where the formula is negative, at high speeds, the restitution is zero."
     free_parameter = "yield_strength"
 
     yield_strength: Array = parameter(

@@ -22,8 +22,7 @@ class Jankowski(RestitutionForMassLaw, SphereLaw, TwoPhaseLaw):
 
     Notes
     -----
-    The damping ratio comes from an approximate energy loss: 0.5 gives 0.495, 0.3 gives 0.292. As nothing is lost on
-    the way out, it never pulls.
+    The damping ratio is approximate: 0.5 gives 0.495, 0.3 gives 0.292. On the way out nothing is lost.
 
     References
     ----------

@@ -19,11 +19,11 @@ class JKR(AdhesiveLaw):
 
     Notes
     -----
-    At first touch the bodies snap together (:math:`F = -\tfrac43 \pi w R`), and they part only when drawn out to
+    At first touch, at zero indentation, the force jumps to :math:`-\tfrac43 \pi w R`; the bodies part when drawn out to
     :math:`\delta = -\tfrac34 (\pi^2 w^2 R/E^{*2})^{1/3}`. The work from zero indentation to there,
-    :math:`7.09\, (w^5 R^4/E^{*2})^{1/3}`, is lost at each impact, and a sphere that has less sticks: the status says so.
-    What the snapping adds is taken as lost in the same impact (Thornton and Ning 1998). For soft, large, sticky
-    spheres; hard small ones follow Derjaguin, Muller and Toporov.
+    :math:`7.09\, (w^5 R^4/E^{*2})^{1/3}`, is lost (Thornton and Ning 1998). A sphere with less kinetic energy, on a plate
+    that does not vibrate, sticks. The law is for soft, large spheres of high surface energy; small hard ones follow Derjaguin,
+    Muller and Toporov.
 
     References
     ----------

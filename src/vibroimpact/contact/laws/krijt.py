@@ -20,7 +20,7 @@ class Krijt(ViscoelasticLaw, AdhesiveLaw):
 
     Notes
     -----
-    Without adhesion it is Kuwabara and Kono's law.
+    As the work of adhesion tends to zero, the force tends to that of Kuwabara and Kono's law without its cut at zero.
 
     References
     ----------

@@ -19,10 +19,9 @@ class KuwabaraKono(ViscoelasticLaw, SphereLaw):
 
     Notes
     -----
-    The viscous stress follows the elastic one, :math:`\delta + A \dot\delta` in place of :math:`\delta`, to first
-    order in A; valid while A is short beside the contact. The restitution falls with the speed, as
-    :math:`1 - c\, v^{1/5}`. A is best fitted to a measurement: its
-    published formula in terms of the two viscosities is disputed for nearly incompressible materials.
+    Hertz's force at :math:`\delta + A \dot\delta` in place of :math:`\delta`, to first order in A; valid while A is short
+    beside the contact. The restitution falls with the speed, to first order as :math:`1 - c\, v^{1/5}`. Fit A to a measured
+    restitution.
 
     References
     ----------
@@ -43,7 +42,7 @@ class KuwabaraKono(ViscoelasticLaw, SphereLaw):
     name = "kuwabara-kono"
     equation = "F = max(0, K [delta^1.5 + 3/2 A sqrt(delta) delta_dot])"
     source = "Kuwabara & Kono 1987, Jpn. J. Appl. Phys. 26:1230; Brilliantov et al. 1996, Phys. Rev. E 53:5382"
-    departure = "The contact ends when the force is zero; by the formula of the sources it would be tensile from there to zero indentation."
+    departure = "The contact ends when the force is zero; by the formula it would be tensile from there to zero indentation."
     contact_end = "zero-force"
     tension = "cut"
 

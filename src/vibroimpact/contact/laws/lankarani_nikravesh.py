@@ -18,8 +18,8 @@ class LankaraniNikravesh(HystereticLaw):
 
     Notes
     -----
-    Derived for e near 1. The restitution achieved is larger than the one asked for: 0.65 gives 0.775, and no
-    value gives less than 0.66.
+    The relation is for e near 1. For e < 1 the restitution achieved is larger than the one asked for: 0.65 gives 0.775,
+    and no value gives less than 0.66.
 
     References
     ----------

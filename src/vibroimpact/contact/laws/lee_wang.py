@@ -18,7 +18,7 @@ class LeeWang(HystereticLaw):
 
     Notes
     -----
-    Loses about half of what is asked: 0.7 gives 0.869, and no value gives less than 0.66.
+    The energy lost is about half of that at the restitution asked for: 0.7 gives 0.869, and no value gives less than 0.66.
 
     References
     ----------

@@ -25,9 +25,8 @@ class LinearSpringDashpot(KelvinVoigtLaw):
 
     Notes
     -----
-    The contact ends at zero overlap and the dashpot may pull before that, as in most discrete-element
-    programs; the restitution without gravity is then exactly the one asked for. The force jumps at first
-    touch from zero to :math:`c\dot\delta_0`.
+    The contact ends at zero overlap, and the dashpot may pull before that. Without gravity the restitution of an
+    impact with this effective mass is the one asked for. The force jumps at first touch from zero to :math:`c\dot\delta_0`.
 
     References
     ----------

@@ -35,8 +35,8 @@ class Meyer(YieldingSphereLaw):
     :math:`v^{-1/4}` where it is full. Of a material whose hardness H is known rather than its yield strength, give :math:`Y = H/2.8`.
 
     Spheres of alumina on thick plates of mild steel and of an aluminium alloy, dropped from 0.6 mm to 1.75 m, follow such a power, and
-    become fully plastic at about 100 times the speed of first yield (Kharaz and Gorham 2000); the default index does so as well. Laws of
-    constant pressure, as Thornton's, lose too much in between.
+    become fully plastic at speeds of the order of 100 times that of first yield (Kharaz and Gorham 2000). The default index is chosen for
+    this speed; it is not fitted to their restitutions.
 
     References
     ----------
@@ -60,8 +60,7 @@ class Meyer(YieldingSphereLaw):
     source = "Kharaz & Gorham 2000, Philos. Mag. Lett. 80:549; Tabor 1951, The Hardness of Metals"
     departure = (
         "The law is put together by this software: the pressures at yield and at full plasticity (Tabor), a power of the contact radius "
-        "between them (Meyer), the depth of a spherical dent, and Hertz's unloading. The default index is chosen to fit the onset of full "
-        "plasticity (Kharaz and Gorham)."
+        "between them (Meyer), the depth of a spherical dent, and Hertz's unloading."
     )
     free_parameter = "yield_strength"
 
@@ -75,7 +74,7 @@ class Meyer(YieldingSphereLaw):
     )
     meyer_index: Array = parameter(
         "Meyer's index n, 2 for constant pressure, 3 for an elastic contact",
-        detail="Meyer's index :math:`n`; with the default the contact is fully plastic from 100 times the speed of first yield on.",
+        detail="Meyer's index :math:`n`; with the default the contact is fully plastic from 99 times the speed of first yield on.",
         default=2.45,
         at_least=2,
         at_most=3,

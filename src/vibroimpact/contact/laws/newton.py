@@ -15,8 +15,8 @@ class Newton(InstantaneousLaw):
 
     Notes
     -----
-    There is no force and no indentation; the restitution asked for is the one achieved. Dropped from h, a
-    ball comes to rest after :math:`\sqrt{2h/g}\,(1+e)/(1-e)` and infinitely many bounces.
+    There is no force and no indentation; the restitution asked for is the one achieved. With e < 1 a ball that is dropped
+    from h onto a plate at rest comes to rest after :math:`\sqrt{2h/g}\,(1+e)/(1-e)` and infinitely many bounces.
 
     References
     ----------

@@ -19,8 +19,7 @@ class Safaeifar(HystereticLaw):
 
     Notes
     -----
-    For all e above 0. The restitution achieved is somewhat larger than the one asked for above 0.22: 0.7 gives
-    0.735, 0.3 gives 0.314.
+    The restitution achieved is larger than the one asked for above 0.22 and below 1: 0.7 gives 0.735, 0.3 gives 0.314.
 
     References
     ----------

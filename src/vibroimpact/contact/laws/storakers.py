@@ -28,14 +28,8 @@ class Storakers(YieldingSphereLaw):
 
     Notes
     -----
-    The mean pressure is published, and so is the rest of the law, for a constant pressure; putting them together is this
-    software's doing. So is Hertz's contact radius beyond yield: in the fully plastic contact Storakers and others have
-    :math:`a^2 = 2 c^2 R \delta` with :math:`c^2 = 1.43` without hardening, about 1 for m = 3, and 0.5 for m = 1. With it the
-    restitution far above yield would be :math:`(2 c^2)^{3/8}`, 1.48 times as high without hardening. That is too high for impacts,
-    most of which lie between the elastic and the fully plastic contact: as it is, the restitution of a perfectly plastic material
-    agrees within 0.04 with Jackson, Green and Marghitu's fit to finite elements for speeds of 30 to 300 times the yield speed, and
-    is above it nearer to yield, where the fully plastic pressure has not been reached. Far above yield it falls as
-    :math:`v^{-(1 - 1/m)/(4 + 1/m)}`. The dent lasts: the next impact on the same spot loses nothing unless it goes deeper.
+    Far above yield the restitution falls as :math:`v^{-(1 - 1/m)/(4 + 1/m)}`. The dent lasts: the next impact on the same spot
+    loses nothing unless it goes deeper.
 
     References
     ----------
@@ -60,9 +54,8 @@ class Storakers(YieldingSphereLaw):
     source = "Storakers, Biwa & Larsson 1997, Int. J. Solids Struct. 34:3061, in Thornton 1997, J. Appl. Mech. 64:383"
     departure = (
         "The pressure of the fully plastic contact is put into Thornton's law, which has a constant one, with Hertz's contact radius, "
-        "a^2 = R delta. The source has a^2 = 2 c^2 R delta when fully plastic, with c^2 = 1.43 without hardening and 0.5 for m = 1: the "
-        "restitution far above yield would be 1.48 times as high, and farther from the finite elements "
-        "of Jackson, Green and Marghitu."
+        "a^2 = R delta. The source has a^2 = 2 c^2 R delta when fully plastic, with c^2 = 1.43 without hardening, for which the "
+        "restitution far above yield would be 1.48 times as high, and 0.5 for m = 1."
     )
     free_parameter = "yield_strength"
 

@@ -24,10 +24,10 @@ class Thornton(YieldingSphereLaw):
     Notes
     -----
     The pressure is Hertz's, cut off at :math:`p_y`. Below the yield speed
-    :math:`v_y = \sqrt{4 K \delta_y^{5/2}/(5 m)}` nothing is lost; far above it :math:`e = 1.185 (v_y/v)^{1/4}`. Real
-    contacts become fully plastic at about 2.8 times the yield strength, so there the loss is overestimated with
-    1.6 times; give the hardness then. The dent lasts: the next impact on the same spot meets a flatter
-    contact, and loses nothing unless it goes deeper.
+    :math:`v_y = \sqrt{4 K \delta_y^{5/2}/(5 m)}` nothing is lost; far above it e tends to :math:`1.185 (v_y/v)^{1/4}`, where
+    :math:`K = \tfrac43 E^* \sqrt R` and m is the effective mass. The pressure of fully plastic contacts is about 2.8 times the yield
+    strength (Tabor 1951); with 1.6 times the law then loses too much, and `yield_pressure` should be the hardness. The dent
+    lasts: the next impact on the same spot meets a flatter contact, and loses nothing unless it goes deeper.
 
     References
     ----------
@@ -35,6 +35,8 @@ class Thornton(YieldingSphereLaw):
     J. Appl. Mech. 64, 383-386.
 
     Johnson, K. L. (1985). Contact Mechanics. Cambridge University Press, section 6.1 (1.6 times the yield strength).
+
+    Tabor, D. (1951). The Hardness of Metals. Oxford University Press.
 
     Examples
     --------

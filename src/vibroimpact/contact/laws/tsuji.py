@@ -21,9 +21,9 @@ class Tsuji(RestitutionForMassLaw, SphereLaw):
 
     Notes
     -----
-    A change of variables makes the motion that of a damped linear oscillator, so the restitution without gravity
-    is exactly the one asked for, at every speed. The contact ends at zero overlap and may pull before that, as in
-    the published solution; programs that cut the tension end it sooner, and get 0.55 where they ask for 0.5.
+    A change of variables makes the motion that of a damped linear oscillator: without gravity the restitution of an
+    impact with this effective mass is the one asked for at any speed. The contact ends at zero overlap and may pull before that,
+    as in the published solution; with the tension cut, 0.5 would give 0.55.
 
     References
     ----------

@@ -28,10 +28,9 @@ class WaltonBraun(ElasticPlasticLaw):
 
     Notes
     -----
-    A stand-in for plastic deformation, as discrete-element programs use it. With a constant ratio of the stiffnesses
-    the restitution is exactly the one asked for; with `stiffening` it falls with the speed,
-    :math:`e = \sqrt{\omega_0/(S v_0 + \omega_0)}`, :math:`\omega_0 = \sqrt{k_1/m}`. The contact ends at zero force,
-    while the bodies overlap; the next contact begins anew, as in those programs.
+    Without gravity the restitution is the one asked for if a `restitution` is given; with `stiffening` it falls with the
+    approach speed :math:`v_0`, :math:`e = \sqrt{\omega_0/(S v_0 + \omega_0)}`, :math:`\omega_0 = \sqrt{k_1/m}`. The
+    contact ends at zero force, at :math:`\delta_r`; the next contact begins without a dent.
 
     References
     ----------

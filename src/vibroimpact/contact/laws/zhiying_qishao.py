@@ -20,8 +20,8 @@ class ZhiyingQishao(HystereticLaw):
 
     Notes
     -----
-    For e above about 0.5: 0.7 gives 0.680, 0.3 gives 0.327, and no value gives less than 0.17. The law is called by the given names of its
-    authors, Qin Zhiying and Lu Qishao.
+    0.7 gives 0.680, 0.3 gives 0.327, and no value gives less than 0.17. The law is called by the given names of its authors, Qin Zhiying
+    and Lu Qishao.
 
     References
     ----------

@@ -34,7 +34,7 @@ def _cell(value: float) -> str:
 
 FORMAT = ExportFormat(
     name="csv",
-    program="spreadsheets, and every program that reads text",
+    program="spreadsheets, and programs that read text",
     files="impacts.csv, history.csv, and sensors/NAME.csv of each sensor",
     tested="read back with pandas 3.1, every digit the same",
     write=write,

@@ -72,7 +72,7 @@ def _notes(drop: Drop) -> list[str]:
         if sensor.rate != round(sensor.rate):
             notes.append(f"{plain}.wav is said to have {round(sensor.rate)} samples a second; it has {sensor.rate!r}.")
         if sensor.rate > 192e3:
-            notes.append(f"Few players take the {sensor.rate:g} Hz of {plain}.wav; programs that analyse sound do.")
+            notes.append(f"Players may not take the {sensor.rate:g} Hz of {plain}.wav.")
     return notes
 
 

@@ -40,7 +40,7 @@ def data_card(study: Study) -> str:
     parts = [
         f"# {study.name[:1].upper() + study.name[1:]}",
         f"{drops_text(study.size)} of {_number(study, ROCK)} rocks on {_number(study, PLATE)} plates, computed by vibroimpact "
-        f"{study.version}. Signals, values and labels are in `study.nc`; `study.toml` makes it again, bit for bit with the same versions.",
+        f"{study.version}. Signals, values and labels are in `study.nc`; `study.toml` computes it again.",
         "## Classes",
         _table(["class", "falls", "rocks", "share of the rocks"], _classes(study)),
         "## Sampled keys",

@@ -20,8 +20,8 @@ class Coulomb(ImpulsiveFriction):
 
     Notes
     -----
-    The tangential restitution is never negative: nothing stores energy. At steep angles, where measured contacts slip all the time,
-    it is as good as any law; at small ones the sphere is left with 5/7 of its tangential velocity.
+    The friction does not reverse the slip: nothing stores energy. A solid sphere that falls without spin on a plate that does not
+    move is left with 5/7 of its tangential velocity if the slip ends.
 
     References
     ----------

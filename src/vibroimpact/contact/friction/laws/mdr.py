@@ -19,8 +19,8 @@ class Mdr(CompliantFriction):
     Notes
     -----
     Under constant normal force this is the solution of Cattaneo (1938) and Mindlin (1949), under varying ones that of Mindlin and
-    Deresiewicz (1953) and Jaeger (2005). It is followed by the turning points of its history, not by springs. The normal force is that
-    of the contact law, with its damping. Twisting does not reduce it.
+    Deresiewicz (1953) and Jaeger (2005). The normal force is that of the contact law, with its damping. Twisting does not reduce the
+    friction.
 
     References
     ----------
