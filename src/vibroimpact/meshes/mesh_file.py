@@ -9,6 +9,8 @@ from os import PathLike
 from pathlib import Path
 
 from vibroimpact.errors import InputError
+from vibroimpact.materials import Material
+from vibroimpact.meshes.element_materials import with_element_materials
 from vibroimpact.meshes.geometry import BREP, STEP, mesh_geometry
 from vibroimpact.meshes.read_abaqus import read_abaqus
 from vibroimpact.meshes.read_gmsh import read_gmsh
@@ -25,7 +27,9 @@ READERS: Mapping[str, Callable[[str | PathLike[str]], Mesh]] = {
 }
 
 
-def read_mesh(path: str | PathLike[str], unit_in_metres: float = 1.0, size: float | None = None) -> Mesh:
+def read_mesh(
+    path: str | PathLike[str], unit_in_metres: float = 1.0, size: float | None = None, materials: Mapping[str, Material] | None = None
+) -> Mesh:
     """Read a mesh file (Nastran, Abaqus, Gmsh) or mesh a geometry file (STEP, BREP), by suffix.
 
     Parameters
@@ -36,11 +40,13 @@ def read_mesh(path: str | PathLike[str], unit_in_metres: float = 1.0, size: floa
         Unit of the coordinates [m], such as 0.001 for millimetres; a STEP file states its own.
     size : float, optional
         Approximate maximum element size of a geometry [m]; by default a twelfth of the largest extent.
+    materials : mapping of str to Material, optional
+        Materials in place of those of the file, by the name of a material or an element set; see `with_element_materials`.
 
     Raises
     ------
     InputError
-        If the file is of another kind, or can't be read.
+        If the file is of another kind, can't be read, or gives its elements several materials that can't be used.
 
     Examples
     --------
@@ -57,8 +63,8 @@ def read_mesh(path: str | PathLike[str], unit_in_metres: float = 1.0, size: floa
     if not 0 < unit_in_metres < math.inf:
         raise InputError(f"{unit_in_metres:g} m is not allowed; it must be greater than 0 and finite", "unit_in_metres")
     if suffix not in READERS:
-        return mesh_geometry(path, size, unit_in_metres=unit_in_metres)
+        return with_element_materials(mesh_geometry(path, size, unit_in_metres=unit_in_metres), unit_in_metres, materials)
     if size is not None:
         raise InputError(f"{path}: the file is a mesh already; a size is for geometries (.step, .stp or .brep)", "size")
     mesh = READERS[suffix](path)
-    return replace(mesh, nodes=mesh.nodes * unit_in_metres)
+    return with_element_materials(replace(mesh, nodes=mesh.nodes * unit_in_metres), unit_in_metres, materials)

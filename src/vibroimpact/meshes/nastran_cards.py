@@ -33,8 +33,8 @@ def nastran_include(text: str) -> str | None:
     return next(name for name in found.groups() if name) if found else None
 
 
-def nastran_real(text: str, line: TextLine) -> float:
-    """Return a real number, whose exponent may have a D or no letter; a blank field is zero.
+def nastran_real(text: str, line: TextLine, what: str = "a coordinate", blank: float = 0.0) -> float:
+    """Return a real number, whose exponent may have a D or no letter; a blank field is `blank`.
 
     Examples
     --------
@@ -42,9 +42,9 @@ def nastran_real(text: str, line: TextLine) -> float:
     (0.0015, 1000.0, 0.0)
     """
     if not text:
-        return 0.0
+        return blank
     found = _EXPONENT.fullmatch(text)
-    return float(f"{found[1]}e{found[2] or found[3]}") if found else parse_real(text, line)
+    return float(f"{found[1]}e{found[2] or found[3]}") if found else parse_real(text, line, what)
 
 
 def cards(lines: Iterable[TextLine]) -> Iterator[Card]:

@@ -55,6 +55,8 @@ def mesh_facts(case: Case) -> dict[str, dict[str, Any]]:
             "nodes": len(meshes[name].nodes),
             "degrees_of_freedom": meshes[name].dofs_per_node * len(meshes[name].nodes),
             "modes_computed": has_model(model_key(body.recipe)),
+            "materials": meshes[name].materials_text,
+            "remarks": list(meshes[name].remarks),
         }
         for name, body in elastic_bodies(case).items()
     }

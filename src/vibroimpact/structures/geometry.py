@@ -16,7 +16,7 @@ _INERTIA_DEGREE = 9  # exact for the product of two coordinates and the Jacobian
 
 @dataclass(frozen=True)
 class MassProperties:
-    """Mass properties of a body of uniform density.
+    """Mass properties of a body.
 
     Parameters
     ----------
@@ -33,15 +33,15 @@ class MassProperties:
     inertia: Floats
 
 
-def mass_properties(mesh: Mesh, density: float, thickness: float = 1.0) -> MassProperties:
+def mass_properties(mesh: Mesh, density: float | Floats, thickness: float = 1.0) -> MassProperties:
     """Return the mass, centre of mass and inertia of a mesh, integrated over its elements.
 
     Parameters
     ----------
     mesh : Mesh
         Solid or plate elements.
-    density : float
-        Density [kg/m^3], > 0.
+    density : float or array, shape (elements,)
+        Density [kg/m^3], > 0, of the body or of each element.
     thickness : float, default 1
         Thickness of plate elements [m]; not used for solids.
 
@@ -52,11 +52,14 @@ def mass_properties(mesh: Mesh, density: float, thickness: float = 1.0) -> MassP
     15700.0
     """
     volume, first, second = 0.0, np.zeros(3), np.zeros((3, 3))
-    for block in mesh.blocks:
+    reference = float(np.mean(density))
+    ratios = np.broadcast_to(np.asarray(density) / reference, mesh.number_of_elements)
+    ends = np.cumsum([len(block.connectivity) for block in mesh.blocks])[:-1]
+    for block, ratio in zip(mesh.blocks, np.split(ratios, ends), strict=True):
         points, weights = block.element.quadrature(max(_INERTIA_DEGREE, block.element.degree))
         values, slopes = block.element.basis(points)
         at = mesh.nodes[block.connectivity]
-        scale = weights * np.abs(determinants(at, slopes)) * (thickness if block.element.dimension == 2 else 1.0)
+        scale = ratio[:, None] * weights * np.abs(determinants(at, slopes)) * (thickness if block.element.dimension == 2 else 1.0)
         positions = np.einsum("qk,eki->eqi", values, at, optimize=True)
         volume += scale.sum()
         first += np.einsum("eq,eqi->i", scale, positions)
@@ -64,8 +67,8 @@ def mass_properties(mesh: Mesh, density: float, thickness: float = 1.0) -> MassP
         if block.element.dimension == 2:
             second[2, 2] += scale.sum() * thickness**2 / 12.0
     centre = first / volume
-    spread = density * (second - volume * np.outer(centre, centre))
-    return MassProperties(float(density * volume), centre, np.trace(spread) * np.eye(3) - spread)
+    spread = reference * (second - volume * np.outer(centre, centre))
+    return MassProperties(float(reference * volume), centre, np.trace(spread) * np.eye(3) - spread)
 
 
 def determinants(at: Floats, slopes: Floats) -> Floats:

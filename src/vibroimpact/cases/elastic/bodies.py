@@ -54,7 +54,7 @@ def elastic_table(case: CaseTable, name: Literal["sphere", "plate"]) -> dict[str
     if reduction.modes:
         table["modes"] = reduction.modes
     if isinstance(shape, ImportedMesh):
-        table["mesh"] = section.mesh.model_dump(exclude_none=True)
+        table["mesh"] = section.mesh.table()
     else:
         table["mesh"] = {key: value for key, value in vars(shape).items() if key not in ("radius", "size")}
     if name == "plate":

@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, model_validator
 
 from vibroimpact.cases.fields.json_schema import JsonSchema
+from vibroimpact.cases.fields.material import MaterialField, material_table
 from vibroimpact.cases.fields.quantities import Quantity
 from vibroimpact.cases.fields.section import Section, check_alternatives, read_table
 from vibroimpact.cases.fields.size_limits import FileName
 from vibroimpact.errors import InputError
 from vibroimpact.files.reading import input_file_digest, with_path
+from vibroimpact.materials import RIGID
 from vibroimpact.meshes.text_files import MESH
 from vibroimpact.ranges import Range
 from vibroimpact.shown import shown
@@ -44,6 +46,16 @@ class BroughtMeshTable(Section):
     unit: Annotated[float, Quantity("m", "unit of its coordinates", Range(above=0)), BeforeValidator(_one_unit)] = 1.0
     element_size: _Size | None = None
     contact: str | None = Field(None, description="a named set, whose centre is the contact point")
+    materials: dict[FileName, MaterialField] | None = Field(
+        None, description="materials in place of those of the file, by the name of a material or an element set of the file"
+    )
+
+    @model_validator(mode="after")
+    def _none_is_rigid(self) -> BroughtMeshTable:
+        for name, material in (self.materials or {}).items():
+            if material.name == RIGID.name:
+                raise InputError('"rigid" does not deform; an elastic body needs materials with a modulus', f"materials.{name}")
+        return self
 
     def brought(self) -> ImportedMesh:
         """Return the mesh, which is identified by the checksum of its file and read when it is first used.
@@ -59,16 +71,24 @@ class BroughtMeshTable(Section):
             content = input_file_digest(self.file, MESH)
         except InputError as error:
             raise with_path(self.file, error, "mesh") from None
-        return ImportedMesh(json.dumps([content, Path(self.file).suffix.lower(), self.unit, self.element_size]), self.read)
+        of_elements = {name: material_table(material) for name, material in (self.materials or {}).items()}
+        return ImportedMesh(json.dumps([content, Path(self.file).suffix.lower(), self.unit, self.element_size, of_elements]), self.read)
+
+    def table(self) -> dict[str, Any]:
+        """Return the table as it is written in a resolved case file."""
+        table = self.model_dump(exclude_none=True, exclude={"materials"})
+        if self.materials:
+            table["materials"] = {name: material_table(material) for name, material in self.materials.items()}
+        return table
 
     def read(self) -> Mesh:
         """Read the mesh, with coordinates in metres."""
         from vibroimpact.meshes.mesh_file import read_mesh
 
         try:
-            return read_mesh(self.file, self.unit, self.element_size)
+            return read_mesh(self.file, self.unit, self.element_size, self.materials)
         except InputError as error:
-            key = {"size": "mesh.element_size", "unit_in_metres": "mesh.unit"}.get(error.key, "mesh")
+            key = {"size": "mesh.element_size", "unit_in_metres": "mesh.unit", "materials": "mesh.materials"}.get(error.key, "mesh")
             raise InputError(error.message, key) from None
 
 
