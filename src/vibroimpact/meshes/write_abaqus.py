@@ -13,7 +13,7 @@ from vibroimpact.materials import Material
 from vibroimpact.meshes.deck_mesh import check_shell_thickness, deck_mesh
 from vibroimpact.structures.mesh import Mesh
 
-_TYPES = {"tet4": "C3D4", "tet10": "C3D10", "hex8": "C3D8", "hex20": "C3D20", "quad8": "S8R"}
+_TYPES = {"tet4": "C3D4", "tet10": "C3D10", "wedge6": "C3D6", "wedge15": "C3D15", "hex8": "C3D8", "hex20": "C3D20", "quad8": "S8R"}
 _A_LINE = 16
 """Largest number of entries on a line."""
 

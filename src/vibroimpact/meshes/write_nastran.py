@@ -15,7 +15,15 @@ from vibroimpact.meshes.deck_mesh import check_shell_thickness, deck_mesh
 from vibroimpact.meshes.node_order import NASTRAN, from_ours
 from vibroimpact.structures.mesh import Mesh
 
-_CARDS = {"tet4": "CTETRA", "tet10": "CTETRA", "hex8": "CHEXA", "hex20": "CHEXA", "quad8": "CQUAD8"}
+_CARDS = {
+    "tet4": "CTETRA",
+    "tet10": "CTETRA",
+    "wedge6": "CPENTA",
+    "wedge15": "CPENTA",
+    "hex8": "CHEXA",
+    "hex20": "CHEXA",
+    "quad8": "CQUAD8",
+}
 _SOLIDS, _SHELLS, _OWN = 1, 2, 3
 """Property of solids of the body's material, of shells, and the first one of solids with materials of their own."""
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_array
 
 from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError
 from vibroimpact.structures.mesh import ElementBlock, Mesh
+from vibroimpact.structures.parts import part_of_nodes, used_nodes
 
 _INERTIA_DEGREE = 9  # exact for the product of two coordinates and the Jacobian of a second-order brick
 
@@ -101,7 +101,7 @@ def check_mesh(mesh: Mesh) -> None:
                 f"number {shown}; use smaller elements, or mesh the part again if the mesh was imported"
             )
         first += len(block.connectivity)
-    parts = _count_parts(mesh)
+    parts = len(np.unique(part_of_nodes(mesh)[used_nodes(mesh)]))
     if parts > 1:
         raise InputError(f"the mesh consists of {parts} loose parts that share no node; a body is one part: merge coincident nodes")
 
@@ -115,16 +115,3 @@ def _smallest_determinants(mesh: Mesh, block: ElementBlock) -> Floats:
         for part in np.array_split(block.connectivity, len(block.connectivity) // 5000 + 1)
     ]
     return np.concatenate(found)
-
-
-def _count_parts(mesh: Mesh) -> int:
-    """Return the number of parts of a mesh that share no node."""
-    from scipy.sparse.csgraph import connected_components  # imported late: modes that are stored do not need it
-
-    pairs = [
-        (np.repeat(block.connectivity[:, 0], block.connectivity.shape[1] - 1), block.connectivity[:, 1:].ravel()) for block in mesh.blocks
-    ]
-    start, end = (np.concatenate(side) for side in zip(*pairs, strict=True))
-    number = len(mesh.nodes)
-    label = connected_components(coo_array((np.ones(len(start)), (start, end)), shape=(number, number)), directed=False)[1]
-    return len(np.unique(label[np.unique(start)]))

@@ -41,7 +41,7 @@ _LARGEST = 4_000_000_000  # bytes; the least recently used entries are removed f
 _SLACK = 0.01  # of _LARGEST: bytes written between two scans of the folder, which may hold thousands of entries
 _CHECKSUM, _PIECE = 4, 2**20  # bytes
 _MODES = "modes"
-KINDS = (_MODES, "compliance")
+KINDS = (_MODES, "compliance", "parts")
 """Kinds of entries, which are the suffixes of their files."""
 
 Content = TypeVar("Content")

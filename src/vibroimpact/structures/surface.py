@@ -188,7 +188,7 @@ def surface_motion(mesh: Mesh, places: Floats, side: Side = "upper", thickness: 
         low, high = mesh.nodes.min(axis=0), mesh.nodes.max(axis=0)
         raise InputError(
             f"{what}{': ' if what else ''}({x:g}, {y:g}) m is not on the body, which reaches from {low[0]:g} to {high[0]:g} m along x and "
-            f"from {low[1]:g} to {high[1]:g} m along y"
+            f"from {low[1]:g} to {high[1]:g} m along y{_nearest_text(mesh, places[beside[0]], side)}"
         )
     height = sign * 0.5 * thickness if mesh.is_flat else 0.0
     positions[:, 2] += height
@@ -248,6 +248,15 @@ def _materials_of(mesh: Mesh, material: Material, chosen: Bools) -> tuple[Materi
         return (material,)
     numbers = np.unique(mesh.element_materials[chosen])
     return tuple((*mesh.materials, material)[number] for number in numbers)
+
+
+def _nearest_text(mesh: Mesh, place: Floats, side: Side) -> str:
+    """Return in words which node of a side is nearest to a place."""
+    nodes = np.concatenate([faces.connectivity[:, list(faces.corners)].ravel() for faces in facing(mesh, side)] or [np.zeros(0, np.int64)])
+    if not len(nodes):
+        return ""
+    x, y = mesh.nodes[nodes[np.linalg.norm(mesh.nodes[nodes, :2] - place, axis=1).argmin()], :2]
+    return f"; the nearest node of its {side} side is at ({x:g}, {y:g}) m"
 
 
 def slope_divergence(mesh: Mesh, place: tuple[float, float]) -> csr_array:
