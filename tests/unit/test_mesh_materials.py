@@ -18,6 +18,7 @@ from vibroimpact.errors import LONGEST_MESSAGE, InputError
 from vibroimpact.materials import Material, find_material
 from vibroimpact.meshes.element_materials import with_element_materials
 from vibroimpact.meshes.left_out import remarks_of
+from vibroimpact.modes.document import mesh_facts
 from vibroimpact.structures.lattice import box_mesh
 from vibroimpact.structures.mesh import Mesh
 from vibroimpact.structures.stated_materials import StatedMaterial, StatedMaterials
@@ -223,6 +224,8 @@ def test_one_material_that_contradicts_the_case_is_named(tmp_path: Path) -> None
     file = nastran(tmp_path, only_rubber, 1e3, sections="PSOLID,1,1\nPSOLID,2,1\n")
     found = doubts_of(file)
     assert "gives its material MID1 a density of 1100 kg/m3 and a Young's modulus of 1e+07 Pa, and its elements are computed with" in found
+    [remark] = mesh_facts(case_of(file))["plate"]["remarks"]  # of `check`
+    assert remark in found
     rubber = {"density": 1100, "youngs_modulus": 1e7, "poissons_ratio": 0.45}
     assert "gives its material" not in doubts_of(file, material=rubber)
     unknown = nastran(tmp_path, "MAT1,1,10.,,.45,1.1\n", 1e3, sections="PSOLID,1,1\nPSOLID,2,1\n")
@@ -231,6 +234,16 @@ def test_one_material_that_contradicts_the_case_is_named(tmp_path: Path) -> None
     assert "the material of the mesh file, MID1, is anisotropic; its elements are computed with the isotropic" in doubts_of(anisotropic)
     silent = nastran(tmp_path, "", 1e3, sections="PSOLID,1,1\nPSOLID,2,1\n")
     assert "material" not in doubts_of(silent)
+
+
+def test_a_file_that_is_included_is_part_of_the_case(tmp_path: Path) -> None:
+    """Modes that are kept are those of the materials that the files state now."""
+    file = nastran(tmp_path, "INCLUDE 'materials.bdf'\n", 1e3)
+    masses = []
+    for density in ("1.1-9", "2.2-9"):
+        (tmp_path / "materials.bdf").write_text(BDF_MM.replace("1.1-9", density))
+        masses.append(vi.compute_modes(case_of(file))["plate"].model.properties.mass)
+    assert masses == pytest.approx([0.895, 1.005], rel=1e-9)
 
 
 def test_elements_of_a_fluid_are_left_out(tmp_path: Path) -> None:

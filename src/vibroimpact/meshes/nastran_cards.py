@@ -124,7 +124,8 @@ class _Repeated:
 
     def _fields(self, line: TextLine, given: list[str], before: Card) -> list[str]:
         """Return the fields of a card from those of the one before it, and keep the steps."""
-        self._steps, fields = {}, []
+        self._steps = {}
+        fields: list[str] = []
         for at, old in enumerate(before.fields):
             text = given[at] if at < len(given) else ""
             if text == "==":

@@ -30,12 +30,13 @@ class _Grid(NamedTuple):
 
 @dataclass(frozen=True)
 class _Given:
-    """A system by three points: its origin, one on its axis z, and one in its half plane of x and z."""
+    """A system by three points, or three nodes: its origin, one on its axis z, and one in its half plane of x and z."""
 
     line: TextLine
     kind: str
-    reference: int | None
-    points: tuple[tuple[float, float, float], ...] | tuple[int, ...]
+    reference: int
+    points: tuple[tuple[float, float, float], ...]
+    nodes: tuple[int, ...] = ()
 
 
 class _System(NamedTuple):
@@ -91,7 +92,7 @@ class NastranGrids:
             for start in (0, 4):  # two systems on a card
                 if fields[start]:
                     numbers = tuple(parse_integer(field, line, "the number of a node") for field in fields[start + 1 : start + 4])
-                    self._given[_number(fields[start], line)] = _Given(line, name[-1], None, numbers)
+                    self._given[_number(fields[start], line)] = _Given(line, name[-1], 0, (), numbers)
         else:
             return False
         return True
@@ -131,11 +132,11 @@ class NastranGrids:
             raise line.wrong(f"the coordinate system {number} is not in the file; its CORD2R, CORD2C or CORD2S must be")
         if depth > _DEEPEST:
             raise given.line.wrong(f"the coordinate system {number} refers to itself, or to more than {_DEEPEST} others one by one")
-        if given.reference is None:
-            at = np.array([self._place(int(point), given.line, depth + 1) for point in given.points])  # type: ignore[call-overload]
+        if given.nodes:
+            at = np.array([self._place(node, given.line, depth + 1) for node in given.nodes])
         else:
             reference = self._system(given.reference, given.line, depth + 1)
-            at = np.array([reference.basic(point) for point in given.points])  # type: ignore[arg-type]
+            at = np.array([reference.basic(point) for point in given.points])
         axis, third = at[1] - at[0], at[2] - at[0]
         normal = np.cross(axis, third)
         if not np.linalg.norm(normal) > _LEAST * np.linalg.norm(axis) * np.linalg.norm(third):

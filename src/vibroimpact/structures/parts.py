@@ -87,7 +87,9 @@ def part_at(mesh: Mesh, spot: Spot, side: Side) -> Mesh:
 def extent_text(mesh: Mesh, chosen: Bools) -> str:
     """Return in words where chosen nodes are."""
     at = mesh.nodes[chosen]
-    axes = (f"{name} {low:.4g} to {high:.4g}" for name, low, high in zip("xyz", at.min(axis=0), at.max(axis=0), strict=True))
+    rounding = 1e-9 * np.abs(at).max(initial=0.0)
+    low, high = (np.where(np.abs(end) > rounding, end, 0.0) for end in (at.min(axis=0), at.max(axis=0)))
+    axes = (f"{name} {first:.4g} to {last:.4g}" for name, first, last in zip("xyz", low, high, strict=True))
     return f"{', '.join(axes)} m"
 
 

@@ -18,9 +18,9 @@ from vibroimpact.cases.fields.quantities import Quantity
 from vibroimpact.cases.fields.section import Section, check_alternatives, read_table
 from vibroimpact.cases.fields.size_limits import FileName
 from vibroimpact.errors import InputError
-from vibroimpact.files.reading import input_file_digest, with_path
+from vibroimpact.files.reading import with_path
 from vibroimpact.materials import RIGID
-from vibroimpact.meshes.text_files import MESH
+from vibroimpact.meshes.mesh_digest import mesh_digest
 from vibroimpact.ranges import Range
 from vibroimpact.shown import shown
 
@@ -64,7 +64,7 @@ class BroughtMeshTable(Section):
         return self
 
     def brought(self, contact: Spot, side: Side) -> ImportedMesh:
-        """Return the mesh, which is identified by the checksum of its file, and read when it is first used.
+        """Return the mesh, which is identified by the checksum of its file and of those it includes, and read when it is first used.
 
         Of a file with several parts that share no node it is the part at the contact, and identified by its nodes too.
 
@@ -83,7 +83,7 @@ class BroughtMeshTable(Section):
         from vibroimpact.structures.recipe import ImportedMesh
 
         try:
-            content = input_file_digest(self.file, MESH)
+            content = mesh_digest(self.file)
         except InputError as error:
             raise with_path(self.file, error, "mesh") from None
         of_elements = {name: material_table(material) for name, material in (self.materials or {}).items()}
