@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.linalg import eigh
 
 import vibroimpact as vi
 from support import plain_case
@@ -23,6 +24,7 @@ from vibroimpact.structures.lattice import box_mesh
 from vibroimpact.structures.mesh import Mesh
 from vibroimpact.structures.stated_materials import StatedMaterial, StatedMaterials
 from vibroimpact.structures.static_compliance import computed_compliance
+from vibroimpact.structures.structure import solid_structure
 
 STEEL = Material(7850.0, 210e9, 0.3, name="steel")
 RUBBER = Material(1100.0, 10e6, 0.45, name="rubber")
@@ -99,6 +101,17 @@ def test_each_element_has_its_material(kind: str, tmp_path: Path) -> None:
     )["plate"]
     assert uniform.model.properties.mass == pytest.approx(0.2 * 0.1 * 0.01 * find_material("steel").density)
     assert uniform.model.frequencies[0] > 2.0 * found.model.frequencies[0]
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_modes_of_two_materials_are_those_of_the_whole_matrices(axis: int, tmp_path: Path) -> None:
+    """Nodes that are symmetric in three planes, and materials that are so in two: no part of the motion may be lost."""
+    mesh = bricks(axis)
+    vi.write_abaqus(mesh, tmp_path / "plate.inp")
+    found = vi.compute_modes(case_of(tmp_path / "plate.inp", mesh={"unit": "m"}, modes=12))["plate"].model.angular_frequencies
+    structure = solid_structure(mesh, STEEL)
+    squares = eigh(structure.stiffness.toarray(), structure.mass.toarray(), eigvals_only=True)
+    np.testing.assert_allclose(found, np.sqrt(squares[6:18]), rtol=1e-6)
 
 
 @pytest.mark.parametrize(
