@@ -124,6 +124,17 @@ def test_round_trips_keep_volume_and_inertia(kind: str, seed: int, tmp_path: Pat
     assert read.element_sets["group9"].tolist() == [0, 1, 2]
 
 
+@pytest.mark.parametrize("kind", SOLIDS)
+def test_elements_may_be_numbered_either_way_round(kind: str, tmp_path: Path) -> None:
+    """A mirrored element that is numbered as before has a negative volume everywhere; its nodes are those of a right element."""
+    mesh = curved(kind)
+    left = Mesh(mesh.nodes * [1.0, -1.0, 1.0], mesh.blocks)
+    write_abaqus(left, tmp_path / "mesh.inp")
+    back = read_abaqus(tmp_path / "mesh.inp")
+    signs = np.array([1, 1, -1, 1, 1, -1, 1, -1, 1, -1, 1, -1, 1])  # of the volume, its moments along x, y, z, and xx to zz
+    np.testing.assert_allclose(measures(back), signs * measures(as_hex20(mesh)), rtol=1e-12, atol=1e-14)
+
+
 def test_a_brick_of_27_nodes_in_the_order_of_abaqus(tmp_path: Path) -> None:
     mesh = curved("hex27")
     order = [*range(20), 26, 24, 25, 22, 21, 23, 20]

@@ -15,6 +15,7 @@ from vibroimpact.meshes.node_order import to_ours
 from vibroimpact.meshes.text_files import TextLine
 from vibroimpact.shown import shown
 from vibroimpact.structures.element_kinds import ELEMENT_KINDS
+from vibroimpact.structures.geometry import renumbered_by_volume
 from vibroimpact.structures.mesh import ElementBlock, Mesh
 from vibroimpact.structures.stated_materials import StatedMaterial, StatedMaterials
 
@@ -166,7 +167,7 @@ class Parts:
         ends = np.cumsum([places.size for places in blocks.values()])[:-1]
         renumbered = zip(blocks, np.split(places, ends), blocks.values(), strict=True)
         elements = self._distinct_elements(list(blocks))
-        return Mesh(
+        mesh = Mesh(
             points[used],
             tuple(ElementBlock(kind, flat.reshape(shaped.shape)) for kind, flat, shaped in renumbered),
             self._sets(self.node_sets, numbers[used], np.arange(len(used))),
@@ -174,6 +175,7 @@ class Parts:
             dict(self.skipped),
             stated=self._stated(*elements),
         )
+        return renumbered_by_volume(mesh)
 
     def _leave_out_fluids(self) -> None:
         """Remove the elements of fluids, and count them as skipped."""

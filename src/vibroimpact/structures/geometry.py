@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Floats, Integers
 from vibroimpact.errors import InputError
+from vibroimpact.structures.element_kinds import ElementKind
 from vibroimpact.structures.mesh import ElementBlock, Mesh
 from vibroimpact.structures.parts import part_of_nodes, used_nodes
 
+_TETRAHEDRON = 4  # corners
 _INERTIA_DEGREE = 9  # exact for the product of two coordinates and the Jacobian of a second-order brick
 
 
@@ -81,6 +83,43 @@ def jacobians(at: Floats, slopes: Floats) -> Floats:
     """Return the Jacobians dx_i/dxi_d, (elements, points, dimension d, dimension i)."""
     elements, (points, dimension, nodes) = len(at), slopes.shape
     return np.asarray((slopes.reshape(-1, nodes) @ at).reshape(elements, points, dimension, -1))
+
+
+def renumbered_by_volume(mesh: Mesh) -> Mesh:
+    """Return a mesh of solids in which elements of wholly negative volume are numbered the other way round, which other programs read.
+
+    Elements whose volume is negative in part are folded, and stay as they are.
+
+    Examples
+    --------
+    >>> tet = Mesh(np.eye(4, 3), (ElementBlock("tet4", np.array([[0, 3, 1, 2]])),))
+    >>> renumbered_by_volume(tet).blocks[0].connectivity.tolist()
+    [[0, 1, 3, 2]]
+    """
+    blocks = []
+    for block in mesh.blocks:
+        middle = block.element.reference[: block.element.corners].mean(axis=0, keepdims=True)
+        turned = np.flatnonzero(determinants(mesh.nodes[block.connectivity], block.element.basis(middle)[1])[:, 0] < 0.0)
+        if len(turned):
+            other = _other_way_round(block.element)
+            connectivity = block.connectivity.copy()
+            connectivity[turned] = connectivity[turned][:, other]
+            right = _smallest_determinants(mesh, ElementBlock(block.kind, connectivity[turned])) > 0.0
+            connectivity[turned[~right]] = block.connectivity[turned[~right]]
+            block = ElementBlock(block.kind, connectivity)
+        blocks.append(block)
+    return replace(mesh, blocks=tuple(blocks))
+
+
+def _other_way_round(element: ElementKind) -> Integers:
+    """Return the numbering of a mirrored element: a tetrahedron in the plane of two edges, a wedge or brick from top to bottom."""
+    mirrored = element.reference.copy()
+    if element.corners == _TETRAHEDRON:
+        mirrored[:, :2] = element.reference[:, 1::-1]
+    else:
+        mirrored[:, 2] = 1.0 - element.reference[:, 2]
+    distance = np.abs(mirrored[:, None] - element.reference[None]).max(axis=2)
+    return np.asarray(distance.argmin(axis=1), dtype=np.int64)
 
 
 def check_mesh(mesh: Mesh) -> None:

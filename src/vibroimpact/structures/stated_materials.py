@@ -49,8 +49,8 @@ def contradictions(stated: StatedMaterials | None, material: Material) -> Iterat
     >>> import numpy as np
     >>> stated = StatedMaterials((StatedMaterial("MID1", 1100.0, 10e6, 0.45),), np.zeros(6))
     >>> [found] = contradictions(stated, Material(7850.0, 210e9, 0.3))
-    >>> found[:102]
-    'the mesh file gives its material MID1 a density of 1100 kg/m3 and a Young's modulus of 1e+07 Pa, and its elements'
+    >>> print(found[:83])
+    the mesh file gives its material MID1 a density of 1100 kg/m3 and a Young's modulus
     """
     if stated is None or len(stated.materials) > 1:
         return
