@@ -12,7 +12,7 @@ from vibroimpact.cases.elastic import modes
 from vibroimpact.materials import find_material
 from vibroimpact.meshes.geometry import GEOMETRY, MOST_SECONDS
 from vibroimpact.meshes.text_files import MESH
-from vibroimpact.structures import frequency_error, store
+from vibroimpact.structures import frequency_error, stated_materials, static_compliance, store
 from vibroimpact.structures.plate_waves import bending_error, stretching_error, wave_numbers
 from vibroimpact.structures.recipe import PlateOfPlates, Recipe, Reduction, SphereOfSolids, computed_model
 from vibroimpact.structures.supports.patch import Patch
@@ -49,6 +49,12 @@ def test_limits() -> None:
     says(PAGE, "A mesh may have at most {} GB", MESH.largest / 1e9)
     says(PAGE, "a geometry at most {} MB and {} minutes", GEOMETRY.largest / 1e6, MOST_SECONDS / 60.0)
     says(PAGE, "when it exceeds {} GB", store._LARGEST / 1e9)
+
+
+def test_materials_of_a_mesh_file() -> None:
+    density, modulus = stated_materials._SAME_DENSITY, stated_materials._SAME_MODULUS
+    says(PAGE, "beyond {} % of the density and {} % of the modulus", 100.0 * density, 100.0 * modulus)
+    says(PAGE, "within {} thicknesses, the static compliance", static_compliance._RADIUS)
 
 
 @pytest.mark.slow

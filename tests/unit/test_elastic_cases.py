@@ -24,7 +24,7 @@ from vibroimpact.cases.elastic.meshes import meshes_of
 from vibroimpact.cases.fields.elastic_body import ElementKind
 from vibroimpact.cases.fields.supports import EdgeName
 from vibroimpact.cli import main
-from vibroimpact.structures.lattice import SOLID_KINDS, box_mesh, mesh_of_blocks
+from vibroimpact.structures.lattice import SOLID_KINDS, box_mesh
 from vibroimpact.structures.recipe import model_key
 from vibroimpact.structures.supports.bar import Bar
 from vibroimpact.structures.supports.edge import EDGES
@@ -329,14 +329,6 @@ def test_inverted_elements_are_refused(tmp_path: Path) -> None:
     nodes[inside, 0] += 0.3
     with pytest.raises(vi.InputError, match=r"plate: \d of 12 elements are inverted or folded .*: number \d+"):
         vi.compute_modes(_brought(vi.Mesh(nodes, mesh.blocks), tmp_path))
-
-
-def test_loose_parts_are_refused(tmp_path: Path) -> None:
-    side = np.linspace(0.0, 0.1, 3)
-    one = np.stack(np.meshgrid(side, side, side, indexing="ij"), axis=-1)
-    mesh = mesh_of_blocks([one, one + np.array([0.5, 0.0, 0.0])], "hex20")
-    with pytest.raises(vi.InputError, match="the mesh consists of 2 loose parts that share no node"):
-        vi.compute_modes(_brought(mesh, tmp_path))
 
 
 def test_a_contact_point_off_the_body_is_refused(tmp_path: Path) -> None:

@@ -24,7 +24,7 @@ from vibroimpact.structures.mesh import ElementBlock, Mesh
 
 STEEL = Material(density=7850.0, youngs_modulus=210e9, poissons_ratio=0.3, name="steel")
 MSH = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{nodes}\n$EndNodes\n$Elements\n{elements}\n$EndElements\n"
-SOLIDS = ["tet4", "tet10", "hex8", "hex20", "hex27"]
+SOLIDS = ["tet4", "tet10", "wedge6", "wedge15", "hex8", "hex20", "hex27"]
 
 
 def measures(mesh: Mesh) -> np.ndarray:
@@ -79,7 +79,7 @@ def gmsh_text(mesh: Mesh, order: list[int]) -> str:
     """Version 2 in the order that Gmsh documents, with a group of volumes."""
     (block,) = mesh.blocks
     nodes = [f"{number} {x!r} {y!r} {z!r}" for number, (x, y, z) in enumerate(mesh.nodes.tolist(), 1)]
-    number = {"tet4": 4, "tet10": 11, "hex8": 5, "hex20": 17, "hex27": 12}[block.kind]
+    number = {"tet4": 4, "tet10": 11, "wedge6": 6, "wedge15": 18, "hex8": 5, "hex20": 17, "hex27": 12}[block.kind]
     elements = [
         f"{row} {number} 2 9 1 " + " ".join(map(str, members)) for row, members in enumerate((block.connectivity[:, order] + 1).tolist(), 1)
     ]
@@ -90,6 +90,8 @@ def gmsh_text(mesh: Mesh, order: list[int]) -> str:
 GMSH_ORDER = {
     "tet4": list(range(4)),
     "tet10": [0, 1, 2, 3, 4, 5, 6, 7, 9, 8],
+    "wedge6": list(range(6)),
+    "wedge15": [*range(6), 6, 8, 12, 7, 13, 14, 9, 11, 10],
     "hex8": list(range(8)),
     "hex20": [*range(8), 8, 11, 16, 9, 17, 10, 18, 19, 12, 15, 13, 14],
     "hex27": [*range(8), 8, 11, 16, 9, 17, 10, 18, 19, 12, 15, 13, 14, 24, 22, 20, 21, 23, 25, 26],
@@ -115,11 +117,22 @@ def test_round_trips_keep_volume_and_inertia(kind: str, seed: int, tmp_path: Pat
     assert list(again.node_sets) == ["a set, of nodes", "one"]
     for name in again.node_sets:
         np.testing.assert_array_equal(again.node_sets[name], back.node_sets[name])
-    assert again.skipped == {"MAT1": 1, "PSOLID": 1}
+    assert again.skipped == {}
 
     read = read_text(gmsh_text(mesh, GMSH_ORDER[kind]), "mesh.msh", tmp_path)
     np.testing.assert_allclose(measures(read), measures(mesh), rtol=1e-14, atol=1e-14)
     assert read.element_sets["group9"].tolist() == [0, 1, 2]
+
+
+@pytest.mark.parametrize("kind", SOLIDS)
+def test_elements_may_be_numbered_either_way_round(kind: str, tmp_path: Path) -> None:
+    """A mirrored element that is numbered as before has a negative volume everywhere; its nodes are those of a right element."""
+    mesh = curved(kind)
+    left = Mesh(mesh.nodes * [1.0, -1.0, 1.0], mesh.blocks)
+    write_abaqus(left, tmp_path / "mesh.inp")
+    back = read_abaqus(tmp_path / "mesh.inp")
+    signs = np.array([1, 1, -1, 1, 1, -1, 1, -1, 1, -1, 1, -1, 1])  # of the volume, its moments along x, y, z, and xx to zz
+    np.testing.assert_allclose(measures(back), signs * measures(as_hex20(mesh)), rtol=1e-12, atol=1e-14)
 
 
 def test_a_brick_of_27_nodes_in_the_order_of_abaqus(tmp_path: Path) -> None:
@@ -180,6 +193,45 @@ def test_nastran_fields(text: str, tmp_path: Path) -> None:
     assert mesh.element_sets["PID1"].tolist() == [0]
 
 
+REPEATED = "GRID,1\nGRID,2,,1.\n=,*(1),=,-0.,*(1.)\nGRID,4,,,,1.\nCTETRA,1,1,1,2,3,4\n"
+
+
+def test_cards_that_repeat_the_one_before_them(tmp_path: Path) -> None:
+    mesh = read_text(REPEATED, "mesh.bdf", tmp_path)
+    np.testing.assert_array_equal(mesh.nodes[mesh.blocks[0].connectivity[0]], [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    rows = "GRID,1\n=,*(1),=,*1.,==\n=(2)\nGRID,11,,0.,1.\n=,*1,=,*(1.),==\n=2\nGRID,21,,,,1.\n=,*(1),=,*(1.),==\n=2\n"
+    mesh = read_text(rows + "CTETRA,1,1,1,2,11,21\n=,*(1),=,*(1),*(1),*(1),*(1)\n=(1)\n", "mesh.bdf", tmp_path)
+    assert mesh.nodes[mesh.blocks[0].connectivity].tolist() == [[[x, 0, 0], [x + 1, 0, 0], [x, 1, 0], [x, 0, 1]] for x in (0.0, 1.0, 2.0)]
+
+
+def test_grid_points_in_local_systems(tmp_path: Path) -> None:
+    """Rectangular, cylindrical and spherical, one in another, by points and by nodes, in any order, and by default."""
+    tetra = "CTETRA,1,1,1,2,3,4\n"
+    square = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    # the origin at (3, 4, 5), z along the global x, and the plane of x and z that of the global x and y
+    turned = "CORD2R,5,,3.,4.,5.,9.,4.,5.\n,3.,9.,5.\n"
+    expected = np.array([3, 4, 5]) + square[:, [2, 0, 1]]
+    rows = "GRID,1,5\nGRID,2,5,1.\nGRID,3,5,,1.\nGRID,4,5,,,1.\n"
+    tried = [rows + turned, turned + "GRDSET,,5\n" + rows.replace(",5", ",")]
+    polar = turned + "CORD2C,6,5,,,,,,1.\n,1.\n"
+    tried.append(polar + "GRID,1,6\nGRID,2,6,1.\nGRID,3,6,1.,90.\nGRID,4,6,,70.,1.\n")
+    round_ = turned + "CORD2S,7,5,,,,,,1.\n,1.\n"
+    tried.append(round_ + "GRID,1,7\nGRID,2,7,1.,90.\nGRID,3,7,1.,90.,90.\nGRID,4,7,1.,,33.\n")
+    # by three nodes, of which one stands in a cylinder: at (3, 4, 5), (9, 4, 5) and (3, 9, 5)
+    tried.append(
+        "CORD1R,8,101,102,103\nGRID,101,,3.,4.,5.\nGRID,102,,9.,4.,5.\nCORD2C,9,,,,,,,1.\n,1.\nGRID,103,9,9.486832980505138,71.56505117707799,5.\n"
+        + rows.replace(",5", ",8")
+    )
+    # on axes that a cylinder gives: its points by radius and angle
+    tried.append(
+        "CORD2C,9,,,,,,,1.\n,1.\nCORD2R,5,9,5.,53.13010235415598,5.,9.848857801796104,23.962488974578176,5.\n,9.486832980505138,71.56505117707799,5.\n"
+        + rows
+    )
+    for text in tried:
+        mesh = read_text(text + tetra, "mesh.bdf", tmp_path)
+        np.testing.assert_allclose(mesh.nodes[mesh.blocks[0].connectivity[0]], expected, atol=1e-12)
+
+
 def test_latin_text_is_read(tmp_path: Path) -> None:
     assert read_text((TETRA + "$ caf\xe9\n").encode("latin-1"), "mesh.bdf", tmp_path).number_of_elements == 1
 
@@ -190,7 +242,7 @@ def test_nastran_sets(tmp_path: Path) -> None:
         case + "BEGIN BULK\n" + TETRA + "SPC1,7,123,1,THRU,2\nSPC1,7,3,4\nSPC,8,1,3,0.\nPSOLID,1,1\nENDDATA\n", "mesh.bdf", tmp_path
     )
     assert {name: members.tolist() for name, members in mesh.node_sets.items()} == {"SET1": [0, 1, 2], "the top": [3], "SPC7": [0, 1, 3]}
-    assert mesh.skipped == {"SET": 2, "SPC": 1, "PSOLID": 1, "set without solid elements or their nodes": 1}
+    assert mesh.skipped == {"SET": 2, "SPC": 1, "set without solid elements or their nodes": 1}
 
 
 def test_nastran_numbers() -> None:
@@ -262,8 +314,14 @@ def test_abaqus_assembly(tmp_path: Path) -> None:
         "top": [0, 2, 3],
     }
     assert {name: members.tolist() for name, members in mesh.element_sets.items()} == {"Skin": [0], "both": [0]}
-    assert mesh.skipped == {"S3": 1, "*NODE": 2, "*NSET": 1, "*MATERIAL": 1, "*DENSITY": 1}
+    assert mesh.skipped == {"S3": 1, "*NODE": 2, "*NSET": 1}
     assert len(mesh.nodes) == 4
+
+
+def test_coordinates_at_the_end_may_be_left_out(tmp_path: Path) -> None:
+    deck = DECK.replace("1,0,0,0", "1,0.").replace("2,1,0,0", "2,1.").replace("3,0,1,0", "3,0.,1.")
+    mesh = read_text(deck, "mesh.inp", tmp_path)
+    np.testing.assert_array_equal(mesh.nodes, [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
 
 
 def test_a_set_that_doubles_itself_stays_small(tmp_path: Path) -> None:
@@ -308,7 +366,7 @@ def test_written_plates(tmp_path: Path) -> None:
 FAULTS: list[tuple[str, str | bytes, str]] = [
     ("mesh.bdf", "", ": the file is empty"),
     ("mesh.bdf", b"GRID,1\0", ": this is not a text file"),
-    ("mesh.bdf", FREE, ": the file has no solid element; a mesh is of tetrahedra or bricks"),
+    ("mesh.bdf", FREE, ": the file has no solid element; a mesh is of tetrahedra, wedges or bricks"),
     ("mesh.bdf", FREE + "CQUAD4,1,1,1,2,3,4\n", "bricks; left out: CQUAD4 (1)"),
     ("mesh.bdf", FREE + "CTETRA,1,1,1,2,3,5\n", ":5: element 1 has the node 5, which the file does not give"),
     ("mesh.bdf", "CTETRA,1,1,1,2,3,5\n", ":1: element 1 has the node 1, which"),
@@ -317,14 +375,23 @@ FAULTS: list[tuple[str, str | bytes, str]] = [
     ("mesh.bdf", FREE + "CTETRA,1,1,1,2,,4\n", ":5: CTETRA 1 has 3 nodes"),
     (
         "mesh.bdf",
-        FREE + "CPENTA,1,1,1,2,3,4,5,6\n",
-        '5: "CPENTA" is a solid element that is not read; the elements must be CTETRA or CHEXA',
+        FREE + "CPYRAM,1,1,1,2,3,4,1\n",
+        '5: "CPYRAM" is a solid element that is not read; the elements must be CTETRA, CPENTA or CHEXA',
     ),
     ("mesh.bdf", FREE + "CPYRAM,1,1,1,2,3,4,5\n", ':5: "CPYRAM" is a solid element'),
     ("mesh.bdf", TETRA + "GRID,1,,2.\n", ":6: node 1 was given other coordinates in line 1; a node may be given once"),
     ("mesh.bdf", TETRA + "CTETRA,1,1,4,1,2,3\n", ":6: element 1 was given in line 5 already; an element may be given once"),
-    ("mesh.bdf", "GRID,1,3\n", ':1: the GRID is in coordinate system "3"; only the basic one (0 or blank) is read'),
-    ("mesh.bdf", "GRDSET,,3\n", ":1: GRDSET puts nodes in coordinate system"),
+    ("mesh.bdf", "GRID,1,3\n", ":1: the coordinate system 3 is not in the file; its CORD2R, CORD2C or CORD2S must be"),
+    ("mesh.bdf", "GRDSET,,3\nGRID,1\n", ":2: the coordinate system 3 is not in the file"),
+    ("mesh.bdf", "GRID,1,3\nCORD2R,3,,0.,0.,0.,0.,0.,1.\n,0.,0.,5.\n", ":2: the three points of the coordinate system 3 lie on one line"),
+    ("mesh.bdf", "GRID,1,3\nCORD2R,3,4,,,,,,1.\n,1.\nCORD2R,4,3,,,,,,1.\n,1.\n", "refers to itself"),
+    ("mesh.bdf", "GRID,1,3\nCORD1R,3,7,8,9\n", ":2: the GRID 7 that defines the coordinate system is not in the file"),
+    ("mesh.bdf", "GRID,1,-1\n", ':1: "-1" puts a node on a fluid'),
+    ("mesh.bdf", "=,*(1)\n", ":1: a card is repeated without one before it"),
+    ("mesh.bdf", "GRID,1\n=(3)\n", ':2: "=(3)" repeats steps, and the line before has none'),
+    ("mesh.bdf", "GRID,1\n=x,2\n", ':2: "=x" is no repetition; it must be "=", or "=(n)"'),
+    ("mesh.bdf", "DEFORM,1,a\n=,=,*(1)\n", ':2: "a" is not a number that can be stepped'),
+    ("mesh.bdf", "CHEXA,1,1,1,2,3,4,5,6\n,7,8\n=,*(1),=\n", ":3: a CHEXA of several lines is repeated"),
     ("mesh.bdf", "GRID,1,,nan\n", ":1: node 1 has the coordinate nan; it must be finite"),
     ("mesh.bdf", "GRID,1,,1.+999\n", ":1: node 1 has the coordinate inf"),
     ("mesh.bdf", "GRID,1,,x\n", ':1: "x" is not a coordinate; it must be a number such as'),
@@ -332,7 +399,6 @@ FAULTS: list[tuple[str, str | bytes, str]] = [
     ("mesh.bdf", "GRID*,1,,0.,0.\n", ":1: GRID* 1 has two coordinates; the third must stand in a second line"),
     ("mesh.bdf", "GRID,1,,,,,,,,+A\n+B,1\n", ':2: "B" does not go on with the card before it, which asks for "A"'),
     ("mesh.bdf", "+A,1\n", ":1: a line goes on without a card before it"),
-    ("mesh.bdf", "GRID,1\n=,*1,=\n", ':2: the card "=" repeats the one before it'),
     ("mesh.bdf", "BEGIN SUPER=1\n", ':1: "BEGIN SUPER" is not read'),
     ("mesh.bdf", "BEGIN BULK\n" + TETRA, ": there is a BEGIN BULK but no ENDDATA; the file is cut short"),
     ("mesh.bdf", "SPC1,1,123,x\n", ":1: the nodes of SPC1 can't be read"),
@@ -346,11 +412,11 @@ FAULTS: list[tuple[str, str | bytes, str]] = [
     ("mesh.inp", DECK + "*INCLUDE\n", ":9: the file to include is not given; *INCLUDE must have INPUT=file on its first line"),
     ("mesh.inp", DECK + "*ELEMENT, TYPE=C3D4,\nINPUT=more.inp\n", ":9: the file to include is not given; *ELEMENT must have"),
     ("mesh.inp", "1,0,0,0\n", ":1: there are data before the first keyword"),
-    ("mesh.inp", "*NODE\n1,0,0\n", ":2: a node must have a number and three coordinates"),
+    ("mesh.inp", "*NODE\n1 0 0\n", ":2: a node must have a number and up to three coordinates"),
     ("mesh.inp", "*NODE, SYSTEM=C\n1,0,0,0\n", ":1: the nodes are in cylindrical or spherical coordinates"),
     ("mesh.inp", "*NODE\n1,0,0,inf\n", ":2: node 1 has the coordinate inf"),
-    ("mesh.inp", DECK + "*ELEMENT,TYPE=C3D6\n2,1,2,3,4,1,2\n", ':9: "C3D6" is a solid element that is not read; the part must be of C3D4'),
-    ("mesh.inp", DECK + "*ELEMENT,TYPE=C3D15V\n2,1\n", ':9: "C3D15V" is a solid element'),
+    ("mesh.inp", DECK + "*ELEMENT,TYPE=C3D5\n2,1,2,3,4,1\n", ':9: "C3D5" is a solid element that is not read; the part must be of C3D4'),
+    ("mesh.inp", DECK + "*ELEMENT,TYPE=C3D15V\n2,1\n", ":10: element 2 has 1 nodes; C3D15V must have 15"),
     ("mesh.inp", DECK + "*ELEMENT\n", ":9: *ELEMENT has no TYPE"),
     ("mesh.inp", NODES + "*ELEMENT,TYPE=C3D4\n1,1,2,3\n", ":8: element 1 has 3 nodes; C3D4 must have 4"),
     ("mesh.inp", NODES + "*ELEMENT,TYPE=C3D4\n1,1,2,3,\n", ":8: element 1 has 3 nodes and its lines end there; C3D4 must have 4"),
@@ -387,7 +453,11 @@ FAULTS: list[tuple[str, str | bytes, str]] = [
 ]
 FOUR = "4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1"
 GMSH_FAULTS = [
-    (FOUR, "1\n1 6 2 1 1 1 2 3 4 1 2", ":13: the element is a prism, which is not read; the solids must be tetrahedra or bricks of first"),
+    (
+        FOUR,
+        "1\n1 13 2 1 1 1 2 3 4 1 2",
+        ":13: the element is a prism of 18 nodes, which is not read; the solids must be tetrahedra, prisms",
+    ),
     (FOUR, "1\n1 7 2 1 1 1 2 3 4 1", ":13: the element is a pyramid"),
     (FOUR, "1\n1 29 2 1 1 1 2 3 4 1", ":13: the element is of type 29"),
     (FOUR, "1\n1 4 2 1 1 1 2 3", ":13: the element has 3 nodes; its type 4 must have 4"),

@@ -13,6 +13,7 @@ from agreement import Against, Agrees
 from vibroimpact.errors import InputError
 from vibroimpact.meshes.geometry import mesh_geometry
 from vibroimpact.meshes.mesh_file import read_mesh
+from vibroimpact.structures.geometry import check_mesh, mass_properties
 from vibroimpact.structures.mesh import Mesh
 
 try:
@@ -128,15 +129,22 @@ def test_a_binary_file(model: None, tmp_path: Path) -> None:
         read_mesh(tmp_path / "mesh.msh")
 
 
-def test_prisms_are_refused(model: None, tmp_path: Path) -> None:
+def test_prisms(model: None, tmp_path: Path) -> None:
     occ = gmsh.model.occ
     occ.extrude([(2, occ.addRectangle(0, 0, 0, 1, 1))], 0, 0, 1, numElements=[1], recombine=True)
     occ.synchronize()
     gmsh.model.mesh.generate(3)
-    for suffix, message in [("msh", "is a prism"), ("inp", '"C3D6" is a solid element'), ("bdf", '"CPENTA" is a solid element')]:
-        gmsh.write(str(tmp_path / f"mesh.{suffix}"))
-        with pytest.raises(InputError, match=message):
-            read_mesh(tmp_path / f"mesh.{suffix}")
+    gmsh.option.setNumber("Mesh.SecondOrderIncomplete", 1)
+    for order, kind in ((1, "wedge6"), (2, "wedge15")):
+        gmsh.model.mesh.setOrder(order)
+        for suffix in ("msh", "inp", "bdf"):
+            gmsh.write(str(tmp_path / f"mesh.{suffix}"))
+            mesh = read_mesh(tmp_path / f"mesh.{suffix}")
+            assert [block.kind for block in mesh.blocks] == [kind]
+            check_mesh(mesh)
+            found = mass_properties(mesh, 1.0)
+            assert found.mass == pytest.approx(1.0, rel=1e-9)
+            np.testing.assert_allclose(found.inertia, np.eye(3) / 6.0, atol=1e-9)
 
 
 def write_geometry(file: Path, *boxes: float) -> None:

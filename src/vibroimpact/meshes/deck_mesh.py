@@ -21,27 +21,43 @@ _SQUARE = np.array([(0, 0), (0, 2), (2, 2), (2, 0), (0, 1), (1, 2), (2, 1), (1, 
 class DeckMesh:
     """Nodes in use, and element shapes with connectivity, numbered from 1.
 
-    The shape is the element kind of the block, except for "hex20" in place of hex27 and "quad8" in place of quad25.
+    The shape is the element kind of the block, except for "hex20" in place of hex27 and "quad8" in place of quad25. `materials` are
+    those of the elements, by number, and of the body if some elements have none of their own: number -1.
     """
 
     points: Floats
     blocks: list[tuple[str, Integers]]
     node_sets: Mapping[str, Integers]
     element_sets: Mapping[str, Integers]
+    materials: Mapping[int, Material]
+    element_materials: Integers
 
 
-def deck_mesh(mesh: Mesh) -> DeckMesh:
+def deck_mesh(mesh: Mesh, material: Material | None = None) -> DeckMesh:
     """Return a mesh with the element shapes of the decks; nodes that no shape uses are dropped, also from the sets.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh.
+    material : Material, optional
+        Material of the elements that have none of their own.
 
     Raises
     ------
     InputError
-        If the mesh has no elements.
+        If the mesh has no elements, or a material is rigid.
     """
     if mesh.number_of_elements == 0:
         raise InputError("the mesh has no elements; there is nothing to write")
     shapes = [_shape(block) for block in mesh.blocks if len(block.connectivity)]
     used = np.unique(np.concatenate([nodes.ravel() for _, nodes in shapes]))
+    numbers = mesh.element_materials if mesh.materials else np.full(mesh.number_of_elements, -1)
+    materials = {number: one for number, one in enumerate(mesh.materials) if number in numbers}
+    if material is not None and -1 in numbers:
+        materials[-1] = material
+    for one in materials.values():
+        _check_deck_material(one)
     owner = np.repeat(
         np.arange(mesh.number_of_elements),
         np.concatenate([np.full(len(block.connectivity), 4 if block.kind == "quad25" else 1) for block in mesh.blocks]),
@@ -51,6 +67,8 @@ def deck_mesh(mesh: Mesh) -> DeckMesh:
         [(shape, np.searchsorted(used, nodes) + 1) for shape, nodes in shapes],
         _without_empty({name: np.flatnonzero(np.isin(used, nodes)) + 1 for name, nodes in mesh.node_sets.items()}),
         _without_empty({name: np.flatnonzero(np.isin(owner, elements)) + 1 for name, elements in mesh.element_sets.items()}),
+        materials,
+        numbers[owner],
     )
 
 
@@ -68,7 +86,7 @@ def nine_node_shells(connectivity: Integers) -> Integers:
     return np.stack(squares, axis=1).reshape(-1, len(_SQUARE))
 
 
-def check_deck_material(material: Material) -> None:
+def _check_deck_material(material: Material) -> None:
     """Check that a material can be written to a deck.
 
     Raises

@@ -9,11 +9,15 @@ from os import PathLike
 from pathlib import Path
 
 from vibroimpact.errors import InputError
+from vibroimpact.materials import Material
+from vibroimpact.meshes.element_materials import with_element_materials
 from vibroimpact.meshes.geometry import BREP, STEP, mesh_geometry
 from vibroimpact.meshes.read_abaqus import read_abaqus
 from vibroimpact.meshes.read_gmsh import read_gmsh
 from vibroimpact.meshes.read_nastran import read_nastran
 from vibroimpact.structures.mesh import Mesh
+from vibroimpact.structures.parts import part_at
+from vibroimpact.structures.surface import Side, Spot
 
 READERS: Mapping[str, Callable[[str | PathLike[str]], Mesh]] = {
     ".bdf": read_nastran,
@@ -25,7 +29,13 @@ READERS: Mapping[str, Callable[[str | PathLike[str]], Mesh]] = {
 }
 
 
-def read_mesh(path: str | PathLike[str], unit_in_metres: float = 1.0, size: float | None = None) -> Mesh:
+def read_mesh(
+    path: str | PathLike[str],
+    unit_in_metres: float = 1.0,
+    size: float | None = None,
+    materials: Mapping[str, Material] | None = None,
+    contact: tuple[Spot, Side] | None = None,
+) -> Mesh:
     """Read a mesh file (Nastran, Abaqus, Gmsh) or mesh a geometry file (STEP, BREP), by suffix.
 
     Parameters
@@ -36,11 +46,15 @@ def read_mesh(path: str | PathLike[str], unit_in_metres: float = 1.0, size: floa
         Unit of the coordinates [m], such as 0.001 for millimetres; a STEP file states its own.
     size : float, optional
         Approximate maximum element size of a geometry [m]; by default a twelfth of the largest extent.
+    materials : mapping of str to Material, optional
+        Materials in place of those of the file, by the name of a material or an element set; see `with_element_materials`.
+    contact : tuple of a spot and a side, optional
+        Of several parts that share no node the one there, such as `((0.0, 0.0), "upper")`; see `part_at`. By default all are returned.
 
     Raises
     ------
     InputError
-        If the file is of another kind, or can't be read.
+        If the file is of another kind, can't be read, or gives its elements several materials that can't be used.
 
     Examples
     --------
@@ -48,6 +62,16 @@ def read_mesh(path: str | PathLike[str], unit_in_metres: float = 1.0, size: floa
     Traceback (most recent call last):
     vibroimpact.errors.InputError: plate.stl: ".stl" is not read; a mesh must be .bdf, .dat, .nas, .fem, .inp, .msh, .step, .stp or .brep
     """
+    mesh = mesh_of_file(path, unit_in_metres, size)
+    if materials:  # names may be those of any part
+        mesh = with_element_materials(mesh, unit_in_metres, materials)
+    if contact is not None:
+        mesh = part_at(mesh, *contact)
+    return mesh if materials else with_element_materials(mesh, unit_in_metres)
+
+
+def mesh_of_file(path: str | PathLike[str], unit_in_metres: float = 1.0, size: float | None = None) -> Mesh:
+    """Return all parts of a mesh file, or of a meshed geometry, without materials; parameters and errors are those of `read_mesh`."""
     path = Path(path)
     suffix = path.suffix.lower()
     known = [*READERS, *STEP, *BREP]

@@ -13,9 +13,13 @@ _HEX20_GMSH = "0 1 2 3 4 5 6 7 01 03 04 12 15 23 26 37 45 47 56 67"
 GMSH = {
     "tet10": "0 1 2 3 01 12 02 03 23 13",
     "hex20": _HEX20_GMSH,
+    "wedge15": "0 1 2 3 4 5 01 02 03 12 14 25 34 35 45",
     "hex27": f"{_HEX20_GMSH} 0123 0154 0374 1265 2376 4567 01234567",
 }
-NASTRAN = {"hex20": f"0 1 2 3 4 5 6 7 {_HEX_BOTTOM} {_HEX_UP} {_HEX_TOP}"}
+NASTRAN = {
+    "hex20": f"0 1 2 3 4 5 6 7 {_HEX_BOTTOM} {_HEX_UP} {_HEX_TOP}",
+    "wedge15": "0 1 2 3 4 5 01 12 20 03 14 25 34 45 53",
+}
 ABAQUS = {"hex27": f"0 1 2 3 4 5 6 7 {_HEX_BOTTOM} {_HEX_TOP} {_HEX_UP} 01234567 0123 4567 0154 1265 2376 0374"}
 """Abaqus differs from this package in hex27 only: the centre node precedes the face nodes."""
 

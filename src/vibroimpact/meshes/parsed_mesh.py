@@ -15,11 +15,19 @@ from vibroimpact.meshes.node_order import to_ours
 from vibroimpact.meshes.text_files import TextLine
 from vibroimpact.shown import shown
 from vibroimpact.structures.element_kinds import ELEMENT_KINDS
+from vibroimpact.structures.geometry import renumbered_by_volume
 from vibroimpact.structures.mesh import ElementBlock, Mesh
+from vibroimpact.structures.stated_materials import StatedMaterial, StatedMaterials
 
 LARGEST_COORDINATE = 1e15
 MOST_MEMBERS = 10_000_000
 """Limit for all node sets, or all element sets, together: with nested sets and ranges a short file could exhaust the memory."""
+
+FLUID = "fluid"
+"""What a stated material is whose elements are left out: they have pressures and no displacements."""
+
+FLUID_ELEMENTS = "elements of a fluid"
+"""Name of these among the items that a reader skipped."""
 
 EMPTY_SET = "set without solid elements or their nodes"
 
@@ -83,6 +91,11 @@ class Parts:
         The file, for messages.
     orders : mapping of str to str
         The file's node order of the element kinds where it differs from ours.
+
+    Attributes
+    ----------
+    sections : list of (Selection, StatedMaterial)
+        Materials of elements; of several for one element the last one counts.
     """
 
     path: Path
@@ -90,6 +103,8 @@ class Parts:
     node_sets: defaultdict[str, Selection] = field(default_factory=lambda: defaultdict(Selection))
     element_sets: defaultdict[str, Selection] = field(default_factory=lambda: defaultdict(Selection))
     skipped: Counter[str] = field(default_factory=Counter)
+    materials: dict[str, StatedMaterial] = field(default_factory=dict)
+    sections: list[tuple[Selection, StatedMaterial]] = field(default_factory=list)
     _copied: int = 0
     _node_lines: list[TextLine] = field(default_factory=list)
     _node_numbers: list[int] = field(default_factory=list)
@@ -139,23 +154,58 @@ class Parts:
         InputError
             If an element number occurs twice, a node number with other coordinates, a node is missing or there is no element.
         """
+        self._leave_out_fluids()
         if not self._elements:
             left_out = ", ".join(f"{shown(name)[1:-1]} ({count})" for name, count in self.skipped.most_common(5))
             raise InputError(
-                f"{self.path}: the file has no solid element; a mesh is of tetrahedra or bricks{left_out and '; left out: ' + left_out}"
+                f"{self.path}: the file has no solid element; a mesh is of tetrahedra, wedges or bricks"
+                f"{left_out and '; left out: ' + left_out}"
             )
         numbers, points = self._distinct_nodes()
         blocks = {kind: self._places_of_nodes(kind, numbers) for kind in ELEMENT_KINDS if kind in self._elements}
         used, places = np.unique(np.concatenate([places.ravel() for places in blocks.values()]), return_inverse=True)
         ends = np.cumsum([places.size for places in blocks.values()])[:-1]
         renumbered = zip(blocks, np.split(places, ends), blocks.values(), strict=True)
-        return Mesh(
+        elements = self._distinct_elements(list(blocks))
+        mesh = Mesh(
             points[used],
             tuple(ElementBlock(kind, flat.reshape(shaped.shape)) for kind, flat, shaped in renumbered),
             self._sets(self.node_sets, numbers[used], np.arange(len(used))),
-            self._sets(self.element_sets, *self._distinct_elements(list(blocks))),
+            self._sets(self.element_sets, *elements),
             dict(self.skipped),
+            stated=self._stated(*elements),
         )
+        return renumbered_by_volume(mesh)
+
+    def _leave_out_fluids(self) -> None:
+        """Remove the elements of fluids, and count them as skipped."""
+        fluids = [chosen for chosen, material in self.sections if material.other == FLUID]
+        for kind, found in list(self._elements.items()) if fluids else []:
+            numbers = np.array(found.numbers, dtype=np.int64)
+            order = np.argsort(numbers, kind="stable")
+            wet = np.zeros(len(numbers), dtype=bool)
+            for chosen in fluids:
+                wet[order[chosen.places(numbers[order])]] = True
+            if wet.any():
+                self.skipped[FLUID_ELEMENTS] += int(wet.sum())
+                dry = np.flatnonzero(~wet).tolist()
+                del self._elements[kind]
+                if dry:
+                    lines, left = [found.lines[index] for index in dry], [found.numbers[index] for index in dry]
+                    self._elements[kind] = _Elements(lines, left, [found.nodes[index] for index in dry])
+
+    def _stated(self, numbers: Integers, places: Integers) -> StatedMaterials | None:
+        """Return the materials that the file gives its elements; None if it gives none."""
+        materials = tuple(dict.fromkeys(material for _, material in self.sections if material.other != FLUID))
+        if not materials:
+            return None
+        of_elements = np.full(len(numbers), -1)
+        for chosen, material in self.sections:
+            if material.other != FLUID:
+                of_elements[places[chosen.places(numbers)]] = materials.index(material)
+        used = np.unique(of_elements[of_elements >= 0])
+        renumbered = np.append(np.searchsorted(used, np.arange(len(materials))), -1)
+        return StatedMaterials(tuple(materials[index] for index in used), renumbered[of_elements]) if len(used) else None
 
     def _distinct_nodes(self) -> tuple[Integers, Floats]:
         """Return the node numbers, sorted, and the coordinates; raise if a node is given twice with different coordinates."""

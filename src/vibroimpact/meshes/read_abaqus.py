@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from os import PathLike
 from pathlib import Path
 
 from vibroimpact.errors import did_you_mean
 from vibroimpact.meshes.abaqus_blocks import Block, abaqus_include, blocks
+from vibroimpact.meshes.abaqus_materials import AbaqusMaterials
+from vibroimpact.meshes.left_out import remarks_of
 from vibroimpact.meshes.node_order import ABAQUS
 from vibroimpact.meshes.parsed_mesh import Parts, Selection
 from vibroimpact.meshes.text_files import TextLine, parse_integer, parse_real, read_lines_with_includes
@@ -15,7 +18,7 @@ from vibroimpact.shown import shown
 from vibroimpact.structures.element_kinds import ELEMENT_KINDS
 from vibroimpact.structures.mesh import Mesh
 
-_KINDS = {"4": "tet4", "8": "hex8", "10": "tet10", "20": "hex20", "27": "hex27"}
+_KINDS = {"4": "tet4", "6": "wedge6", "8": "hex8", "10": "tet10", "15": "wedge15", "20": "hex20", "27": "hex27"}
 _SOLID = re.compile(r"C3D(\d+)[A-Z]*")
 _OTHER_SOLID = re.compile(r"E?C3D|SC[68]|CSS8|CCL\d|Q3D")
 _MAKES_MESH = {"NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "SYMMETRIC MODEL GENERATION"}
@@ -26,8 +29,9 @@ _QUIET = {"HEADING", "INCLUDE", "PART", "END PART", "ASSEMBLY", "END ASSEMBLY", 
 def read_abaqus(path: str | PathLike[str]) -> Mesh:
     """Read the solid elements of an Abaqus input file with one part.
 
-    The mesh consists of C3D4, C3D8, C3D10, C3D20 and C3D27 elements of every formulation, and the sets of *NSET, *ELSET, *NODE and
-    *ELEMENT. Other keywords, and elements that are not solid, are counted in `Mesh.skipped`.
+    The mesh consists of C3D4, C3D6, C3D8, C3D10, C3D15, C3D20 and C3D27 elements of every formulation, and the sets of *NSET, *ELSET,
+    *NODE and *ELEMENT. The materials of *SOLID SECTION are in `Mesh.stated`. Other keywords, and elements that are not solid, are
+    counted in `Mesh.skipped`.
 
     Parameters
     ----------
@@ -61,6 +65,7 @@ class _Reader:
 
     def __init__(self, path: Path) -> None:
         self.parts = Parts(path, ABAQUS)
+        self.materials = AbaqusMaterials()
         self.names: dict[tuple[str, str], str] = {}
         self.seen: dict[str, TextLine] = {}
         self.open: dict[str, TextLine] = {}
@@ -91,14 +96,17 @@ class _Reader:
             self._elements(block)
         elif keyword in ("NSET", "ELSET") and (not self.in_assembly or "INSTANCE" in block.parameters):
             self._set(block)
-        elif keyword not in _QUIET:
+        elif not self.materials.take(block) and keyword not in _QUIET:
             self.parts.skipped[f"*{keyword}"] += 1
 
     def mesh(self) -> Mesh:
         if self.open:
             keyword, line = self.open.popitem()
             raise line.wrong(f"*{keyword} has no *END {keyword}; the file is cut short")
-        return self.parts.mesh()
+        sections = self.materials.sections()
+        self.parts.sections = [(self._known("ELSET", name, line), material) for line, name, material in sections]
+        mesh = self.parts.mesh()
+        return replace(mesh, remarks=remarks_of(mesh.skipped))
 
     def _once(self, block: Block) -> None:
         """Check that there is one part and one instance, and that the instance is not moved or rotated."""
@@ -121,10 +129,10 @@ class _Reader:
         chosen = self._selection("NSET", block.parameters["NSET"]) if block.parameters.get("NSET") else Selection()
         for line in block.data:
             fields = line.text.split(",")
-            if len(fields) < 4:
-                raise line.wrong("a node must have a number and three coordinates, with commas between them")
+            if len(fields) < 2:
+                raise line.wrong("a node must have a number and up to three coordinates, with commas between them")
             number = parse_integer(fields[0], line, "the number of a node")
-            x, y, z = (parse_real(text, line) if text.strip() else 0.0 for text in fields[1:4])
+            x, y, z = (parse_real(text, line) if text.strip() else 0.0 for text in [*fields[1:4], "", ""][:3])
             self.parts.add_node(line, number, (x, y, z))
             chosen.numbers.add(number)
 
@@ -135,10 +143,13 @@ class _Reader:
             if _OTHER_SOLID.match(given):
                 where = " in the assembly" if self.in_assembly else ""
                 raise block.line.wrong(
-                    f"{shown(given)}{where} is a solid element that is not read; the part must be of C3D4, C3D8, C3D10, C3D20 or C3D27"
+                    f"{shown(given)}{where} is a solid element that is not read; "
+                    "the part must be of C3D4, C3D6, C3D8, C3D10, C3D15, C3D20 or C3D27"
                 )
             if not given:
                 raise block.line.wrong("*ELEMENT has no TYPE; it must have one, such as TYPE=C3D10")
+            if block.parameters.get("ELSET"):  # which other sets may refer to
+                self._selection("ELSET", block.parameters["ELSET"])
             # an element continues on the next line after a trailing comma, so that the other lines count the elements
             ends = sum(not line.text.rstrip().endswith(",") for line in block.data)
             self.parts.skipped[given] += max(ends, 1)

@@ -3,19 +3,24 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from os import PathLike
 from pathlib import Path
 
 from vibroimpact.errors import InputError
-from vibroimpact.meshes.nastran_cards import Card, cards, nastran_include, nastran_real
+from vibroimpact.meshes.left_out import remarks_of
+from vibroimpact.meshes.nastran_cards import Card, cards, nastran_include
+from vibroimpact.meshes.nastran_coordinates import NastranGrids
+from vibroimpact.meshes.nastran_materials import NastranMaterials
 from vibroimpact.meshes.node_order import NASTRAN
 from vibroimpact.meshes.parsed_mesh import Parts, Selection
 from vibroimpact.meshes.text_files import TextLine, parse_integer, read_lines_with_includes
 from vibroimpact.shown import shown
 from vibroimpact.structures.mesh import Mesh
 
-_KINDS = {"CTETRA": {4: "tet4", 10: "tet10"}, "CHEXA": {8: "hex8", 20: "hex20"}}
+_KINDS = {"CTETRA": {4: "tet4", 10: "tet10"}, "CPENTA": {6: "wedge6", 15: "wedge15"}, "CHEXA": {8: "hex8", 20: "hex20"}}
 _OTHER_SOLIDS = ("CTETRA", "CHEX", "CPENT", "CPYR", "CWEDGE")
 _BEGIN = re.compile(r"\s*BEGIN[\s,]+(\w*)", re.IGNORECASE)
 _SET = re.compile(r"\s*SET\s+(\d{1,18})\s*=(.*)", re.IGNORECASE)
@@ -25,9 +30,10 @@ _SET_NAME = re.compile(r"\$ node set (\d{1,18}): (\S.*)")
 def read_nastran(path: str | PathLike[str]) -> Mesh:
     """Read the solid elements of a Nastran file (bulk data, with or without executive and case control).
 
-    The mesh consists of CTETRA, CHEXA and GRID cards. The elements of property n form the set `PIDn`, the nodes of SPC1 cards the set
-    `SPCn`, and those of `SET n` in case control the set `SETn`, or the name in a comment "$ node set n: name". Other cards are
-    counted in `Mesh.skipped`.
+    The mesh consists of CTETRA, CPENTA, CHEXA and GRID cards, also in coordinate systems of CORD1 and CORD2 cards. The elements of
+    property n form the set `PIDn`, the nodes of SPC1 cards the set `SPCn`, and those of `SET n` in case control the set `SETn`, or the
+    name in a comment "$ node set n: name". The materials of PSOLID cards are in `Mesh.stated`, as `MIDn`; elements of a fluid are left
+    out. Other cards are counted in `Mesh.skipped`.
 
     Parameters
     ----------
@@ -58,14 +64,17 @@ def read_nastran(path: str | PathLike[str]) -> Mesh:
         _check_begin(lines[begin])
         _read_sets(lines[:begin], parts)
         lines = lines[begin + 1 :]
-    ended = False
+    ended, grids, materials, held = False, NastranGrids(), NastranMaterials(), Counter[str]()
     for card in cards(lines):
         ended = card.name == "ENDDATA"
-        if not ended:
-            _read_card(card, parts)
+        if not ended and not materials.take(card):
+            _read_card(card, parts, grids, held)
     if begin is not None and not ended:
         raise InputError(f"{path}: there is a BEGIN BULK but no ENDDATA; the file is cut short")
-    return parts.mesh()
+    grids.add_to(parts)
+    parts.sections = materials.sections(parts.element_sets)
+    mesh = parts.mesh()
+    return replace(mesh, remarks=remarks_of({**mesh.skipped, **held}))
 
 
 def _check_begin(line: TextLine) -> None:
@@ -74,20 +83,17 @@ def _check_begin(line: TextLine) -> None:
         raise line.wrong(f'"BEGIN {section[1]}" is not read; the mesh must stand after BEGIN BULK')
 
 
-def _read_card(card: Card, parts: Parts) -> None:
+def _read_card(card: Card, parts: Parts, grids: NastranGrids, held: Counter[str]) -> None:
+    """Read a card; `held` counts the cards that hold nodes, of which the mesh has sets or nothing."""
     line, name, fields = card
-    if name == "GRID":
-        if fields[1] not in ("", "0"):
-            raise line.wrong(f"the GRID is in coordinate system {shown(fields[1])}; only the basic one (0 or blank) is read")
-        number = parse_integer(fields[0], line, "the number of a node")
-        if len(fields) < 5:
-            raise line.wrong(f"GRID* {number} has two coordinates; the third must stand in a second line, which starts with *")
-        x, y, z = fields[2:5]
-        parts.add_node(line, number, (nastran_real(x, line), nastran_real(y, line), nastran_real(z, line)))
-    elif name in _KINDS:
+    if name == "GRID" and any(fields[6:7]):
+        held["PS of GRID"] += 1
+    if grids.take(card):
+        return
+    if name in _KINDS:
         _read_solid(card, parts)
     elif name.startswith(_OTHER_SOLIDS):
-        raise line.wrong(f"{shown(name)} is a solid element that is not read; the elements must be CTETRA or CHEXA")
+        raise line.wrong(f"{shown(name)} is a solid element that is not read; the elements must be CTETRA, CPENTA or CHEXA")
     elif name.startswith("INCLUDE"):
         raise line.wrong("the file to include is not given; its name must stand in quotes on the line of INCLUDE")
     elif name == "SPC1":
@@ -95,9 +101,8 @@ def _read_card(card: Card, parts: Parts) -> None:
         if chosen is None:
             raise line.wrong("the nodes of SPC1 can't be read; they must be numbers, or a number, THRU and a number")
         parts.node_sets[f"SPC{parse_integer(fields[0], line, 'the number of a set')}"].update(chosen)
+        held["SPC1"] += 1
     else:
-        if name == "GRDSET" and fields[1] not in ("", "0"):
-            raise line.wrong(f"GRDSET puts nodes in coordinate system {shown(fields[1])}; only the basic one (0 or blank) is read")
         parts.skipped[name] += 1
 
 

@@ -107,7 +107,7 @@ def parse_integer(text: str, line: TextLine, what: str) -> int:
     return int(text)
 
 
-def parse_real(text: str, line: TextLine) -> float:
+def parse_real(text: str, line: TextLine, what: str = "a coordinate") -> float:
     """Return `text` as a float; the caller checks that it is finite.
 
     Raises
@@ -120,4 +120,4 @@ def parse_real(text: str, line: TextLine) -> float:
             raise ValueError
         return float(text)
     except ValueError:
-        raise line.wrong(f"{shown(text.strip())} is not a coordinate; it must be a number such as 0.25 or 2.5e-3") from None
+        raise line.wrong(f"{shown(text.strip())} is not {what}; it must be a number such as 0.25 or 2.5e-3") from None

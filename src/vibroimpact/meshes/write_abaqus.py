@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from os import PathLike
 
+import numpy as np
+
 from vibroimpact.files.atomic_write import write_text_file
 from vibroimpact.files.plain_names import one_line
 from vibroimpact.materials import Material
-from vibroimpact.meshes.deck_mesh import check_deck_material, check_shell_thickness, deck_mesh
+from vibroimpact.meshes.deck_mesh import check_shell_thickness, deck_mesh
 from vibroimpact.structures.mesh import Mesh
 
-_TYPES = {"tet4": "C3D4", "tet10": "C3D10", "hex8": "C3D8", "hex20": "C3D20", "quad8": "S8R"}
+_TYPES = {"tet4": "C3D4", "tet10": "C3D10", "wedge6": "C3D6", "wedge15": "C3D15", "hex8": "C3D8", "hex20": "C3D20", "quad8": "S8R"}
 _A_LINE = 16
 """Largest number of entries on a line."""
 
@@ -28,7 +30,7 @@ def write_abaqus(mesh: Mesh, path: str | PathLike[str], material: Material | Non
     path : path
         The file; an existing one is replaced.
     material : Material, optional
-        Material, written with the section definitions that use it.
+        Material of the elements that have none of their own, written with the section definitions that use it.
     thickness : float, optional
         Thickness of the shells [m]; without it the shell section is omitted.
 
@@ -49,36 +51,39 @@ def write_abaqus(mesh: Mesh, path: str | PathLike[str], material: Material | Non
     ...     print(Path(folder, "tet.inp").read_text().splitlines()[-1])
     1, 4, 1, 2, 3
     """
-    export = deck_mesh(mesh)
+    export = deck_mesh(mesh, material)
     check_shell_thickness(thickness)
     rows = ["*NODE"]
     rows += [f"{number}, {x!r}, {y!r}, {z!r}" for number, (x, y, z) in enumerate(export.points.tolist(), 1)]
     number = 0
-    # element numbers of solids and shells, whose sections need element sets
-    section_ranges: dict[str, list[tuple[int, int]]] = {"SOLIDS": [], "SHELLS": []}
+    sections: dict[tuple[str, int], list[int]] = {}  # elements by kind of section and material
     for shape, nodes in export.blocks:
         rows.append(f"*ELEMENT, TYPE={_TYPES[shape]}")
-        section_ranges["SHELLS" if shape == "quad8" else "SOLIDS"].append((number + 1, number + len(nodes)))
+        part = "SHELLS" if shape == "quad8" else "SOLIDS"
         for members in nodes.tolist():
+            sections.setdefault((part, int(export.element_materials[number])), []).append(number + 1)
             number += 1
             rows += _rows([number, *members])
     for keyword, sets in (("NSET", export.node_sets), ("ELSET", export.element_sets)):
         for name, members in sets.items():
             rows += [f"*{keyword}, {keyword}={_quoted(name)}", *_rows(members.tolist())]
-    if material is not None:
-        check_deck_material(material)
-        name = _quoted(material.name or "material")
+    names: dict[int, str] = {}
+    for of, one in export.materials.items():
+        names[of] = _quoted(one.name or "material") if _quoted(one.name or "material") not in names.values() else f"material-{of + 1}"
         rows += [
-            f"*MATERIAL, NAME={name}",
+            f"*MATERIAL, NAME={names[of]}",
             "*DENSITY",
-            repr(float(material.density)),
+            repr(float(one.density)),
             "*ELASTIC",
-            f"{float(material.youngs_modulus)!r}, {float(material.poissons_ratio)!r}",
+            f"{float(one.youngs_modulus)!r}, {float(one.poissons_ratio)!r}",
         ]
-        for part, data in (("SOLIDS", ""), ("SHELLS", None if thickness is None else repr(float(thickness)))):
-            if section_ranges[part] and data is not None:
-                rows += [f"*ELSET, ELSET={part}, GENERATE", *(f"{first}, {last}, 1" for first, last in section_ranges[part])]
-                rows += [f"*{part[:-1]} SECTION, ELSET={part}, MATERIAL={name}", *([data] if data else [])]
+    for (part, of), elements in sections.items():
+        data = "" if part == "SOLIDS" else None if thickness is None else repr(float(thickness))
+        if of in names and data is not None:
+            elset = part if of < 0 else f"{part}-{of + 1}"
+            runs = np.split(elements, np.flatnonzero(np.diff(elements) != 1) + 1)
+            rows += [f"*ELSET, ELSET={elset}, GENERATE", *(f"{run[0]}, {run[-1]}, 1" for run in runs)]
+            rows += [f"*{part[:-1]} SECTION, ELSET={elset}, MATERIAL={names[of]}", *([data] if data else [])]
     write_text_file(path, "\n".join([*rows, ""]))
 
 

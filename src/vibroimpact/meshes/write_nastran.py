@@ -11,12 +11,21 @@ from vibroimpact.arrays import Integers
 from vibroimpact.files.atomic_write import write_text_file
 from vibroimpact.files.plain_names import one_line
 from vibroimpact.materials import Material
-from vibroimpact.meshes.deck_mesh import check_deck_material, check_shell_thickness, deck_mesh
+from vibroimpact.meshes.deck_mesh import check_shell_thickness, deck_mesh
 from vibroimpact.meshes.node_order import NASTRAN, from_ours
 from vibroimpact.structures.mesh import Mesh
 
-_CARDS = {"tet4": "CTETRA", "tet10": "CTETRA", "hex8": "CHEXA", "hex20": "CHEXA", "quad8": "CQUAD8"}
-_SOLIDS, _SHELLS = 1, 2
+_CARDS = {
+    "tet4": "CTETRA",
+    "tet10": "CTETRA",
+    "wedge6": "CPENTA",
+    "wedge15": "CPENTA",
+    "hex8": "CHEXA",
+    "hex20": "CHEXA",
+    "quad8": "CQUAD8",
+}
+_SOLIDS, _SHELLS, _OWN = 1, 2, 3
+"""Property of solids of the body's material, of shells, and the first one of solids with materials of their own."""
 
 
 def write_nastran(
@@ -24,7 +33,8 @@ def write_nastran(
 ) -> None:
     """Write a mesh as Nastran bulk data in metres, kilograms and seconds.
 
-    27-node bricks become 20-node CHEXA, each plate element four CQUAD8. Solids have property 1, shells property 2. Node sets become
+    27-node bricks become 20-node CHEXA, each plate element four CQUAD8. Solids have property 1, shells property 2, and solids with
+    materials of their own the properties from 3 on, which have the numbers of the materials. Node sets become
     SETs of case control, named in comments; element sets are omitted.
 
     Parameters
@@ -34,7 +44,7 @@ def write_nastran(
     path : path
         The file; an existing one is replaced.
     material : Material, optional
-        Material, written as MAT1, with PSOLID.
+        Material of the elements that have none of their own, written as MAT1, with PSOLID.
     title : str, optional
         The title of the analysis.
     thickness : float, optional
@@ -56,7 +66,7 @@ def write_nastran(
     ...     print(Path(folder, "tet.bdf").read_text().splitlines()[-2])
     CTETRA         1       1       4       1       2       3
     """
-    export = deck_mesh(mesh)
+    export = deck_mesh(mesh, material)
     check_shell_thickness(thickness)
     rows = ["CEND"]
     if title:
@@ -64,13 +74,13 @@ def write_nastran(
     for number, (name, nodes) in enumerate(export.node_sets.items(), 1):
         rows += [f"$ node set {number}: {_one_line(name)}", *_set(number, nodes)]
     rows.append("BEGIN BULK")
-    if material is not None:
-        check_deck_material(material)
-        youngs, poisson, density = (nastran_number(value) for value in (material.youngs_modulus, material.poissons_ratio, material.density))
-        rows += [f"MAT1*   {1:16d}{youngs:>16}{'':16}{poisson:>16}", f"*       {density:>16}"]
     shapes = {shape for shape, _ in export.blocks}
-    if material is not None and shapes - {"quad8"}:
-        rows.append(f"PSOLID  {_SOLIDS:8d}{1:8d}")
+    for number, one in export.materials.items():
+        own = _SOLIDS if number < 0 else _OWN + number
+        youngs, poisson, density = (nastran_number(value) for value in (one.youngs_modulus, one.poissons_ratio, one.density))
+        rows += [f"MAT1*   {own:16d}{youngs:>16}{'':16}{poisson:>16}", f"*       {density:>16}"]
+        if shapes - {"quad8"}:
+            rows.append(f"PSOLID  {own:8d}{own:8d}")
     if thickness is not None and "quad8" in shapes:
         rows += [f"PSHELL* {_SHELLS:16d}{1:16d}{nastran_number(thickness):>16}{1:16d}", f"*       {'':16}{1:16d}"]
     for number, point in enumerate(export.points.tolist(), 1):
@@ -78,11 +88,11 @@ def write_nastran(
         rows += [f"GRID*   {number:16d}{'':16}{x:>16}{y:>16}", f"*       {z:>16}"]
     number = 0
     for shape, nodes in export.blocks:
-        card, pid = _CARDS[shape], _SHELLS if shape == "quad8" else _SOLIDS
         theirs = nodes[:, from_ours(shape, NASTRAN[shape])] if shape in NASTRAN else nodes
         for members in theirs.tolist():
+            own = int(export.element_materials[number])
             number += 1
-            rows += _card(card, [number, pid, *members])
+            rows += _card(_CARDS[shape], [number, _SHELLS if shape == "quad8" else _SOLIDS if own < 0 else _OWN + own, *members])
     write_text_file(path, "\n".join([*rows, "ENDDATA", ""]))
 
 

@@ -16,7 +16,7 @@ from vibroimpact.files.atomic_write import write_text_file
 from vibroimpact.meshes.deck_mesh import nine_node_shells
 from vibroimpact.structures.mesh import Mesh
 
-_CELLS = {"tet4": 10, "tet10": 24, "hex8": 12, "hex20": 25, "hex27": 29, "quad25": 28}
+_CELLS = {"tet4": 10, "tet10": 24, "wedge6": 13, "wedge15": 26, "hex8": 12, "hex20": 25, "hex27": 29, "quad25": 28}
 _TYPES = {"float64": "Float64", "float32": "Float32", "int64": "Int64", "int32": "Int32", "uint8": "UInt8"}
 
 

@@ -12,6 +12,7 @@ from vibroimpact.cases.elastic.meshes import meshes_of
 from vibroimpact.cases.elastic.modes import BodyModes
 from vibroimpact.results.peaks import known_errors
 from vibroimpact.structures.recipe import model_key
+from vibroimpact.structures.stated_materials import contradictions
 from vibroimpact.structures.store import has_model
 
 MODE_COLUMNS = (
@@ -55,6 +56,8 @@ def mesh_facts(case: Case) -> dict[str, dict[str, Any]]:
             "nodes": len(meshes[name].nodes),
             "degrees_of_freedom": meshes[name].dofs_per_node * len(meshes[name].nodes),
             "modes_computed": has_model(model_key(body.recipe)),
+            "materials": meshes[name].materials_text,
+            "remarks": [*meshes[name].remarks, *contradictions(meshes[name].stated, getattr(case, name).material)],
         }
         for name, body in elastic_bodies(case).items()
     }

@@ -27,9 +27,7 @@ def body_facts(name: str, found: BodyModes) -> list[tuple[str, str]]:
         ("rigid motions", str(len(found.model.rigid_coefficients))),
         ("damping", found.body.damping.description),
     ]
-    if "left out of the file" in facts:
-        rows.append(("left out of the file", facts["left out of the file"]))
-    return rows
+    return rows + [(what, facts[what]) for what in ("materials", "left out of the file") if what in facts]
 
 
 def mode_table(found: BodyModes) -> Cells:

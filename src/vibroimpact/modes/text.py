@@ -53,4 +53,6 @@ def elastic_rows(case: Case) -> list[tuple[str, str]]:
             ("  damping", body.damping.description),
             ("  held by", supports_text(body)),
         ]
+        rows += [("  materials", mesh["materials"])] if mesh["materials"] else []
+        rows += [("  of the file", remark) for remark in mesh["remarks"]]
     return rows

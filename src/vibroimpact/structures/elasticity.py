@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from scipy.sparse import csr_array
 
+from vibroimpact.arrays import Floats
 from vibroimpact.materials import Material
 from vibroimpact.structures.assembly import isotropic, pair_assembly, scaled_shapes
 from vibroimpact.structures.mesh import Mesh
@@ -16,9 +19,9 @@ def assemble_solid(mesh: Mesh, material: Material) -> tuple[csr_array, csr_array
     Parameters
     ----------
     mesh : Mesh
-        Mesh of tetrahedra and bricks.
+        Mesh of tetrahedra, wedges and bricks, with the materials of its elements if there are several.
     material : Material
-        Density, Young's modulus and Poisson's ratio.
+        Density, Young's modulus and Poisson's ratio of the elements that have no material of their own.
 
     Returns
     -------
@@ -40,15 +43,39 @@ def assemble_solid(mesh: Mesh, material: Material) -> tuple[csr_array, csr_array
     >>> round(float(mass.sum()) / 3.0, 6)
     7850.0
     """
-    modulus, ratio = material.youngs_modulus, material.poissons_ratio
-    mu = modulus / (2.0 * (1.0 + ratio))
-    lame = modulus * ratio / ((1.0 + ratio) * (1.0 - 2.0 * ratio))
     products, masses = [], []
     for block in mesh.blocks:
         for values, gradients in scaled_shapes(mesh, block):
             masses.append(values.transpose(0, 2, 1) @ values)
             products.append(gradients.transpose(0, 1, 3, 2)[:, None] @ gradients[None])
     summed, matrix = pair_assembly(mesh)
-    product = np.array([[summed([chunk[i, j] for chunk in products]) for j in range(3)] for i in range(3)])
-    scalar = material.density * summed(masses)
-    return matrix(isotropic(product, lame, mu)), matrix(scalar[:, None, None] * np.eye(3))
+
+    def stiffness_of(chunks: Sequence[Floats], lame: float, mu: float) -> Floats:
+        product = np.array([[summed([chunk[i, j] for chunk in chunks]) for j in range(3)] for i in range(3)])
+        return isotropic(product, lame, mu)
+
+    if mesh.materials:  # the stiffness is linear in both constants, so that each is a weight of the elements
+        lame, mu, density = (
+            _of_chunks(mesh.of_elements(material, value), masses) for value in (_lame, _shear_modulus, lambda one: one.density)
+        )
+        weighted = [[chunk * of[:, None, None] for chunk, of in zip(products, each, strict=True)] for each in (lame, mu)]
+        stiffness = stiffness_of(weighted[0], 1.0, 0.0) + stiffness_of(weighted[1], 0.0, 1.0)
+        scalar = summed([chunk * of[:, None, None] for chunk, of in zip(masses, density, strict=True)])
+    else:
+        stiffness = stiffness_of(products, _lame(material), _shear_modulus(material))
+        scalar = material.density * summed(masses)
+    return matrix(stiffness), matrix(scalar[:, None, None] * np.eye(3))
+
+
+def _of_chunks(values: Floats, chunks: Sequence[Floats]) -> list[Floats]:
+    """Return a number per element as one array per chunk of elements."""
+    return np.split(values, np.cumsum([len(chunk) for chunk in chunks])[:-1])
+
+
+def _lame(material: Material) -> float:
+    modulus, ratio = material.youngs_modulus, material.poissons_ratio
+    return modulus * ratio / ((1.0 + ratio) * (1.0 - 2.0 * ratio))
+
+
+def _shear_modulus(material: Material) -> float:
+    return material.youngs_modulus / (2.0 * (1.0 + material.poissons_ratio))

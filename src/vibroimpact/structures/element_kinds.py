@@ -1,8 +1,9 @@
 """Kinds of finite elements: node order, shape functions, quadrature and faces.
 
-Nodes are numbered as in Abaqus and VTK. The reference element of bricks is the unit cube, that of tetrahedra the unit simplex. Shape
-functions are those of scikit-fem, except for two kinds with products of Lagrange polynomials: the quadrilateral of order four for
-plates, and, for speed, the brick of 27 nodes, which is evaluated for every drop of an elastic sphere.
+Nodes are numbered as in Abaqus and VTK. The reference element of bricks is the unit cube, that of tetrahedra the unit simplex, that of
+wedges the unit triangle times the unit interval. Shape functions are those of scikit-fem, except for wedges, and for two kinds with
+products of Lagrange polynomials: the quadrilateral of order four for plates, and, for speed, the brick of 27 nodes, which is evaluated
+for every drop of an elastic sphere.
 """
 
 from __future__ import annotations
@@ -24,6 +25,10 @@ _HEX_FACES = ((0, 4, 7, 3), (1, 2, 6, 5), (0, 1, 5, 4), (3, 7, 6, 2), (0, 3, 2, 
 _TET_CORNERS = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
 _TET_EDGES = [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)]
 _TET_FACES = ((0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2))
+
+_WEDGE_CORNERS = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [0, 1, 1]]
+_WEDGE_EDGES = [(0, 1), (1, 2), (2, 0), (3, 4), (4, 5), (5, 3), (0, 3), (1, 4), (2, 5)]
+_WEDGE_FACES = ((0, 2, 1), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5))
 
 PLATE_ORDER = 4
 """Polynomial degree of the plate element; from degree four on, quadrilaterals do not lock in thin plates."""
@@ -83,15 +88,20 @@ class ElementKind:
         >>> len(weights), round(float(weights.sum()), 12)
         (27, 1.0)
         """
-        return _quadrature(self.is_brick, self.dimension, self.degree if degree is None else degree)
+        return _quadrature(self.corners, self.dimension, self.degree if degree is None else degree)
 
 
 @cache
-def _quadrature(brick: bool, dimension: int, degree: int) -> tuple[Floats, Floats]:
+def _quadrature(corners: int, dimension: int, degree: int) -> tuple[Floats, Floats]:
     from skfem.quadrature import get_quadrature
-    from skfem.refdom import RefHex, RefQuad, RefTet
+    from skfem.refdom import RefHex, RefLine, RefQuad, RefTet, RefTri
 
-    points, weights = get_quadrature({2: RefQuad, 3: RefHex}[dimension] if brick else RefTet, degree)
+    if corners == len(_WEDGE_CORNERS):
+        triangle, areas = get_quadrature(RefTri, degree)
+        line, lengths = get_quadrature(RefLine, degree)
+        points = np.concatenate([np.tile(triangle, line.shape[1]), np.repeat(line, triangle.shape[1], axis=1)])
+        return np.ascontiguousarray(points.T), np.repeat(lengths, len(areas)) * np.tile(areas, len(lengths))
+    points, weights = get_quadrature({(4, 2): RefQuad, (8, 3): RefHex, (4, 3): RefTet}[corners, dimension], degree)
     return np.ascontiguousarray(points.T), weights
 
 
@@ -134,6 +144,39 @@ def _lagrange_coefficients(order: int) -> Floats:
     return np.asarray(np.linalg.inv(np.vander(np.arange(order + 1) / order, increasing=True)))
 
 
+def _wedge_shape(order: int, points: Floats) -> Shape:
+    """Return the shape functions of a wedge of first or second order (serendipity), and their gradients."""
+    area = np.stack([1.0 - points[:, 0] - points[:, 1], points[:, 0], points[:, 1]])  # the coordinates of the triangle
+    slope = np.array([[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]])
+    t = 2.0 * points[:, 2] - 1.0
+    values, by_area, by_t = [], [], []
+
+    def add(value: Floats, partial_of: dict[int, Floats], along: Floats) -> None:
+        values.append(value)
+        by_area.append(sum(part[:, None] * slope[index] for index, part in partial_of.items()))
+        by_t.append(along)
+
+    for sign in (-1.0, 1.0):
+        for index, one in enumerate(area):
+            side, bubble = 0.5 * (1.0 + sign * t), 0.5 * (1.0 - t**2) if order == 2 else np.zeros_like(t)
+            shape, steep = (one * (2.0 * one - 1.0), 4.0 * one - 1.0) if order == 2 else (one, np.ones_like(one))
+            add(shape * side - one * bubble, {index: steep * side - bubble}, 0.5 * sign * shape + (one * t if order == 2 else 0.0))
+    for start, end in _WEDGE_EDGES if order == 2 else []:
+        if end == start + 3:
+            add(area[start] * (1.0 - t**2), {start: 1.0 - t**2}, -2.0 * t * area[start])
+        else:
+            sign, first, second = (1.0 if start > 2 else -1.0), start % 3, end % 3
+            side = 2.0 * (1.0 + sign * t)
+            of = {first: side * area[second], second: side * area[first]}
+            add(side * area[first] * area[second], of, 2.0 * sign * area[first] * area[second])
+    gradients = np.concatenate([np.stack(by_area, axis=-1), 2.0 * np.stack(by_t, axis=-1)[:, None]], axis=1)
+    return np.stack(values, axis=1), gradients
+
+
+def _wedge(name: str, reference: Floats, order: int, degree: int) -> ElementKind:
+    return ElementKind(name, reference, len(_WEDGE_CORNERS), _WEDGE_FACES, partial(_wedge_shape, order), degree)
+
+
 def _kind(name: str, reference: Floats, corners: int, element: str, degree: int) -> ElementKind:
     faces = _HEX_FACES if corners == 8 else _TET_FACES
     return ElementKind(name, reference, corners, faces, partial(_scikit_fem, element, reference), degree)
@@ -149,11 +192,15 @@ def _kinds() -> Mapping[str, ElementKind]:
     hex20 = np.concatenate([hexa, [hexa[list(edge)].mean(axis=0) for edge in _HEX_EDGES]])
     hex27 = np.concatenate([hex20, [hexa[list(face)].mean(axis=0) for face in _HEX_FACES], [[0.5, 0.5, 0.5]]])
     tet10 = np.concatenate([tet, [tet[list(edge)].mean(axis=0) for edge in _TET_EDGES]])
+    wedge = np.array(_WEDGE_CORNERS, dtype=float)
+    wedge15 = np.concatenate([wedge, [wedge[list(edge)].mean(axis=0) for edge in _WEDGE_EDGES]])
     steps = np.linspace(0.0, 1.0, PLATE_ORDER + 1)
     quad = np.array([[x, y] for y in steps for x in steps])
     return {
         "tet4": _kind("tet4", tet, 4, "ElementTetP1", 2),
         "tet10": _kind("tet10", tet10, 4, "ElementTetP2", 5),
+        "wedge6": _wedge("wedge6", wedge, 1, 4),
+        "wedge15": _wedge("wedge15", wedge15, 2, 5),
         "hex8": _kind("hex8", hexa, 8, "ElementHex1", 3),
         "hex20": _kind("hex20", hex20, 8, "ElementHexS2", 5),
         "hex27": _product("hex27", hex27, 8, _HEX_FACES, 2, 5),
@@ -162,4 +209,4 @@ def _kinds() -> Mapping[str, ElementKind]:
 
 
 ELEMENT_KINDS: Mapping[str, ElementKind] = _kinds()
-"""Element kinds by name: tetrahedra and bricks of first and second order, and the plate element."""
+"""Element kinds by name: tetrahedra, wedges and bricks of first and second order, and the plate element."""

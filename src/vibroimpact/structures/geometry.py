@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.sparse import coo_array
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Floats, Integers
 from vibroimpact.errors import InputError
+from vibroimpact.structures.element_kinds import ElementKind
 from vibroimpact.structures.mesh import ElementBlock, Mesh
+from vibroimpact.structures.parts import part_of_nodes, used_nodes
 
+_TETRAHEDRON = 4  # corners
 _INERTIA_DEGREE = 9  # exact for the product of two coordinates and the Jacobian of a second-order brick
 
 
 @dataclass(frozen=True)
 class MassProperties:
-    """Mass properties of a body of uniform density.
+    """Mass properties of a body.
 
     Parameters
     ----------
@@ -33,15 +35,15 @@ class MassProperties:
     inertia: Floats
 
 
-def mass_properties(mesh: Mesh, density: float, thickness: float = 1.0) -> MassProperties:
+def mass_properties(mesh: Mesh, density: float | Floats, thickness: float = 1.0) -> MassProperties:
     """Return the mass, centre of mass and inertia of a mesh, integrated over its elements.
 
     Parameters
     ----------
     mesh : Mesh
         Solid or plate elements.
-    density : float
-        Density [kg/m^3], > 0.
+    density : float or array, shape (elements,)
+        Density [kg/m^3], > 0, of the body or of each element.
     thickness : float, default 1
         Thickness of plate elements [m]; not used for solids.
 
@@ -52,11 +54,14 @@ def mass_properties(mesh: Mesh, density: float, thickness: float = 1.0) -> MassP
     15700.0
     """
     volume, first, second = 0.0, np.zeros(3), np.zeros((3, 3))
-    for block in mesh.blocks:
+    reference = float(np.mean(density))
+    ratios = np.broadcast_to(np.asarray(density) / reference, mesh.number_of_elements)
+    ends = np.cumsum([len(block.connectivity) for block in mesh.blocks])[:-1]
+    for block, ratio in zip(mesh.blocks, np.split(ratios, ends), strict=True):
         points, weights = block.element.quadrature(max(_INERTIA_DEGREE, block.element.degree))
         values, slopes = block.element.basis(points)
         at = mesh.nodes[block.connectivity]
-        scale = weights * np.abs(determinants(at, slopes)) * (thickness if block.element.dimension == 2 else 1.0)
+        scale = ratio[:, None] * weights * np.abs(determinants(at, slopes)) * (thickness if block.element.dimension == 2 else 1.0)
         positions = np.einsum("qk,eki->eqi", values, at, optimize=True)
         volume += scale.sum()
         first += np.einsum("eq,eqi->i", scale, positions)
@@ -64,8 +69,8 @@ def mass_properties(mesh: Mesh, density: float, thickness: float = 1.0) -> MassP
         if block.element.dimension == 2:
             second[2, 2] += scale.sum() * thickness**2 / 12.0
     centre = first / volume
-    spread = density * (second - volume * np.outer(centre, centre))
-    return MassProperties(float(density * volume), centre, np.trace(spread) * np.eye(3) - spread)
+    spread = reference * (second - volume * np.outer(centre, centre))
+    return MassProperties(float(reference * volume), centre, np.trace(spread) * np.eye(3) - spread)
 
 
 def determinants(at: Floats, slopes: Floats) -> Floats:
@@ -78,6 +83,43 @@ def jacobians(at: Floats, slopes: Floats) -> Floats:
     """Return the Jacobians dx_i/dxi_d, (elements, points, dimension d, dimension i)."""
     elements, (points, dimension, nodes) = len(at), slopes.shape
     return np.asarray((slopes.reshape(-1, nodes) @ at).reshape(elements, points, dimension, -1))
+
+
+def renumbered_by_volume(mesh: Mesh) -> Mesh:
+    """Return a mesh of solids in which elements of wholly negative volume are numbered the other way round, which other programs read.
+
+    Elements whose volume is negative in part are folded, and stay as they are.
+
+    Examples
+    --------
+    >>> tet = Mesh(np.eye(4, 3), (ElementBlock("tet4", np.array([[0, 3, 1, 2]])),))
+    >>> renumbered_by_volume(tet).blocks[0].connectivity.tolist()
+    [[0, 1, 3, 2]]
+    """
+    blocks = []
+    for block in mesh.blocks:
+        middle = block.element.reference[: block.element.corners].mean(axis=0, keepdims=True)
+        turned = np.flatnonzero(determinants(mesh.nodes[block.connectivity], block.element.basis(middle)[1])[:, 0] < 0.0)
+        if len(turned):
+            other = _other_way_round(block.element)
+            connectivity = block.connectivity.copy()
+            connectivity[turned] = connectivity[turned][:, other]
+            right = _smallest_determinants(mesh, ElementBlock(block.kind, connectivity[turned])) > 0.0
+            connectivity[turned[~right]] = block.connectivity[turned[~right]]
+            block = ElementBlock(block.kind, connectivity)
+        blocks.append(block)
+    return replace(mesh, blocks=tuple(blocks))
+
+
+def _other_way_round(element: ElementKind) -> Integers:
+    """Return the numbering of a mirrored element: a tetrahedron in the plane of two edges, a wedge or brick from top to bottom."""
+    mirrored = element.reference.copy()
+    if element.corners == _TETRAHEDRON:
+        mirrored[:, :2] = element.reference[:, 1::-1]
+    else:
+        mirrored[:, 2] = 1.0 - element.reference[:, 2]
+    distance = np.abs(mirrored[:, None] - element.reference[None]).max(axis=2)
+    return np.asarray(distance.argmin(axis=1), dtype=np.int64)
 
 
 def check_mesh(mesh: Mesh) -> None:
@@ -98,7 +140,7 @@ def check_mesh(mesh: Mesh) -> None:
                 f"number {shown}; use smaller elements, or mesh the part again if the mesh was imported"
             )
         first += len(block.connectivity)
-    parts = _count_parts(mesh)
+    parts = len(np.unique(part_of_nodes(mesh)[used_nodes(mesh)]))
     if parts > 1:
         raise InputError(f"the mesh consists of {parts} loose parts that share no node; a body is one part: merge coincident nodes")
 
@@ -112,16 +154,3 @@ def _smallest_determinants(mesh: Mesh, block: ElementBlock) -> Floats:
         for part in np.array_split(block.connectivity, len(block.connectivity) // 5000 + 1)
     ]
     return np.concatenate(found)
-
-
-def _count_parts(mesh: Mesh) -> int:
-    """Return the number of parts of a mesh that share no node."""
-    from scipy.sparse.csgraph import connected_components  # imported late: modes that are stored do not need it
-
-    pairs = [
-        (np.repeat(block.connectivity[:, 0], block.connectivity.shape[1] - 1), block.connectivity[:, 1:].ravel()) for block in mesh.blocks
-    ]
-    start, end = (np.concatenate(side) for side in zip(*pairs, strict=True))
-    number = len(mesh.nodes)
-    label = connected_components(coo_array((np.ones(len(start)), (start, end)), shape=(number, number)), directed=False)[1]
-    return len(np.unique(label[np.unique(start)]))

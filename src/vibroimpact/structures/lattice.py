@@ -37,15 +37,25 @@ def _tetrahedra(order: int) -> Integers:
     return np.array(found)
 
 
+def _wedges(order: int) -> Integers:
+    """Return the two wedges of a brick on either side of a diagonal plane, as indices into its 27 nodes."""
+    index = {tuple(corner): number for number, corner in enumerate(_BRICK.tolist())}
+    reference = ELEMENT_KINDS["wedge6" if order == 1 else "wedge15"].reference
+    halves = (np.array([[2, 0, 0], [2, 2, 0], [0, 0, 2]]), np.array([[2, 2, 0], [0, 2, 0], [0, 0, 2]]))
+    return np.array([[index[tuple(int(value) for value in point)] for point in np.rint(reference @ half)] for half in halves])
+
+
 _TAKEN = {
     "hex8": np.arange(8)[None],
     "hex20": np.arange(20)[None],
     "hex27": np.arange(27)[None],
     "tet4": _tetrahedra(1),
     "tet10": _tetrahedra(2),
+    "wedge6": _wedges(1),
+    "wedge15": _wedges(2),
 }
-SOLID_KINDS = tuple(_TAKEN)
-"""Kinds of solid elements that a block can be meshed with."""
+SOLID_KINDS = ("hex8", "hex20", "hex27", "tet4", "tet10")
+"""Kinds of solid elements of which a case may ask for a mesh; a block can be meshed with wedges too."""
 
 
 def mesh_of_blocks(blocks: Sequence[Floats], kind: str) -> Mesh:
@@ -56,7 +66,7 @@ def mesh_of_blocks(blocks: Sequence[Floats], kind: str) -> Mesh:
     blocks : sequence of arrays, shape (2 a + 1, 2 b + 1, 2 c + 1, 3)
         Points [m] of each block of a x b x c bricks.
     kind : str
-        "hex8", "hex20", "hex27", "tet4" or "tet10".
+        "hex8", "hex20", "hex27", "tet4", "tet10", "wedge6" or "wedge15".
 
     Returns
     -------

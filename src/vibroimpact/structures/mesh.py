@@ -1,15 +1,19 @@
-"""Finite-element mesh: nodes, elements, and named sets of them."""
+"""Finite-element mesh: nodes, elements, named sets of them, and materials of the elements."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from vibroimpact.arrays import Floats, Integers
 from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.materials import Material
+from vibroimpact.shown import shown
 from vibroimpact.structures.element_kinds import ELEMENT_KINDS, ElementKind
+from vibroimpact.structures.stated_materials import StatedMaterials
 
 
 @dataclass(frozen=True)
@@ -49,6 +53,14 @@ class Mesh:
         Named sets of elements, numbered from 0 through all blocks in their order.
     skipped : mapping of str to int
         Items of a mesh file that its reader skipped, and how many of each.
+    materials : tuple of Material
+        Materials of the elements; none if all elements are of the material of the body.
+    element_materials : int array, shape (elements,)
+        Number of each element's material in `materials`, through all blocks in their order; -1 is the material of the body.
+    stated : StatedMaterials, optional
+        Materials as a mesh file states them, whether they are used or not.
+    remarks : tuple of str
+        What a mesh file holds that is not in the mesh and what that does to the body, one sentence each, without a full stop.
 
     Examples
     --------
@@ -62,6 +74,10 @@ class Mesh:
     node_sets: Mapping[str, Integers] = field(default_factory=dict)
     element_sets: Mapping[str, Integers] = field(default_factory=dict)
     skipped: Mapping[str, int] = field(default_factory=dict)
+    materials: tuple[Material, ...] = ()
+    element_materials: Integers = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    stated: StatedMaterials | None = None
+    remarks: tuple[str, ...] = ()
 
     @property
     def number_of_elements(self) -> int:
@@ -82,6 +98,19 @@ class Mesh:
     def extent(self) -> Floats:
         """Length, width and height of the bounding box of the nodes [m]."""
         return np.asarray(np.ptp(self.nodes, axis=0))
+
+    def of_elements(self, body: Material, value: Callable[[Material], float]) -> Floats:
+        """Return a property of the material of each element, (elements,); -1 in `element_materials` is the material of the body."""
+        if not self.materials:
+            return np.full(self.number_of_elements, value(body))
+        return np.array([*map(value, self.materials), value(body)])[self.element_materials]
+
+    @property
+    def materials_text(self) -> str:
+        """How many elements have which material, in words; "" if all elements are of the material of the body."""
+        counts = Counter(self.element_materials.tolist())
+        own = [f"{counts[index]} of {_material_text(one)}" for index, one in enumerate(self.materials) if counts[index]]
+        return ", ".join([*own, f"{counts[-1]} of the material of the case"] if counts[-1] else own)
 
     def nodes_of(self, name: str) -> Integers:
         """Return the nodes of a named set of nodes, or of a named set of elements.
@@ -108,3 +137,8 @@ class Mesh:
             found.append(block.connectivity[inside].ravel())
             first += len(block.connectivity)
         return np.unique(np.concatenate(found))
+
+
+def _material_text(one: Material) -> str:
+    numbers = f"{one.density:.4g} kg/m3, {1e-9 * one.youngs_modulus:.4g} GPa, {one.poissons_ratio:.3g}"
+    return f"{shown(one.name)[1:-1]} ({numbers})" if one.name else f"({numbers})"

@@ -34,6 +34,7 @@ from vibroimpact.structures.plate_mesh import plate_mesh, solid_plate_mesh
 from vibroimpact.structures.rectangle import Disc
 from vibroimpact.structures.reduction import attachment_modes, craig_bampton, projected
 from vibroimpact.structures.sphere_mesh import sphere_mesh
+from vibroimpact.structures.stated_materials import contradictions
 from vibroimpact.structures.store import key_of, load_model, save_model, store_folder
 from vibroimpact.structures.structure import Structure, plate_structure, solid_structure
 from vibroimpact.structures.supports.constraints import HeldStructure
@@ -46,6 +47,8 @@ Place = tuple[Spot, Side]
 _COARSE_ACROSS, _COARSE_SOLID, _COARSE_PLATE, _COARSE_MARGIN = 0.67, 1.5, 1.5, 4.0 / 3.0
 _SOLID_GAIN, _PLATE_GAIN = 4.0, 3.0  # measured: docs/elastic-bodies.md compares estimated with true errors
 
+REMARKS = "remarks on the file"
+"""Name of the fact with what is doubtful about a mesh file, one sentence a line."""
 MAIN_CAUSE = "frequencies are off most for"
 """Name of the fact with the main cause of errors of frequencies."""
 
@@ -313,7 +316,9 @@ def computed_model(recipe: Recipe, progress: Progress | None = None) -> ModalMod
         "nodes": f"{len(structure.mesh.nodes)}",
         "elements": ", ".join(f"{len(block.connectivity)} {block.kind}" for block in structure.mesh.blocks),
         "degrees of freedom": f"{held.stiffness.shape[0]}",
+        "materials": structure.mesh.materials_text,
         "left out of the file": ", ".join(f"{name} ({count})" for name, count in structure.mesh.skipped.items()),
+        REMARKS: "\n".join([*structure.mesh.remarks, *contradictions(structure.mesh.stated, material)]),
         MAIN_CAUSE: main_cause(parts),
         "processor time": f"{time.process_time() - begun:.2f} s",
     }

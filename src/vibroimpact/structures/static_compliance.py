@@ -27,7 +27,7 @@ from vibroimpact.structures.store import hold_entry, key_of, load_entry, save_en
 from vibroimpact.structures.structure import Structure
 from vibroimpact.structures.supports.constraints import HeldStructure
 from vibroimpact.structures.supports.support import held_by
-from vibroimpact.structures.surface import Side, surface_motion
+from vibroimpact.structures.surface import Side, materials_around, surface_motion
 
 _KIND = "compliance"
 _FACES: tuple[Side, Side] = ("upper", "lower")
@@ -113,9 +113,10 @@ def computed_compliances(recipe: Recipe, places: Sequence[tuple[float, float]], 
     if isinstance(recipe.shape, SphereOfSolids):
         raise InputError("a structural compliance is that of a plate, which has two faces; a sphere has none")
     held, elastic = _factorised(recipe)
-    structure, material = held.structure, _material(recipe)
+    structure = held.structure
     averages, terms = [], []
-    for thickness in _thicknesses(structure, places):
+    for thickness, place in zip(_thicknesses(structure, places), places, strict=True):
+        material = _material_of_layer(structure.mesh, recipe, place, thickness)
         layer = thickness, material.youngs_modulus, material.poissons_ratio
         if is_thin(recipe):
             averages.append(Average(0.0, 0.0))
@@ -131,6 +132,24 @@ def computed_compliances(recipe: Recipe, places: Sequence[tuple[float, float]], 
     load, opposite = (upper, lower) if side == "upper" else (lower, upper)
     moved = elastic.static(load.toarray().T)
     return np.asarray(opposite.multiply(moved.T).sum(axis=1)) + terms
+
+
+def _material_of_layer(mesh: Mesh, recipe: Recipe, place: tuple[float, float], thickness: float) -> Material:
+    """Return the material of a body around a place, for the terms of a layer, which are exact for one of a single material.
+
+    Raises
+    ------
+    InputError
+        If the elements there are of several materials.
+    """
+    found = materials_around(mesh, _material(recipe), place, _RADIUS * thickness)
+    if len(found) > 1:
+        kinds = ", ".join(f"{one.density:.4g} kg/m3, {one.youngs_modulus:.3g} Pa" for one in found[:3])
+        raise InputError(
+            f"around ({place[0]:g}, {place[1]:g}) m the body is of {len(found)} materials ({kinds}), and its static compliance under a "
+            'contact is known where it is of one; give contact.local_compliance = "superposed", which takes the modes as they are'
+        )
+    return found[0]
 
 
 def _thicknesses(structure: Structure, places: Sequence[tuple[float, float]]) -> list[float]:

@@ -25,12 +25,13 @@ from vibroimpact.errors import InputError
 from vibroimpact.files.atomic_write import write_file
 from vibroimpact.files.json_reading import parse_json
 from vibroimpact.files.recover import clear
+from vibroimpact.materials import Material
 from vibroimpact.structures.geometry import MassProperties
 from vibroimpact.structures.memory_cache import MemoryCache
 from vibroimpact.structures.mesh import ElementBlock, Mesh
 from vibroimpact.structures.modal_model import ModalModel
 
-FORMAT = 4
+FORMAT = 5
 """Part of every key: to be increased when the stored data, or their computation, change; earlier entries are then not found."""
 
 PLACE = "VIBROIMPACT_STORE"
@@ -40,7 +41,7 @@ _LARGEST = 4_000_000_000  # bytes; the least recently used entries are removed f
 _SLACK = 0.01  # of _LARGEST: bytes written between two scans of the folder, which may hold thousands of entries
 _CHECKSUM, _PIECE = 4, 2**20  # bytes
 _MODES = "modes"
-KINDS = (_MODES, "compliance")
+KINDS = (_MODES, "compliance", "parts")
 """Kinds of entries, which are the suffixes of their files."""
 
 Content = TypeVar("Content")
@@ -287,8 +288,11 @@ def _parts(model: ModalModel) -> dict[str, Any]:
         "numbers": np.array([model.properties.mass, model.thickness]),
         "rigid_coefficients": model.rigid_coefficients,
         "frequency_errors": model.frequency_errors,
-        "facts": np.frombuffer(json.dumps(dict(model.facts)).encode(), np.uint8),
+        "facts": _text_array(dict(model.facts)),
     }
+    if model.mesh.materials:
+        table = [[one.name, one.density, one.youngs_modulus, one.poissons_ratio] for one in model.mesh.materials]
+        parts |= {"materials": _text_array(table), "element_materials": model.mesh.element_materials}
     for index, block in enumerate(model.mesh.blocks):
         parts[f"block:{index}:{block.kind}"] = block.connectivity
     for name, nodes in model.mesh.node_sets.items():
@@ -296,6 +300,11 @@ def _parts(model: ModalModel) -> dict[str, Any]:
     for name, elements in model.mesh.element_sets.items():
         parts[f"elements:{name.encode().hex()}"] = elements
     return parts
+
+
+def _text_array(value: Any) -> Any:
+    """Return a value as JSON in an array of bytes."""
+    return np.frombuffer(json.dumps(value).encode(), np.uint8)
 
 
 def _model(entry: Mapping[str, Any]) -> ModalModel:
@@ -311,6 +320,10 @@ def _model(entry: Mapping[str, Any]) -> ModalModel:
         named("nodes:"),
         named("elements:"),
     )
+    if "materials" in entry:
+        rows = parse_json(entry["materials"].tobytes())
+        materials = tuple(Material(density, modulus, ratio, name=name) for name, density, modulus, ratio in rows)
+        mesh = dataclasses.replace(mesh, materials=materials, element_materials=entry["element_materials"])
     mass, thickness = entry["numbers"].tolist()
     return ModalModel(
         mesh,

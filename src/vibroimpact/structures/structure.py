@@ -92,7 +92,7 @@ def rotation_columns(x: Floats, y: Floats, z: Floats) -> Floats:
 
 
 def solid_structure(mesh: Mesh, material: Material) -> Structure:
-    """Return the structure of a mesh of solid elements.
+    """Return the structure of a mesh of solid elements; `material` is that of the elements that have none of their own.
 
     Raises
     ------
@@ -100,7 +100,8 @@ def solid_structure(mesh: Mesh, material: Material) -> Structure:
         If elements are inverted or the mesh has loose parts.
     """
     check_mesh(mesh)
-    return Structure(mesh, *assemble_solid(mesh, material), mass_properties(mesh, material.density))
+    density = mesh.of_elements(material, lambda one: one.density) if mesh.materials else material.density
+    return Structure(mesh, *assemble_solid(mesh, material), mass_properties(mesh, density))
 
 
 def plate_structure(

@@ -8,8 +8,9 @@ from typing import Literal
 import numpy as np
 from scipy.sparse import coo_array, csr_array
 
-from vibroimpact.arrays import Floats, Integers
+from vibroimpact.arrays import Bools, Floats, Integers
 from vibroimpact.errors import InputError
+from vibroimpact.materials import Material
 from vibroimpact.structures.element_kinds import ElementKind
 from vibroimpact.structures.mesh import ElementBlock, Mesh
 
@@ -17,6 +18,7 @@ Side = Literal["upper", "lower"]
 Spot = tuple[float, float] | str | None
 """x and y [m]; or the name of a set of nodes, for its centre; or None, for the highest or lowest node."""
 
+_NO_SHARE = 1e-9  # least weight of a node in the displacement of a place to which it belongs
 _OUTSIDE = 1e-6  # tolerance of a point beyond the edge of a face, relative to the length of the face
 _NEWTON_STEPS = 20
 _CONVERGED = 1e-10  # last step of Newton's method in local coordinates: it is quadratic, so that the rest is rounding
@@ -186,11 +188,75 @@ def surface_motion(mesh: Mesh, places: Floats, side: Side = "upper", thickness: 
         low, high = mesh.nodes.min(axis=0), mesh.nodes.max(axis=0)
         raise InputError(
             f"{what}{': ' if what else ''}({x:g}, {y:g}) m is not on the body, which reaches from {low[0]:g} to {high[0]:g} m along x and "
-            f"from {low[1]:g} to {high[1]:g} m along y"
+            f"from {low[1]:g} to {high[1]:g} m along y{_nearest_text(mesh, places[beside[0]], side)}"
         )
     height = sign * 0.5 * thickness if mesh.is_flat else 0.0
     positions[:, 2] += height
     return _rows(mesh, nodes, weights, height), positions
+
+
+def materials_at(mesh: Mesh, material: Material, place: tuple[float, float], side: Side) -> tuple[Material, ...]:
+    """Return the materials of the elements that have a place on one side of a body: several where they meet there.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        Mesh of the body.
+    material : Material
+        Material of the elements that have none of their own.
+    place : tuple of two floats
+        x and y [m].
+    side : str
+        "upper" or "lower".
+
+    Raises
+    ------
+    InputError
+        If the place is not on the body.
+    """
+    motion, _ = surface_motion(mesh, np.array([place]), side)
+    vertical = motion[[2]]
+    nodes = np.unique(vertical.indices[np.abs(vertical.data) > _NO_SHARE] // mesh.dofs_per_node)
+    having = np.concatenate([np.isin(block.connectivity, nodes).sum(axis=1) == len(nodes) for block in mesh.blocks])
+    return _materials_of(mesh, material, having)
+
+
+def materials_around(mesh: Mesh, material: Material, place: tuple[float, float], reach: float) -> tuple[Material, ...]:
+    """Return the materials of the elements within a distance along x and y of a place, over the height of the body.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        Mesh of the body.
+    material : Material
+        Material of the elements that have none of their own.
+    place : tuple of two floats
+        x and y [m].
+    reach : float
+        Distance [m].
+    """
+    near = []
+    for block in mesh.blocks:
+        at = mesh.nodes[block.connectivity, :2]
+        near.append(((at.min(axis=1) <= np.add(place, reach)) & (at.max(axis=1) >= np.subtract(place, reach))).all(axis=1))
+    return _materials_of(mesh, material, np.concatenate(near))
+
+
+def _materials_of(mesh: Mesh, material: Material, chosen: Bools) -> tuple[Material, ...]:
+    """Return the materials of chosen elements, once each."""
+    if not mesh.materials:
+        return (material,)
+    numbers = np.unique(mesh.element_materials[chosen])
+    return tuple((*mesh.materials, material)[number] for number in numbers)
+
+
+def _nearest_text(mesh: Mesh, place: Floats, side: Side) -> str:
+    """Return in words which node of a side is nearest to a place."""
+    nodes = np.concatenate([faces.connectivity[:, list(faces.corners)].ravel() for faces in facing(mesh, side)] or [np.zeros(0, np.int64)])
+    if not len(nodes):
+        return ""
+    x, y = mesh.nodes[nodes[np.linalg.norm(mesh.nodes[nodes, :2] - place, axis=1).argmin()], :2]
+    return f"; the nearest node of its {side} side is at ({x:g}, {y:g}) m"
 
 
 def slope_divergence(mesh: Mesh, place: tuple[float, float]) -> csr_array:

@@ -25,8 +25,7 @@ from vibroimpact.cases.reader import load_table, prefix_errors
 from vibroimpact.cases.rigid import deforms, impact_limit
 from vibroimpact.dynamics.columns import ALL_IMPACT_COLUMNS, IMPACT_COLUMNS, meanings
 from vibroimpact.errors import InputError, listed
-from vibroimpact.files.reading import input_file_digest
-from vibroimpact.meshes.text_files import MESH
+from vibroimpact.meshes.mesh_digest import mesh_digest
 from vibroimpact.shown import shortened, shown
 from vibroimpact.studies.axes import Axis, Listed, Values
 from vibroimpact.studies.design import Asked, find_design
@@ -185,7 +184,7 @@ class Sweep:
     @cached_property
     def digest(self) -> str:
         """Fingerprint (SHA-256) of the case, its meshes, the points and the kept results."""
-        meshes = [input_file_digest(file, MESH) for file in _meshes(self.table)]
+        meshes = [mesh_digest(file) for file in _meshes(self.table)]
         rest = json.dumps([self.table, meshes, self.section.keep], sort_keys=True, default=str)
         return sha256(f"{self.plan.digest()} {rest}{f' {self.window}' if self.window else ''}".encode()).hexdigest()
 

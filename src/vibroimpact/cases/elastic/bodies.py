@@ -54,7 +54,7 @@ def elastic_table(case: CaseTable, name: Literal["sphere", "plate"]) -> dict[str
     if reduction.modes:
         table["modes"] = reduction.modes
     if isinstance(shape, ImportedMesh):
-        table["mesh"] = section.mesh.model_dump(exclude_none=True)
+        table["mesh"] = section.mesh.table()
     else:
         table["mesh"] = {key: value for key, value in vars(shape).items() if key not in ("radius", "size")}
     if name == "plate":
@@ -69,7 +69,7 @@ def _sphere(case: CaseTable) -> ElasticBody:
     contact = mesh.contact if isinstance(mesh, BroughtMeshTable) else None
     reduction = reduction_of("sphere", section, (contact, "lower"))
     if isinstance(mesh, BroughtMeshTable):
-        recipe = recipe_of(mesh.brought(), section.material, reduction)
+        recipe = recipe_of(mesh.brought(contact, "lower"), section.material, reduction)
     else:
         options = mesh.model_dump(exclude_none=True) if isinstance(mesh, SphereMeshTable) else {}
         recipe = sphere_recipe(section.radius, section.material, reduction, **options)
@@ -104,7 +104,7 @@ def _plate_recipe(case: CaseTable, contact: Spot) -> Recipe:
     reduction = reduction_of("plate", section, (contact, "upper"))
     supports = supports_of(section.supports)
     if isinstance(mesh, BroughtMeshTable):
-        return recipe_of(mesh.brought(), section.material, reduction, supports)
+        return recipe_of(mesh.brought(contact, "upper"), section.material, reduction, supports)
     assert section.size is not None  # validated by the section
     element = section.element or "plate"
     options = mesh.model_dump(exclude_none=True, exclude={"elements"}) if isinstance(mesh, PlateMeshTable) else {}

@@ -13,17 +13,19 @@ from vibroimpact.bodies.elastic import ElasticBody
 from vibroimpact.cases.elastic.bodies import elastic_bodies
 from vibroimpact.cases.elastic.meshes import meshes_of
 from vibroimpact.errors import InputError
+from vibroimpact.materials import Material
 from vibroimpact.structures.damping import ConstantRatio, RatioOfEach, RatioTable
 from vibroimpact.structures.frequency_error import MESH, REDUCTION, SUPPORTS, THEORY
 from vibroimpact.structures.modal_model import ModalBasis, ModalModel
-from vibroimpact.structures.recipe import MAIN_CAUSE, ImportedMesh, PlateOfSolids, Recipe, SphereOfSolids, is_thin, modal_model_of
-from vibroimpact.structures.surface import Side, place_of
+from vibroimpact.structures.recipe import MAIN_CAUSE, REMARKS, ImportedMesh, PlateOfSolids, Recipe, SphereOfSolids, is_thin, modal_model_of
+from vibroimpact.structures.surface import Side, materials_at, place_of
 
 if TYPE_CHECKING:
     from vibroimpact.cases.schema import CaseTable
 
 _FREQUENCY_OFF = 0.005  # relative: a larger estimated frequency error is doubted
 _WEIGHT_OFF = 0.05  # relative: a larger difference in mass between an imported mesh and the case is doubted
+_MATERIAL_OFF = 0.1  # relative: a larger difference between the material of a case and that of the elements touched is doubted
 _MESH_OFF = 0.005  # relative: a generated mesh with a larger error of its mass is too coarse
 _LARGE = 50.0  # m: the coordinates of a larger body are probably in millimetres
 
@@ -122,6 +124,7 @@ def _doubts(case: CaseTable, name: str, body: ElasticBody, model: ModalModel, ba
     if name == "plate" and not model.is_held_vertically and case.drop.gravity:
         yield "the plate is not held: its supports let it fall or tilt, and a drop under gravity needs a plate that is held"
     yield from _doubts_of_mass(case, name, body, model)
+    yield from _doubts_of_materials(case, name, body, model)
     yield from _doubts_of_frequencies(name, body, model)
     if any(block.element.order == 1 for block in model.mesh.blocks):
         yield f"the mesh of the {name} has elements of first order, which are far too stiff in bending; take second order"
@@ -159,6 +162,29 @@ def _remedy(name: str, recipe: Recipe, cause: str) -> str:
     return f'give {name}.mesh.element_size = "{1e3 * size / 1.5:.3g} mm"{splits}'
 
 
+def _doubts_of_materials(case: CaseTable, name: str, body: ElasticBody, model: ModalModel) -> Iterator[str]:
+    """Yield what of a mesh file is not part of the body, and where its materials are not that of the case."""
+    yield from filter(None, model.facts.get(REMARKS, "").split("\n"))
+    if not model.mesh.materials:
+        return
+    material = getattr(case, name).material
+    touched = materials_at(model.mesh, material, place_of(model.mesh, body.contact, body.side), body.side)
+    other = next((one for one in touched if not _alike(one, material)), None)
+    if other is not None:
+        yield (
+            f"the elements of the {name} at the contact point are of {other.density:.4g} kg/m3 and {other.youngs_modulus:.4g} Pa, and "
+            f"the contact is computed with {name}.material, of {material.density:.4g} kg/m3 and {material.youngs_modulus:.4g} Pa; "
+            "give there the material that is touched"
+        )
+    if getattr(case, name).damping == "loss-factor":
+        yield f"half the loss factor of {name}.material damps all modes of the {name}, whose elements are of several materials; give ratios"
+
+
+def _alike(one: Material, other: Material) -> bool:
+    """Return whether two materials are the same in contact, up to the spread of values in tables."""
+    return all(abs(getattr(one, key) / getattr(other, key) - 1.0) < _MATERIAL_OFF for key in ("density", "youngs_modulus"))
+
+
 def _doubts_of_mass(case: CaseTable, name: str, body: ElasticBody, model: ModalModel) -> Iterator[str]:
     """Yield a doubt if the mass of a mesh differs from that of the case, or its size suggests millimetres."""
     brought, extent = isinstance(body.recipe.shape, ImportedMesh), model.mesh.extent
@@ -167,6 +193,8 @@ def _doubts_of_mass(case: CaseTable, name: str, body: ElasticBody, model: ModalM
     remedy = 'give mesh = { file = "...", unit = "mm" }' if brought else 'write "520 mm", as a bare number is in metres'
     hint = f"; if it is in millimetres, {remedy}" if extent.max() > _LARGE else ""
     volume = 4.0 / 3.0 * math.pi * case.sphere.radius**3 if name == "sphere" else math.prod(case.plate.size) if case.plate.size else None
+    if name == "plate" and model.mesh.materials:
+        volume = None  # whose mass is that of no one material; a sphere falls with the mass that the case describes
     expected = body.recipe.density * (volume or math.nan)
     if abs(model.properties.mass / expected - 1.0) > (_WEIGHT_OFF if brought else _MESH_OFF):
         yield f"{said}, and what the case describes weighs {expected:.4g} kg{hint or ('' if brought else '; its elements are too large')}"

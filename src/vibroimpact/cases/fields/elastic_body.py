@@ -2,27 +2,35 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
+import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
 from vibroimpact.cases.fields.json_schema import JsonSchema
+from vibroimpact.cases.fields.material import MaterialField, material_table
 from vibroimpact.cases.fields.quantities import Quantity
 from vibroimpact.cases.fields.section import Section, check_alternatives, read_table
 from vibroimpact.cases.fields.size_limits import FileName
 from vibroimpact.errors import InputError
-from vibroimpact.files.reading import input_file_digest, with_path
-from vibroimpact.meshes.text_files import MESH
+from vibroimpact.files.reading import with_path
+from vibroimpact.materials import RIGID
+from vibroimpact.meshes.mesh_digest import mesh_digest
 from vibroimpact.ranges import Range
 from vibroimpact.shown import shown
 
 if TYPE_CHECKING:  # not imported at run time, as a case with rigid bodies does not need scipy.sparse
     from vibroimpact.structures.mesh import Mesh
     from vibroimpact.structures.recipe import ImportedMesh, Place, Reduction
+    from vibroimpact.structures.surface import Side, Spot
 
 MOST_MODES = 20_000
+_PARTS = "parts"  # kind of the entries of the store with the number of parts of a file
 DEFAULT_MODES = {"sphere": 20, "plate": 100}
 
 _Size = Annotated[float, Quantity("m", "largest side of an element", Range(above=0))]
@@ -44,31 +52,82 @@ class BroughtMeshTable(Section):
     unit: Annotated[float, Quantity("m", "unit of its coordinates", Range(above=0)), BeforeValidator(_one_unit)] = 1.0
     element_size: _Size | None = None
     contact: str | None = Field(None, description="a named set, whose centre is the contact point")
+    materials: dict[FileName, MaterialField] | None = Field(
+        None, description="materials in place of those of the file, by the name of a material or an element set of the file"
+    )
 
-    def brought(self) -> ImportedMesh:
-        """Return the mesh, which is identified by the checksum of its file and read when it is first used.
+    @model_validator(mode="after")
+    def _none_is_rigid(self) -> BroughtMeshTable:
+        for name, material in (self.materials or {}).items():
+            if material.name == RIGID.name:
+                raise InputError('"rigid" does not deform; an elastic body needs materials with a modulus', f"materials.{name}")
+        return self
+
+    def brought(self, contact: Spot, side: Side) -> ImportedMesh:
+        """Return the mesh, which is identified by the checksum of its file and of those it includes, and read when it is first used.
+
+        Of a file with several parts that share no node it is the part at the contact, and identified by its nodes too.
+
+        Parameters
+        ----------
+        contact : spot
+            x and y [m], the name of a set, or None for the highest or lowest node.
+        side : str
+            Side of the contact: "upper" or "lower".
 
         Raises
         ------
         InputError
-            If the file can't be read.
+            If the file can't be read, or the contact point is not on one of several parts.
         """
         from vibroimpact.structures.recipe import ImportedMesh
 
         try:
-            content = input_file_digest(self.file, MESH)
+            content = mesh_digest(self.file)
         except InputError as error:
             raise with_path(self.file, error, "mesh") from None
-        return ImportedMesh(json.dumps([content, Path(self.file).suffix.lower(), self.unit, self.element_size]), self.read)
+        of_elements = {name: material_table(material) for name, material in (self.materials or {}).items()}
+        digest = json.dumps([content, Path(self.file).suffix.lower(), self.unit, self.element_size, of_elements])
+        read = partial(self.read, (contact, side))
+        if self._number_of_parts(digest) > 1:
+            digest += hashlib.sha256(read().nodes.tobytes()).hexdigest()
+        return ImportedMesh(digest, read)
 
-    def read(self) -> Mesh:
-        """Read the mesh, with coordinates in metres."""
+    def _number_of_parts(self, digest: str) -> int:
+        """Return the number of parts of the file that share no node, from the store if it is there."""
+        from vibroimpact.meshes.mesh_file import mesh_of_file
+        from vibroimpact.structures.parts import number_of_parts
+        from vibroimpact.structures.store import hold_entry, key_of, load_entry, save_entry
+
+        key = key_of(["parts of a mesh", digest])
+        found, _ = load_entry(key, _PARTS, lambda entry: int(entry[_PARTS].item()))
+        if found is None:
+            found = number_of_parts(self._with_keys(lambda: mesh_of_file(self.file, self.unit, self.element_size)))
+            entry = {_PARTS: np.array(found)}
+            hold_entry(key, _PARTS, entry)
+            save_entry(key, _PARTS, entry)
+        return found
+
+    def table(self) -> dict[str, Any]:
+        """Return the table as it is written in a resolved case file."""
+        table = self.model_dump(exclude_none=True, exclude={"materials"})
+        if self.materials:
+            table["materials"] = {name: material_table(material) for name, material in self.materials.items()}
+        return table
+
+    def read(self, contact: tuple[Spot, Side] | None = None) -> Mesh:
+        """Read the mesh, with coordinates in metres; of several parts that share no node the one at the contact, or all."""
         from vibroimpact.meshes.mesh_file import read_mesh
 
+        return self._with_keys(lambda: read_mesh(self.file, self.unit, self.element_size, self.materials, contact))
+
+    @staticmethod
+    def _with_keys(read: Callable[[], Mesh]) -> Mesh:
+        """Return what is read; errors have the key of the case."""
         try:
-            return read_mesh(self.file, self.unit, self.element_size)
+            return read()
         except InputError as error:
-            key = {"size": "mesh.element_size", "unit_in_metres": "mesh.unit"}.get(error.key, "mesh")
+            key = {"size": "mesh.element_size", "unit_in_metres": "mesh.unit", "materials": "mesh.materials"}.get(error.key, "mesh")
             raise InputError(error.message, key) from None
 
 

@@ -1,0 +1,82 @@
+"""What a mesh file holds besides solid elements, and what its absence does to the body."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from vibroimpact.meshes.parsed_mesh import FLUID_ELEMENTS
+from vibroimpact.shown import shown
+
+_MOST_NAMES = 5
+
+
+class _Effect(NamedTuple):
+    """Names of cards, keywords and element types, and what leaving them out does."""
+
+    names: re.Pattern[str]
+    effect: str
+
+
+def _effect(names: str, effect: str) -> _Effect:
+    return _Effect(re.compile(names), effect)
+
+
+_EFFECTS = (
+    _effect(
+        r"CONM[12]|CMASS\d|NSM\w*|\*MASS|MASS|\*ROTARY INERTIA|ROTARYI|\*NONSTRUCTURAL MASS",
+        "masses are not part of the body, which is lighter without them and has higher frequencies",
+    ),
+    _effect(
+        r"CELAS\d|CBUSH\w*|CDAMP\d|CVISC|CGAP|CFAST|CWELD|CSEAM|SPRING\w*|DASHPOT\w*|GAP\w+|CONN\w+"
+        r"|\*SPRING|\*DASHPOT|\*GAP|\*CONNECTOR \w+",
+        "springs, dampers and connectors are not part of the body, whose frequencies are lower without their stiffness",
+    ),
+    _effect(
+        r"RBE[123]|RBAR\w*|RROD|RTRPLT\w*|RSPLINE|RSSCON|MPC\w*|\*EQUATION|\*MPC|\*TIE|\*COUPLING|\*KINEMATIC|\*DISTRIBUTING\w*( COUPLING)?"
+        r"|\*RIGID BODY|\*KINEMATIC COUPLING|\*SHELL TO SOLID COUPLING|\*CYCLIC SYMMETRY MODEL|\*PRE-TENSION SECTION|\*EMBEDDED ELEMENT",
+        "constraints between nodes are not applied: what they tie together moves freely",
+    ),
+    _effect(
+        r"BCTABLE|BCTSET|BCTADD|BCONP|BGSET|BGADD|BSURF|BSURFS|BLSEG|\*CONTACT PAIR|\*CONTACT( \w+)?",
+        "surfaces that touch one another do not press on one another",
+    ),
+    _effect(
+        r"CBAR|CBEAM\w?|CBEND|CROD|CONROD|CTUBE|CQUAD\w*|CTRIA\w*|CSHEAR|CRAC\w+|CTRAX\w*|B\d\w*|T[23]D\d\w*|(DS|S|STRI|M3D|PIPE|ELBOW|U)\d\w*|SFM3D\d\w*",
+        "beams, shells and membranes are not part of the body, which lacks their stiffness and mass",
+    ),
+    _effect(
+        rf"{FLUID_ELEMENTS}|CHACAB|CHACBR|CAABSF|CACINF\d|AC\w+|F3D\w+",
+        "the fluid is not part of the body, which has higher frequencies without its mass",
+    ),
+    _effect(r"DC\w+", "elements of heat conduction have no stiffness"),
+    _effect(
+        r"SPC\w*|PS of GRID|SUPORT\d?|ASET\d?|\*BOUNDARY",
+        "nodes that the file holds are not held by it: the body has the supports of the case",
+    ),
+)
+
+
+def remarks_of(counts: Mapping[str, int]) -> tuple[str, ...]:
+    """Return what is left out of a mesh and what that does to the body, one sentence per effect, without full stops.
+
+    Parameters
+    ----------
+    counts : mapping of str to int
+        Cards, keywords and element types that are not in the mesh, and how many of each.
+
+    Examples
+    --------
+    >>> remarks_of({"CONM2": 3, "FORCE": 2})
+    ('left out of the mesh file: CONM2 (3); masses are not part of the body, which is lighter without them and has higher frequencies',)
+    """
+    found = []
+    for names, effect in _EFFECTS:
+        present = [f"{shown(name)[1:-1]} ({count})" for name, count in counts.items() if names.fullmatch(name)]
+        if present:
+            listed = ", ".join(present[:_MOST_NAMES]) + (
+                f" and {len(present) - _MOST_NAMES} more kinds" if len(present) > _MOST_NAMES else ""
+            )
+            found.append(f"left out of the mesh file: {listed}; {effect}")
+    return tuple(found)
