@@ -25,7 +25,7 @@ RECOGNITION = "docs/recognition.md"
 
 COAL = {"three specimens": 2.11, "panel 8939": 3.66, "roof cutting": 9 * 4.91 * 2.01 / (3 * 4.91 + 2.01), "Shangwan": 23.87}
 """Young's moduli of coal [GPa] as published: Shock Vib. 2021:8854538, Table 5, without gas; Adv. Civ. Eng. 2019:4815236, Table 2; Sci.
-Rep. 14, 79523 (2024), Table 1, 9 K G / (3 K + G); Shock Vib. 2021:7649459, Table 4."""
+Rep. 14, 2024, doi 10.1038/s41598-024-79523-8, Table 1, 9 K G / (3 K + G); Shock Vib. 2021:7649459, Table 4."""
 ROCK = {
     "sandy mudstone, roof cutting": 9 * 2.56 * 2.36 / (3 * 2.56 + 2.36),
     "medium sandstone, roof cutting": 9 * 2.89 * 2.54 / (3 * 2.89 + 2.54),
@@ -199,7 +199,11 @@ def test_published_moduli() -> None:
         COAL["three specimens"],
         COAL["panel 8939"],
     )
-    says(GUIDE, "Table 2), {} (Sci. Rep. 14, article 79523, 2024, Table 1, from bulk and shear modulus) and", COAL["roof cutting"])
+    says(
+        GUIDE,
+        "Table 2), {} (Sci. Rep. 14, 2024, doi 10.1038/s41598-024-79523-8, Table 1, from bulk and shear modulus) and",
+        COAL["roof cutting"],
+    )
     says(GUIDE, "and {} GPa (Shock Vib. 2021:7649459, Table 4)", COAL["Shangwan"])
     mudstone, medium, fine, *others = ROCK.values()
     says(

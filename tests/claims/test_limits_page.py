@@ -27,6 +27,9 @@ IMPACTS = {0.115: 3270.9, 0.176: 12023.0, 0.307: 67731.0}
 """Largest forces [N] of finite elements over a/R, as test_vs_finite_sphere.py computes them."""
 
 
+HERTZ = 1.5
+
+
 def threshold(name: str, unit: float = 1.0) -> float:
     return unit * limits()[name].threshold
 
@@ -45,6 +48,7 @@ def test_thresholds() -> None:
         threshold("drag_coefficient"),
     )
     says(PAGE, "the speed of sound in air at 20 C, {} m/s, for flights in air | above {} |", fast_flight._SPEED_OF_SOUND, threshold("mach"))
+    says(PAGE, "distance of `exponent` from Hertz's {}, where", HERTZ)
     says(PAGE, "below a Stokes number of about {} (Joseph", CRITICAL_STOKES)
     says(PAGE, "over its thickness | above {} |", threshold("plate_deflection"))
     says(PAGE, "| {} contact radii (rigid plate) or {} thicknesses (elastic)", edge._RADII, edge._THICKNESSES)

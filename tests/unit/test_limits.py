@@ -117,6 +117,16 @@ def test_a_limit_is_doubted_from_its_threshold_on(
     assert any(letter.isdigit() for letter in doubt)
 
 
+def test_a_stiffness_of_another_exponent_is_doubted() -> None:
+    """Hertz's number of N/m^1.5 was taken as one of N/m^1.8 without a word."""
+    words = "which no theory gives"
+    for law in ({"law": "hertz"}, {"law": "hertz", "exponent": 1.5}, {"law": "hertz", "exponent": 1.8, "stiffness": 1e10}):
+        assert not any(words in doubt for doubt in told(quiet(contact=law)))
+    (doubt,) = (doubt for doubt in told(quiet(contact={"law": "hertz", "exponent": 1.8})) if words in doubt)
+    assert "in N/m^1.8" in doubt
+    assert number(quiet(contact={"law": "hertz", "exponent": 1.8}), "stiffness_of_exponent") == pytest.approx(0.3)
+
+
 def test_a_deep_contact_is_doubted_with_its_strain() -> None:
     case = quiet()
     assert not any("strains" in doubt for doubt in told(case, depth=0.29**2 * 0.025))

@@ -29,7 +29,7 @@ def bed_stiffness(material: Material, thickness: float) -> tuple[float, float]:
     -----
     A plate held on its lower face deforms at the rim of the support: its normals rotate, shear and stretch over about half a
     thickness. Plate theory fixes the normal over its full height and is too stiff; frequencies of the paper's plate on patches come
-    out 1.4 % too high. Here the middle plane is connected to the lower face by springs, distributed over the face, of compliance
+    out 1.4 % too high. Here springs connect the lower face, which turns with the plate, to the ground or body below it, of a compliance of
     :math:`a(\nu)\,h (1-\nu^2) / E` per area along and across. The two factors a are chosen so that at a straight rim the rotation
     under a moment and the deflection under a transverse force are those of the elastic half strip in plane strain, held on one half of
     one side. Both compliances of the rim agree within 0.2 %, for Poisson's ratios from 0 to 0.495; that under an in-plane force,

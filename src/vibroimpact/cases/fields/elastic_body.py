@@ -150,10 +150,10 @@ class PlateMeshTable(Section):
     kind: ElementKind | None = Field(None, description='kind of element; only of element = "solid"')
     splits: Annotated[int, Field(ge=0, le=6, strict=True)] | None = Field(
         None,
-        description='number of times that elements along edges and at the rims of patches are split in four; only of element = "solid"',
+        description='number of refinements of elements along edges and at the rims of patches; only of element = "solid"',
     )
     lower_splits: Annotated[int, Field(ge=0, le=6, strict=True)] | None = Field(
-        None, description='number of times that the lowest layer is split in four; only of element = "solid"'
+        None, description='number of times that the lowest layer is split at a quarter of its height; only of element = "solid"'
     )
     margin: Annotated[float, Quantity("m", "width of elements along edges and straight rims", Range(at_least=0))] | None = Field(
         None, description='only of element = "plate"; 0 for none'

@@ -54,8 +54,8 @@ class Storakers(YieldingSphereLaw):
     source = "Storakers, Biwa & Larsson 1997, Int. J. Solids Struct. 34:3061, in Thornton 1997, J. Appl. Mech. 64:383"
     departure = (
         "The pressure of the fully plastic contact is put into Thornton's law, which has a constant one, with Hertz's contact radius, "
-        "a^2 = R delta. The source has a^2 = 2 c^2 R delta when fully plastic, with c^2 = 1.43 without hardening, for which the "
-        "restitution far above yield would be 1.48 times as high, and 0.5 for m = 1."
+        "a^2 = R delta. The source has a^2 = 2 c^2 R delta when fully plastic, where c^2 is 0.5 for m = 1, and 1.43 "
+        "without hardening, for which the restitution far above yield would be 1.48 times as high."
     )
     free_parameter = "yield_strength"
 
