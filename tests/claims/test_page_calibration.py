@@ -17,11 +17,14 @@ from support import blocks, module_at, plain_case
 from vibroimpact.calibration import force_pulses, force_record, joint_flights, position_record
 from vibroimpact.calibration.calibrated_drops import MOST_IMPACTS
 from vibroimpact.calibration.evaluate_measurement import _MATTERS
+from vibroimpact.calibration.inputs import BRIEF, EARTH
 from vibroimpact.calibration.noise import standard_deviations
+from vibroimpact.calibration.typed_inputs import _NAMED
 from vibroimpact.contact.pair import effective_shear_modulus
 from vibroimpact.measurements.table_file import TABLE
 from vibroimpact.signals.bounces import chain, touches
 from vibroimpact.signals.bounces.find import _DOUBLE
+from vibroimpact.units.written import read_written
 
 PAGE = "docs/calibration.md"
 
@@ -218,3 +221,21 @@ def test_measured_friction() -> None:
         *found.intervals[0],
         error,
     )
+
+
+def test_typed_inputs() -> None:
+    """What is typed has the standard deviations of the table."""
+    stated = [read_written(text, "m").deviation for text in ("0.6 m +- 5 mm", "0.6 m +- 1 %")]
+    says(PAGE, "as given, here {} mm and {} mm", *(1e3 * one for one in stated))
+    half = 3.0**0.5 * read_written("0.6 m", "m").deviation
+    whole = read_written("600 mm", "m").deviation
+    sizes = 1e3 * half, 577.35 * half, 1e3 * whole
+    says(PAGE, "half a unit of its last digit: within {} mm, {} mm as a standard deviation; {} mm for", *sizes)
+    says(PAGE, "nothing, for gravity | {} m/s², as it varies over the Earth: {} m/s²", EARTH, EARTH.deviation)
+    says(PAGE, "the name of a material | {} % of its density", 100.0 * _NAMED)
+    says(PAGE, "for `--contact` of a record of bounces | {} ms", 1e3 * BRIEF.deviation)
+    flight = 2.0 * 0.82 * np.sqrt(2.0 * 0.6 / EARTH)
+    time = np.append(0.0, np.cumsum(flight * 0.82 ** np.arange(5)))
+    touches = vi.Bounces(vi.Record("microphone", np.zeros(48000), 48e3, "Pa"), time, np.full(6, 1e-6), np.ones(6), np.zeros(0), ())
+    found = vi.rebounds_of(touches, height="0.6 m")
+    says(PAGE, "with the height typed as 0.6 m is {} ({} to {})", found.restitution[0], *found.intervals[0])

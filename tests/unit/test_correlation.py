@@ -19,6 +19,7 @@ import vibroimpact as vi
 from hammered import RATE, TABLE, a_case, hammered, records
 from vibroimpact.correlation.acquired import acquired_of
 from vibroimpact.correlation.correlate import Correlation
+from vibroimpact.signals.flat_tops import clipped_samples
 from vibroimpact.signals.record import Record
 
 DROP = {"drop": {"height": 0.03, "position": TABLE["drop"]["position"]}}
@@ -149,6 +150,123 @@ def test_channels_that_were_not_sampled_together_are_told() -> None:
     found = vi.correlate(a_case(), late, force=Record("hammer", force, RATE, "N"), band=(300.0, 1100.0))
     assert found.delay * RATE == pytest.approx(3.0, abs=0.01)
     assert "samples later than computed from the force" in " ".join(found.doubts)
+
+
+HIT = hammered((0.02,), 0.2)
+LOW = (300.0, 1700.0)
+
+
+@pytest.mark.parametrize("shift", [-14, -6, 3, 5, 9, 13, 22, 40])
+@pytest.mark.parametrize("late", [0, 1])
+@pytest.mark.parametrize("with_force", [True, False])
+def test_a_late_channel_is_named_and_the_right_one_is_not_inverted(shift: int, late: int, with_force: bool) -> None:
+    """With one common delay the right record was said to be inverted where half a period of it was lost."""
+    force, value = HIT
+    moved = value.copy()
+    moved[late] = np.roll(moved[late], shift)
+    if with_force:
+        found = vi.correlate(a_case(), records(moved), force=Record("hammer", force, RATE, "N"), band=LOW)
+    else:
+        _, made = fallen()
+        shifted = [replace(one, value=np.roll(one.value, shift)) if number == late else one for number, one in enumerate(made)]
+        found = vi.correlate(vi.read_case({**TABLE, **DROP}), shifted, window=0.1)
+    signs = [1.0, 1.0] if with_force else [-1.0, 1.0]
+    assert found.polarity.tolist() == signs
+    said = [doubt for doubt in found.doubts if "than the others and its simulation" in doubt]
+    assert len(said) == 1
+    other = found.skew[late] - found.skew[1 - late]
+    assert other * RATE == pytest.approx(shift, abs=0.1)
+    if with_force:
+        assert found.skew[1 - late] == 0.0
+        assert f'the record "a{late + 1}" comes {abs(shift)} samples {"later" if shift > 0 else "earlier"}' in said[0]
+        assert abs(found.delay * RATE) < 0.1
+        assert found.frac[1 - late] > 0.97
+    assert not any("inverted" in doubt for doubt in found.doubts if with_force)
+
+
+def test_channels_that_were_sampled_together_have_no_skew() -> None:
+    for found in (struck(), struck(0.02), dropped()):
+        assert not found.skew.any()
+        assert not any("than the others" in doubt for doubt in found.doubts)
+
+
+@pytest.mark.parametrize("gain", [0.9, 0.94, 1.06, 1.1, 2.0])
+def test_a_gain_that_is_off_is_doubted(gain: float) -> None:
+    force, value = HIT
+    hammer = Record("hammer", force, RATE, "N")
+    one = vi.correlate(a_case(), records(value * [[1.0], [gain]]), force=hammer, band=LOW)
+    (said,) = [doubt for doubt in one.doubts if "times" in doubt]
+    assert f'the record "a2" is {gain:.3g} times its simulation in the first 5 ms' in said
+    every = vi.correlate(a_case(), records(value * gain), force=hammer, band=LOW)
+    (said,) = [doubt for doubt in every.doubts if "times" in doubt]
+    assert f"all records are {gain:.3g} times the simulation" in said
+    assert "the calibration of the force" in said
+
+
+@pytest.mark.parametrize("gain", [0.97, 1.0, 1.03])
+def test_a_gain_within_what_sensors_have_is_not(gain: float) -> None:
+    force, value = HIT
+    found = vi.correlate(a_case(), records(value * [[1.0], [gain]]), force=Record("hammer", force, RATE, "N"), band=LOW)
+    assert not any("times" in doubt for doubt in found.doubts)
+
+
+def test_the_band_ends_where_the_force_does() -> None:
+    """Through the zeros of the force's spectrum it is noise and leakage that are compared."""
+    for damping in (0.008, 0.02):
+        found, whole = struck(damping), _whole(damping)
+        assert found.band[1] == pytest.approx(1400.0, rel=0.1)
+        assert whole.band[1] > 3000.0
+        assert {pair.number for pair in found.modes if pair.measured} == {pair.number for pair in whole.modes if pair.measured}
+        assert any("where the band ends" in doubt for doubt in found.doubts)
+    assert (struck(0.02).frac > _whole(0.02).frac).all()
+    assert np.nanmin(struck().octave_frac) > 0.999
+    assert np.nanmin(_whole(0.008).octave_frac) < 0.95  # though the model is right
+    assert (struck().frac > 0.999).all()
+
+
+def _whole(damping: float) -> Correlation:
+    force, value = hammered((0.02, 0.24), 0.45)
+    hammer = Record("hammer", force, RATE, "N")
+    return vi.correlate(a_case(damping=damping), records(value), force=hammer, band=(struck(damping).band[0], 3100.0))
+
+
+CLIPPED = ("equal", "pairs", "noise", "offset", "steps")
+
+
+@pytest.mark.parametrize("kind", CLIPPED)
+def test_clipping_of_every_kind_is_found(kind: str) -> None:
+    """It was found in runs of three equal samples alone."""
+    random = np.random.default_rng(3)
+    _, value = HIT
+    value = value / np.abs(value).max(axis=1, keepdims=True)
+    if kind == "pairs":  # on many peaks, of fast vibration
+        value = np.sin(0.9 * np.pi * np.arange(400) / 3.0 + 0.3)[None] * np.exp(-np.arange(400) / 300.0)
+    found = np.clip(value, -0.6, 0.6)
+    if kind == "noise":
+        found += 3e-4 * random.standard_normal(found.shape)
+    if kind == "offset":
+        found += 0.2
+    if kind == "steps":
+        found = np.round(200.0 * found) / 200.0
+    for one in found:
+        level = 0.2 if kind == "offset" else 0.0
+        assert clipped_samples(one - level, one, one[:200] - level) > 0
+
+
+def test_what_is_not_clipped_is_not_said_to_be() -> None:
+    """None of 2,160 records of three signals, with noise, in steps of a converter or not."""
+    alarms = 0
+    force, value = hammered((0.02, 0.24), 0.45)
+    for seed in range(60):
+        random = np.random.default_rng(seed)
+        for one in (*value, force):
+            for noise in (0.0, 1e-4, 1e-3, 1e-2):
+                noisy = one + noise * np.abs(one).max() * random.standard_normal(len(one))
+                for bits in (0, 12, 16):
+                    steps = 2.0 ** (bits - 1) * random.uniform(0.2, 1.0) / np.abs(noisy).max()
+                    record = np.round(noisy * steps) if bits else noisy
+                    alarms += clipped_samples(record, record, record[:200]) > 0
+    assert alarms == 0
 
 
 def test_a_force_that_is_upside_down_is_suspected() -> None:

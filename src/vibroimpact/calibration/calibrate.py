@@ -16,6 +16,7 @@ from vibroimpact.calibration.observations import Observations
 from vibroimpact.calibration.overlay import overlays
 from vibroimpact.calibration.single_impacts import first_approach_speed
 from vibroimpact.calibration.tunables import law_parameter
+from vibroimpact.calibration.typed_inputs import Moved
 from vibroimpact.calibration.uncertainty import fit_doubts, other_drop_doubts
 from vibroimpact.calibration.unreachable import other_parameters
 from vibroimpact.dynamics.problem import Problem, StatesProblem
@@ -36,6 +37,7 @@ def calibrate(
     confidence: float = 0.95,
     bootstrap: int | None = None,
     seed: int = 0,
+    moved: Sequence[Moved] = (),
     progress: Callable[[float], None] | None = None,
 ) -> Calibration:
     """Return the parameter value with which each impact matches the target, and its fit over the approach speed.
@@ -66,6 +68,8 @@ def calibrate(
         intervals are wide.
     seed : int, default 0
         Seed of the bootstrap.
+    moved : sequence of Moved, optional
+        The measurement and the impacts with each uncertain number of the case changed a little, as `calibrate_case` has them.
     progress : callable, optional
         Called with the fraction done, in [0, 1].
 
@@ -102,7 +106,7 @@ def calibrate(
     if isinstance(target, Observations):
         if speeds is not None:
             raise InputError("what was measured is known at its own speeds alone; leave the speeds out", "speeds")
-        found = match_measurement(tuned, stated, target, weights, degree, confidence, bootstrap, seed, tell)
+        found = match_measurement(tuned, stated, target, weights, degree, confidence, bootstrap, seed, tell, moved)
     else:
         found = match_drop(tuned, stated, target.to_problem(), weights, degree, speeds, tell)
     tell(0.9)

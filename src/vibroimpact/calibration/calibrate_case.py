@@ -16,9 +16,11 @@ from vibroimpact.calibration.friction.calibrate import FrictionCalibration, cali
 from vibroimpact.calibration.friction.measured import oblique_impacts_in_file
 from vibroimpact.calibration.friction.parameters import friction_parameters
 from vibroimpact.calibration.matching import Tunable
+from vibroimpact.calibration.observations import Observations
 from vibroimpact.calibration.section import FRICTION, CalibrateSection, FileTarget, friction_names
 from vibroimpact.calibration.targets import target_of
 from vibroimpact.calibration.tunables import law_parameter, modal_damping
+from vibroimpact.calibration.typed_inputs import moved_inputs, typed_inputs
 from vibroimpact.cases.build import problem_of, resolved_case
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.fields.contact import read_contact
@@ -29,7 +31,7 @@ from vibroimpact.contact.pair import ContactPair
 from vibroimpact.contact.registry import find_contact_law, friction_laws
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.simulate import simulate
-from vibroimpact.errors import InputError
+from vibroimpact.errors import InputError, listed
 from vibroimpact.results.result import result_of
 
 MODEL = "adams-impact"
@@ -203,12 +205,21 @@ def _doubts_of_a_run(case: Case, found: Calibration | FrictionCalibration, aside
 def _calibrated_law(
     what: ToCalibrate, problem: Problem, section: CalibrateSection, progress: Callable[[float], None] | None
 ) -> Calibration:
-    assert not isinstance(section.parameter, tuple)
-    tunable = _tunable(problem, section.parameter)
+    parameter = section.parameter
+    assert not isinstance(parameter, tuple)
+    tunable, target = _tunable(problem, parameter), target_of(what.case, problem, section)
+
+    def evaluated(case: Case) -> tuple[Observations, Tunable]:
+        other = problem_of(case)
+        seen = target_of(case, other, section)
+        assert isinstance(seen, Observations)
+        return seen, _tunable(other, parameter)
+
     return calibrate(
         problem,
-        target_of(what.case, problem, section),
+        target,
         tunable=tunable if what.given else replace(tunable, given=np.full(1, np.nan)),
+        moved=moved_inputs(what.case, evaluated, target) if isinstance(target, Observations) and target.measured else (),
         weights=section.match,
         degree=section.degree,
         speeds=None if section.speeds is None else section.speeds.values(),
@@ -238,6 +249,9 @@ def _calibrated_friction(
         seed=section.seed,
         progress=progress,
     )
+    if unused := [one.name for one in typed_inputs(what.case) if one.value.stated]:
+        words = f"the standard deviation of {listed(unused)} is no part of these intervals"
+        found = replace(found, doubts=(*found.doubts, words))
     if what.given:
         return found
     unknown = np.array([name == "coefficient" for name in found.parameters.names])

@@ -12,6 +12,7 @@ from vibroimpact._version import __version__
 from vibroimpact.calibration.adams_dialog import calibrated_dialog
 from vibroimpact.calibration.calibration import Calibration
 from vibroimpact.calibration.differences import COMPARED, WAYS, differences, largest_misfit, reference
+from vibroimpact.calibration.inputs import inputs_document
 from vibroimpact.calibration.matchable import MATCHABLE
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.case import Case
@@ -66,6 +67,7 @@ def calibration_table(case: Case, found: Calibration) -> dict[str, Any]:
             name: {"value": one.value, "standard_deviation": one.deviation, "unit": one.unit}
             for name, one in found.observations.corrections.items()
         },
+        "inputs": [] if found.observations.effects is None else inputs_document(found.observations.effects.inputs),
         "doubts": list(found.doubts),
         "case": resolved_case(case),
     }

@@ -18,6 +18,8 @@ from vibroimpact.errors import ComputationError, InputError
 
 _SWEEPS = 50
 _WITHIN = 1e-10
+_ROUNDS = 50
+_LEAST = 1e-9
 
 
 @dataclass(frozen=True)
@@ -144,8 +146,39 @@ def fit_observations(tunable: Tunable, observations: Observations, weights: Mapp
     first = min(degree, distinct(speeds[some]) - 1) if some.any() else 0
     begin = fit_values(speeds[some], values[some], first).function(speeds) if some.any() else np.full(len(speeds), tunable.start)
     at = tunable.allowed.clip(begin)
-    coefficients = _least_squares(powers, at)[0]
-    for _ in range(_SWEEPS):
+    if known:
+        try:
+            coefficients, covariance, scatter, freedom = _settled(tunable, observations, weights, powers, at, noise_known=True)
+        except ComputationError:
+            if observations.effects is None:
+                raise
+        else:
+            if not (freedom and misfits(scatter, freedom)):
+                return Fit(_function(coefficients, speeds), covariance, np.inf, scatter)
+    # the noise is not known, or larger than it is said to be
+    coefficients, covariance, scatter, freedom = _settled(tunable, observations, weights, powers, at, noise_known=False)
+    return Fit(_function(coefficients, speeds), covariance, freedom, scatter)
+
+
+def _settled(
+    tunable: Tunable, observations: Observations, weights: Mapping[str, float], powers: Floats, at: Floats, *, noise_known: bool
+) -> tuple[Floats, Floats, float, int]:
+    """Return coefficients, their covariance, the scatter of the residuals in units of the noise, and its degrees of freedom.
+
+    Parameters
+    ----------
+    tunable, observations, weights
+        As in `fit_observations`.
+    powers : array, shape (n, k)
+        Powers of the approach speeds.
+    at : array, shape (n,)
+        Values to begin with.
+    noise_known : bool
+        Whether the noise is as large as the observations have it; otherwise as large as the residuals.
+    """
+    speeds, coefficients, number = observations.speeds, _least_squares(powers, at)[0], powers.shape[1]
+    shares: list[Floats] = []
+    for sweep in range(_SWEEPS):
         found = derivatives(tunable, speeds, at, observations.which)
         rows, targets, noises = [], [], []
         for name, weight in weights.items():
@@ -155,23 +188,47 @@ def fit_observations(tunable: Tunable, observations: Observations, weights: Mapp
             # noise of the approach speed also changes the value of the polynomial
             along = found.by_speed[name] + by_value * polynomial.polyval(speeds, polynomial.polyder(coefficients))
             noise = observations.noise[name] - scaled(along, observations.speed_noise)
-            noises.append(noise / (1.0 if known else np.sqrt(weight)))
+            noises.append(noise / (1.0 if observations.deviations_known else np.sqrt(weight)))
+            if not sweep:  # to first order, so that an input that noise is nothing to lets the fit settle
+                shares.append(_shared(observations, name, along))
         if not any(np.any(row) for row in rows):
             raise InputError(f"{tunable.name} has no influence on the measured quantities, which can't determine it", "parameter")
         # whitened, so that readings shared by two impacts count once
-        independent = whitened(vstack(noises), np.column_stack([np.concatenate(rows), np.concatenate(targets)]))
-        coefficients, covariance = _least_squares(independent[:, :-1], independent[:, -1])
+        independent = whitened(vstack(noises), np.column_stack([np.concatenate(part) for part in (rows, shares, targets)]))
+        coefficients, covariance, scatter = _with_inputs(independent[:, :-1], independent[:, -1], number, noise_known)
         before, at = at, tunable.allowed.clip(powers @ coefficients)
         if np.all(np.abs(at - before) <= _WITHIN * np.abs(at).max()):
+            return coefficients, covariance, scatter, len(independent) - number
+    raise ComputationError(f"the fit of {tunable.name} does not settle; take a lower degree, or look at the measurements")
+
+
+def _shared(observations: Observations, name: str, along: Floats) -> Floats:
+    """Return what one standard deviation of each typed input changes in the residuals of a quantity, (n, k)."""
+    effects = observations.effects
+    if effects is None:
+        return np.zeros((len(observations.speeds), 0))
+    return np.asarray(effects.wanted[name] - along[:, None] * effects.speeds)
+
+
+def _with_inputs(columns: Floats, targets: Floats, number: int, known: bool) -> tuple[Floats, Floats, float]:
+    """Return coefficients, their covariance, and the scatter of the residuals in units of the noise.
+
+    Columns after the first `number` are typed inputs, each of which is off by an unknown part of its standard deviation: a coefficient that
+    is expected to be 0 within 1. Noise of unknown magnitude is as large as the scatter.
+    """
+    inputs, freedom = columns.shape[1] - number, len(targets) - number
+    prior = np.hstack([np.zeros((inputs, number)), np.eye(inputs)])
+    scatter, whole = (1.0 if known else np.nan), np.append(targets, np.zeros(inputs))
+    for _ in range(_ROUNDS):
+        # without a scatter to begin with, inputs are taken as exact
+        stiff = 1.0 if known else max(scatter, _LEAST) if scatter > 0.0 else 1.0 / _LEAST
+        rows = np.vstack([columns, stiff * prior])
+        found, inverse = _least_squares(rows, whole)
+        left = whole - rows @ found
+        before, scatter = scatter, float(np.sqrt((left @ left) / freedom)) if freedom else np.nan
+        if known or not inputs or not scatter > 0.0 or abs(scatter - before) <= 1e-6 * scatter:
             break
-    else:
-        raise ComputationError(f"the fit of {tunable.name} does not settle; take a lower degree, or look at the measurements")
-    left = independent[:, -1] - independent[:, :-1] @ coefficients
-    freedom = len(left) - degree - 1
-    scatter = float(np.sqrt((left @ left) / freedom)) if freedom else np.nan
-    if known and not (freedom and misfits(scatter, freedom)):
-        return Fit(_function(coefficients, speeds), covariance, np.inf, scatter)
-    return Fit(_function(coefficients, speeds), scatter**2 * covariance, freedom, scatter)
+    return found[:number], (1.0 if known else scatter**2) * inverse[:number, :number], scatter
 
 
 def misfits(scatter: float, freedom: int) -> bool:
@@ -181,8 +238,8 @@ def misfits(scatter: float, freedom: int) -> bool:
     return bool(scatter**2 * freedom > chi2.ppf(0.999, freedom))
 
 
-def value_deviations(tunable: Tunable, observations: Observations, weights: Mapping[str, float], values: Floats) -> Floats:
-    """Return the first-order standard deviation of the value that matches each impact, (n,)."""
+def value_deviations(tunable: Tunable, observations: Observations, weights: Mapping[str, float], values: Floats) -> tuple[Floats, Floats]:
+    """Return the first-order standard deviation of the value that matches each impact, (n,), and its parts by typed inputs, (n, k)."""
     found = derivatives(tunable, observations.speeds, np.where(np.isfinite(values), values, tunable.start), observations.which)
     above: Noise = no_noise(*observations.speed_noise.shape)
     below = np.zeros(len(values))
@@ -192,8 +249,14 @@ def value_deviations(tunable: Tunable, observations: Observations, weights: Mapp
         noise = observations.noise[name] - scaled(found.by_speed[name], observations.speed_noise)
         above = above + scaled(weight * by_value / scale, noise)
         below += weight * by_value**2
+    effects = sum(
+        (weight * found.by_value[name] / residual_scale(name, observations.speeds, observations.wanted[name]) ** 2)[:, None]
+        * _shared(observations, name, found.by_speed[name])
+        for name, weight in weights.items()
+    )
     with np.errstate(divide="ignore", invalid="ignore"):
-        return np.asarray(standard_deviations(above) / below)
+        every = np.hypot(standard_deviations(above), np.linalg.norm(effects, axis=1)) / below
+        return np.asarray(every), np.asarray(effects / below[:, None])
 
 
 def _powers(speeds: Floats, degree: int) -> Floats:

@@ -6,7 +6,7 @@ The target is a drop under another contact law, or a measurement.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import fields
+from dataclasses import fields, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -14,10 +14,12 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.calibration.calibrated_drops import impact_count, limited_to
 from vibroimpact.calibration.fitting import Fit, distinct, fit_observations, fit_values, value_deviations
+from vibroimpact.calibration.inputs import guessed_doubt
 from vibroimpact.calibration.matchable import MATCHABLE
 from vibroimpact.calibration.matching import Tunable, match
-from vibroimpact.calibration.observations import Observations, with_noise_scale
+from vibroimpact.calibration.observations import Effects, Observations, with_noise_scale
 from vibroimpact.calibration.single_impacts import batched_law, return_speeds, single_impacts
+from vibroimpact.calibration.typed_inputs import Moved, effects_of
 from vibroimpact.calibration.uncertainty import bootstrap_intervals, default_draws, undetermined_doubts, with_nearest_bound
 from vibroimpact.calibration.unreachable import check_reached
 from vibroimpact.dynamics.problem import Problem
@@ -28,6 +30,8 @@ _CURVE_POINTS = 41
 """Number of speeds at which the exact value is computed for comparison with the polynomial."""
 
 _PASSES = 20
+_MOSTLY = 0.5
+"""Part of a variance from which on a single input is named as the origin of it."""
 
 
 class MatchedTarget(NamedTuple):
@@ -121,6 +125,7 @@ def match_measurement(
     bootstrap: int | None,
     seed: int,
     tell: Callable[[float], None],
+    moved: Sequence[Moved],
 ) -> MatchedTarget:
     """Return the values with which the impacts match a measurement, with confidence intervals."""
     missing = [name for name in weights if name not in seen.wanted]
@@ -129,16 +134,19 @@ def match_measurement(
     found = match(tuned, seen.speeds, seen.wanted, weights, seen.which)
     alone = check_reached(tuned, problem, seen, weights, found)
     tell(0.3)
+    values = with_nearest_bound(tuned, alone, seen.speeds, seen.wanted, weights, seen.which)
+    seen = replace(seen, effects=effects_of(moved, tuned, seen, weights, values))
     fit = fit_observations(tuned, seen, weights, _degree(seen.speeds, degree), alone)
     tell(0.5)
-    values = with_nearest_bound(tuned, alone, seen.speeds, seen.wanted, weights, seen.which)
     doubts = list(seen.doubts) + [
         f"{label}: no {tuned.name} meets it, which noise explains; {nearest:.5g}, as near as {tuned.name} can come, stands for it"
         for label, value, nearest in zip(seen.labels, alone, values, strict=True)
         if np.isnan(value)
     ]
     sized = seen if seen.deviations_known else with_noise_scale(seen, fit.scatter, weights)
-    deviations = value_deviations(tuned, sized, weights, values)
+    deviations, by_input = value_deviations(tuned, sized, weights, values)
+    if seen.effects is not None:
+        doubts += _guessed_inputs(seen.effects, seen.labels, deviations, by_input)
     half, draws = fit.quantile(confidence) * deviations, 0
     intervals = np.stack([values - half, values + half], axis=1) if np.isfinite(half).all() else None
     if intervals is not None:
@@ -150,6 +158,18 @@ def match_measurement(
     doubts += undetermined_doubts(tuned, values, intervals, seen, fit, confidence)
     within = None if intervals is None else tuned.allowed.bounded(intervals)
     return MatchedTarget(seen, values, fit, within, None, draws, doubts)
+
+
+def _guessed_inputs(effects: Effects, labels: Sequence[str], deviations: Floats, by_input: Floats) -> list[str]:
+    """Return warnings about inputs of unstated uncertainty that most of the interval of a value is from."""
+    parts = np.nan_to_num(by_input**2 / deviations[:, None] ** 2)
+    told = []
+    for number, one in enumerate(effects.inputs):
+        most = int(np.argmax(parts[:, number]))
+        if not one.value.stated and parts[most, number] > _MOSTLY:
+            several = np.count_nonzero(parts[:, number] > _MOSTLY) - 1
+            told.append(guessed_doubt(one, f"{labels[most]}{f' and of {several} more' if several else ''}"))
+    return told
 
 
 def _degree(speeds: Floats, degree: int | None) -> int:

@@ -10,7 +10,8 @@ import numpy as np
 
 from vibroimpact.arrays import Floats, Indices
 from vibroimpact.calibration.flights import Flights, VacuumFlights, vacuum_height
-from vibroimpact.calibration.noise import Noise, as_noise, no_noise, of_the_impact_before, own_noise, scaled
+from vibroimpact.calibration.inputs import Input
+from vibroimpact.calibration.noise import Noise, as_noise, no_noise, of_the_impact_before, own_noise, scaled, standard_deviations
 
 
 class Correction(NamedTuple):
@@ -19,6 +20,16 @@ class Correction(NamedTuple):
     value: float
     deviation: float
     unit: str
+
+
+class Effects(NamedTuple):
+    """What one standard deviation of each of k typed inputs, such as gravity or the radius, changes: in the approach speeds [m/s], (n, k),
+    and in the target values beyond what it changes in the computed ones, (n, k) by name. All impacts share them.
+    """
+
+    inputs: tuple[Input, ...]
+    speeds: Floats
+    wanted: Mapping[str, Floats]
 
 
 class Record(NamedTuple):
@@ -67,6 +78,8 @@ class Observations:
     corrections : mapping of str to Correction
         What the record itself determines: of a position its "zero" [m], the "drift" of that [m/s], and its "clock", in seconds of the
         record per second.
+    effects : Effects, optional
+        What the uncertainty of typed inputs changes.
 
     Examples
     --------
@@ -90,6 +103,7 @@ class Observations:
     record: Record | None = None
     notes: tuple[str, ...] = ()
     corrections: Mapping[str, Correction] = field(default_factory=dict)
+    effects: Effects | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "speed_noise", as_noise(self.speed_noise))
@@ -106,9 +120,21 @@ class Observations:
         return np.arange(len(self.speeds)) if self.of_the_drop else np.zeros(len(self.speeds), dtype=np.intp)
 
     def redrawn(self, random: np.random.Generator) -> tuple[Floats, dict[str, Floats]]:
-        """Return approach speeds and target values with a random realization of the noise."""
+        """Return approach speeds and target values with a random realization of the noise and of the inputs."""
         draw = random.normal(size=self.speed_noise.shape[1])
-        return self.speeds + self.speed_noise @ draw, {name: values + self.noise[name] @ draw for name, values in self.wanted.items()}
+        speeds = self.speeds + self.speed_noise @ draw
+        wanted = {name: values + self.noise[name] @ draw for name, values in self.wanted.items()}
+        if self.effects is None:
+            return speeds, wanted
+        moved = random.normal(size=len(self.effects.inputs))
+        changed = {name: values + self.effects.wanted[name] @ moved for name, values in wanted.items() if name in self.effects.wanted}
+        return speeds + self.effects.speeds @ moved, {**wanted, **changed}
+
+    @property
+    def speed_deviations(self) -> Floats:
+        """Standard deviations of the approach speeds [m/s], (n,): 0 where they are exact or their noise is of unknown magnitude."""
+        known = standard_deviations(self.speed_noise) if self.deviations_known else np.zeros(len(self.speeds))
+        return known if self.effects is None else np.hypot(known, np.linalg.norm(self.effects.speeds, axis=1))
 
 
 def from_heights(

@@ -9,13 +9,14 @@ from numpy.typing import ArrayLike
 
 from vibroimpact.calibration.calibration import Calibration
 from vibroimpact.calibration.differences import COMPARED, WAYS, differences, largest_misfit
+from vibroimpact.calibration.inputs import inputs_sentence
 from vibroimpact.calibration.matchable import MATCHABLE, REBOUNDS
 from vibroimpact.calibration.report import Cells, shortened
 from vibroimpact.calibration.tunables import law_parameter
 from vibroimpact.cases.fields.contact import varies_with_speed
 from vibroimpact.contact.speed_function import toml_of
 from vibroimpact.runs.tables import formatted_column
-from vibroimpact.units.display import column_texts, digits, fixed, largest, text
+from vibroimpact.units.display import column_texts, digits, fixed, known_text, known_texts, largest, text
 
 _MET = 1e-3  # relative deviation up to which the target is met
 _POWERS = ("", " v", " v²", " v³")
@@ -30,11 +31,14 @@ def values_table(found: Calibration) -> Cells:
     """Return headers with units, and a row per matched impact."""
     seen = found.observations
     headers = [("", ""), ("Approach speed", "m/s"), (found.parameter, found.unit)]
-    columns = [list(seen.labels), column_texts(seen.speeds), column_texts(found.values, 6)]
-    if found.intervals is not None:
+    speeds = known_texts(seen.speeds, seen.speed_deviations, 5) if seen.measured else column_texts(seen.speeds)
+    if found.intervals is None:
+        columns = [list(seen.labels), speeds, column_texts(found.values, 6)]
+    else:
         headers.append((f"Interval, {_percent(found.confidence)}", found.unit))
-        ends = column_texts(np.ravel(found.intervals), 6)
-        columns.append([f"{low} to {high}" for low, high in zip(ends[::2], ends[1::2], strict=True)])
+        half = 0.5 * np.ptp(found.intervals, axis=1)
+        ends = zip(*(known_texts(end, half) for end in found.intervals.T), strict=True)
+        columns = [list(seen.labels), speeds, known_texts(found.values, half), [f"{low} to {high}" for low, high in ends]]
     if found.as_given:
         headers.append(("As the case gives it", found.unit))
         columns.append(column_texts(found.given, 6))
@@ -79,10 +83,11 @@ def function_words(found: Calibration) -> str:
     damping_max = 139.408 + 5.86289 v - 0.145602 v² [N s/m], v in m/s from 3.180 to 8.827
     """
     function, words = found.fit.function, ""
-    for power, value in enumerate(function.coefficients):
+    half = found.fit.half_widths(found.confidence) if found.observations.measured else np.zeros(function.degree + 1)
+    for power, (value, spread) in enumerate(zip(function.coefficients, half, strict=True)):
         minus = "\u2212" if value < 0.0 else "+" if words else ""
         words += f" {minus} " if words else minus
-        words += digits(abs(value), 6) + (_POWERS[power] if power < len(_POWERS) else f" v^{power}")
+        words += known_text(abs(value), float(spread)) + (_POWERS[power] if power < len(_POWERS) else f" v^{power}")
     unit = f" [{found.unit}]" if found.unit else ""
     if not function.degree:
         return f"{found.parameter} = {words}{unit}"
@@ -98,11 +103,13 @@ def fit_sentences(found: Calibration) -> list[str]:
         half = fit.half_widths(found.confidence)
         if np.isfinite(half).all():
             told.append(
-                f"Uncertainty of its coefficients: ± {', '.join(digits(value, 3) for value in half)} at {_percent(found.confidence)}."
+                f"Uncertainty of its coefficients: ± {', '.join(digits(value, 2) for value in half)} at {_percent(found.confidence)}."
             )
         way = f"by bootstrap with {found.bootstrap} draws" if found.bootstrap else "to first order"
         if found.intervals is not None:
             told.append(f"Intervals are {way}, from {seen.noise_from if seen.deviations_known else 'the scatter of the measurement'}.")
+        if seen.effects is not None:
+            told.append(inputs_sentence(seen.effects.inputs))
         if seen.deviations_known and np.isfinite(fit.scatter):
             told.append(f"Residuals are {digits(fit.scatter, 3)} times as large as their standard deviations.")
     else:
@@ -122,7 +129,9 @@ def given_sentences(found: Calibration) -> list[str]:
         if np.all(np.abs(off) < 1e-6):
             continue
         worst = int(np.nanargmax(np.abs(off)))
-        given, meets = (f"{digits(value, 6)} {found.unit}".rstrip() for value in (found.given[worst], found.values[worst]))
+        half = 0.0 if found.intervals is None else float(0.5 * np.ptp(found.intervals[worst]))
+        texts = (digits(found.given[worst], 6), known_text(float(found.values[worst]), half))
+        given, meets = (f"{value} {found.unit}".rstrip() for value in texts)
         words = (
             f"With {found.parameter} = {given}, as the case gives it, the {MATCHABLE[name].phrase} of {found.observations.labels[worst]}"
         )

@@ -37,7 +37,7 @@ from vibroimpact.cases.fields.instruments import (
 )
 from vibroimpact.cases.fields.material import MaterialField
 from vibroimpact.cases.fields.motion import MotionTable
-from vibroimpact.cases.fields.quantities import Quantity
+from vibroimpact.cases.fields.quantities import Quantity, UncertainQuantity
 from vibroimpact.cases.fields.section import Section, check_alternatives
 from vibroimpact.cases.fields.size_limits import MOST_ITEMS, Name, at_most
 from vibroimpact.cases.fields.supports import SupportsField
@@ -62,7 +62,7 @@ _RIGHT_ANGLE = 0.5 * math.pi
 class SphereSection(Section):
     """The body that falls."""
 
-    radius: Annotated[float, Quantity("m", "radius", Range(above=0))]
+    radius: Annotated[float, UncertainQuantity("m", "radius", Range(above=0))]
     material: MaterialField
     model: Literal["rigid", "elastic"] = Field("rigid", description="rigid, or elastic with vibration modes")
     modes: ModesField | None = Field(None, description="number of modes, from the lowest")
@@ -140,10 +140,12 @@ class DropSection(Section):
     """How the sphere comes down: from a height, or with a speed or velocity at first touch."""
 
     height: (
-        Annotated[float, Quantity("m", "initial height of the sphere's centre above the plate's upper surface, at rest", Range(above=0))]
+        Annotated[
+            float, UncertainQuantity("m", "initial height of the sphere's centre above the plate's upper surface, at rest", Range(above=0))
+        ]
         | None
     ) = None
-    speed: Annotated[float, Quantity("m/s", "speed at first touch, at which the run then begins", Range(above=0))] | None = None
+    speed: Annotated[float, UncertainQuantity("m/s", "speed at first touch, at which the run then begins", Range(above=0))] | None = None
     angle: (
         Annotated[
             float, Quantity("rad", "angle of the speed from the plate's normal, towards +x", Range(above=-_RIGHT_ANGLE, below=_RIGHT_ANGLE))
@@ -160,7 +162,7 @@ class DropSection(Section):
     position: tuple[Annotated[float, Quantity("m", "x")], Annotated[float, Quantity("m", "y")]] = Field(
         (0.0, 0.0), description="x and y on the plate, from its centre [m]"
     )
-    gravity: Annotated[float, Quantity("m/s^2", "acceleration of gravity", Range(at_least=0))] = STANDARD_GRAVITY
+    gravity: Annotated[float, UncertainQuantity("m/s^2", "acceleration of gravity", Range(at_least=0))] = STANDARD_GRAVITY
     air: AirField = None
     same_spot: StrictBool = Field(
         True, description="whether all impacts are at the same spot, with the dent of previous ones, or on undeformed surfaces"

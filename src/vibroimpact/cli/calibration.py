@@ -17,10 +17,10 @@ from vibroimpact.cli.shared import (
     console,
     exit_on_interrupt,
     note,
-    quantity_in,
     settings_of,
     show_folder,
     stem,
+    written_in,
 )
 from vibroimpact.errors import InputError
 
@@ -48,16 +48,18 @@ def calibrate(
     gravity: Annotated[
         str | None,
         typer.Option(
-            "--gravity", metavar="VALUE", help='Gravity during the flights of a record, such as "9.81 m/s^2"; by default 9.80665 m/s^2.'
+            "--gravity",
+            metavar="VALUE",
+            help='Gravity during the flights of a record, such as "9.81 m/s^2 +- 0.005 m/s^2"; by default 9.80665 m/s^2.',
         ),
     ] = None,
     height: Annotated[
         str | None,
-        typer.Option("--height", metavar="LENGTH", help='Height of fall before the first touch of a record, such as "0.3 m".'),
+        typer.Option("--height", metavar="LENGTH", help='Height of fall before the first touch of a record, such as "0.3 m +- 5 mm".'),
     ] = None,
     contact: Annotated[
         str | None,
-        typer.Option("--contact", metavar="TIME", help='Contact time of the impacts of a record, such as "0.2 ms"; by default 0.'),
+        typer.Option("--contact", metavar="TIME", help='Contact time of the impacts of a record, such as "0.2 ms +- 10 %"; by default 0.'),
     ] = None,
     figures: Figures = False,
     force: Force = False,
@@ -136,15 +138,15 @@ def _listen(
     from vibroimpact.calibration.bounces.folder import save_rebounds
     from vibroimpact.calibration.bounces.rebounds import rebounds_of
     from vibroimpact.calibration.bounces.text import bounce_summary
-    from vibroimpact.dynamics.problem import STANDARD_GRAVITY
+    from vibroimpact.calibration.inputs import BRIEF
     from vibroimpact.files.reading import with_path
     from vibroimpact.signals.bounces.find import find_bounces
     from vibroimpact.signals.one_record import one_record
 
     with exit_on_interrupt():
-        lasts = 0.0 if contact is None else quantity_in("--contact", contact, "s")
-        acceleration = STANDARD_GRAVITY if gravity is None else quantity_in("--gravity", gravity, "m/s^2")
-        fallen = None if height is None else quantity_in("--height", height, "m")
+        lasts = BRIEF if contact is None else written_in("--contact", contact, "s")
+        acceleration = None if gravity is None else written_in("--gravity", gravity, "m/s^2")
+        fallen = None if height is None else written_in("--height", height, "m")
         record = one_record(file, channel)
         try:
             found = rebounds_of(find_bounces(record, lasts), gravity=acceleration, height=fallen)

@@ -22,6 +22,8 @@ from vibroimpact.shown import visible
 if TYPE_CHECKING:
     from rich.console import Console, RenderableType
 
+    from vibroimpact.units.written import Written
+
 # heavy imports are inside the commands, so that --help is fast
 
 app = typer.Typer(
@@ -180,6 +182,24 @@ def quantity_in(option: str, text: str, unit: str) -> float:
     parts = number_and_unit(text)
     try:
         return to_si(text if parts is None or parts[1] else parts[0], unit)
+    except InputError as error:
+        raise InputError(error.message, option) from None
+
+
+def written_in(option: str, text: str, unit: str) -> Written:
+    """Return the value of an option in SI with its standard deviation, which is given in it or left open by its digits.
+
+    Examples
+    --------
+    >>> written_in("--height", "0.30 m +- 5 mm", "m").deviation, round(written_in("--height", "0.30", "m").deviation, 5)
+    (0.005, 0.00289)
+    """
+    from vibroimpact.units.reading import number_and_unit
+    from vibroimpact.units.written import read_written
+
+    parts = number_and_unit(text)
+    try:
+        return read_written(text if parts is None or parts[1] or not unit else f"{text} {unit}", unit)
     except InputError as error:
         raise InputError(error.message, option) from None
 

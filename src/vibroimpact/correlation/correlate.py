@@ -12,7 +12,8 @@ from scipy import fft
 from vibroimpact.arrays import Complex, Floats
 from vibroimpact.cases.schema import CaseTable
 from vibroimpact.correlation.acquired import LEAD, Acquired, acquired_of
-from vibroimpact.correlation.doubts import doubts_about
+from vibroimpact.correlation.alignment import LEAST, delay_of
+from vibroimpact.correlation.doubts import doubts_about, force_ends
 from vibroimpact.correlation.mode_pairs import ModePair, pairs_of
 from vibroimpact.correlation.simulated import Listening, Pushes, listening, plate_problem, pushes_of_impact
 from vibroimpact.dynamics.problem import Problem
@@ -21,15 +22,11 @@ from vibroimpact.dynamics.sensors.sensor import Sensor
 from vibroimpact.errors import InputError
 from vibroimpact.signals.baseline import without_baseline
 from vibroimpact.signals.decay.find import DecayMode, modes_in_decay
-from vibroimpact.signals.delay import Delay, band_limited, delay_between
+from vibroimpact.signals.delay import band_limited
 from vibroimpact.signals.frac import frac
 from vibroimpact.signals.onset import onset_time
 from vibroimpact.signals.record import Record, Removed
 
-_ALIGNED = 5e-3
-"""Time from the first touch on by which records are aligned [s]: later, small errors of frequencies have added up."""
-_LEAST = 64
-"""Least number of samples from the first touch on."""
 _FEW = 4
 """Frequencies below which an octave has no criterion: of one it is 1 whatever the signals are, of n that are unrelated about 1/n."""
 
@@ -73,6 +70,8 @@ class Correlation:
         The modes of the case and of the records.
     removed : dict of str to Removed
         The baseline that was removed from each record, that of the force last.
+    skew : array, shape (S,)
+        How much later each record is than the others and its own simulation, as channels that were not sampled together are [s].
     doubts : tuple of str
         What is not sure, and why.
 
@@ -110,6 +109,7 @@ class Correlation:
     octave_frac: Floats
     modes: tuple[ModePair, ...]
     removed: Mapping[str, Removed]
+    skew: Floats
     doubts: tuple[str, ...]
 
     @property
@@ -150,7 +150,8 @@ def correlate(
     window : float, optional
         Time from the first touch on that is compared [s]; by default to the next impact, or to the end of the records.
     band : tuple of two floats, optional
-        The band of frequencies [Hz]; by default from half the lowest mode of the plate to its highest, or to what the sensors pass.
+        The band of frequencies [Hz]; by default from half the lowest mode of the plate to its highest, or to what the sensors pass, or to
+        where the spectrum of the force has fallen by 20 dB. Modes are sought in all of the band.
     progress : callable, optional
         Called with the fraction done while modes are computed.
 
@@ -184,11 +185,12 @@ def correlate(
     problem = plate_problem(case, progress)
     records, force = [without_baseline(one) for one in records], None if force is None else without_baseline(force)
     acquired = acquired_of(problem.sensors, records, force)
-    used = _band(problem, acquired, band)
+    sought = _band(problem, acquired, band)
+    used = _excited(acquired, sought) if band is None else sought
     rate, samples = acquired.rate, acquired.value.shape[1]
     hears = listening(problem, acquired.sensors, samples)
     acting = _acting(problem, acquired, hears, window)
-    delay = _delay(acquired, hears.to(acting.pushes, acting.about), used, acting.length)
+    delay, skew = delay_of(acquired, hears.to(acting.pushes, acting.about), used, acting.length)
     value, simulated = delay.polarity[:, None] * acquired.value, hears.to(acting.pushes, acting.about + delay.time)
     touch = acting.about + delay.time if acquired.force is None else acquired.onsets[0] / rate
     onsets = acquired.onsets if acquired.force is not None else (max(0, round(touch * rate)),)
@@ -201,7 +203,7 @@ def correlate(
     octaves = _octaves(used)
     untold = np.full(len(value), np.nan)
     parts = [(frequency[inside] >= low) & (frequency[inside] <= high) for low, high in octaves]
-    decays = _decays(acquired, value, pieces, acting.over, used)
+    decays = _decays(acquired, value, pieces, acting.over, sought)
     heard = [*records, *([] if force is None else [force])]
     of_files = dict.fromkeys(doubt for record in heard for doubt in record.named_doubts)
     return Correlation(
@@ -223,9 +225,10 @@ def correlate(
         octaves=octaves,
         frac=frac(*both),
         octave_frac=np.stack([frac(both[0][:, part], both[1][:, part]) if part.sum() >= _FEW else untold for part in parts], axis=1),
-        modes=pairs_of(problem, acquired.sensors, decays, used),
+        modes=pairs_of(problem, acquired.sensors, decays, sought),
         removed={one.name: part for one, part in zip(heard, acquired.removed, strict=True)},
-        doubts=(*of_files, *doubts_about(problem, acquired, delay, used, acting.over)),
+        skew=skew,
+        doubts=(*of_files, *doubts_about(problem, acquired, delay, skew, used, sought)),
     )
 
 
@@ -275,9 +278,9 @@ def _acting(problem: Problem, acquired: Acquired, hears: Listening, window: floa
         time = np.arange(len(acquired.force)) / rate
         over = max(end - onset for end, onset in zip(acquired.ends, acquired.onsets, strict=True)) / rate
         acting = _Acting(Pushes(time, acquired.force / rate, np.empty((0, 2))), 0.0, length, over)
-    if length * rate < _LEAST:
+    if length * rate < LEAST:
         words = f"there are {max(0, int(length * rate))} samples from the first touch to the next, or to the end of the records"
-        raise InputError(f"{words}; {_LEAST} are needed, that is {1e3 * _LEAST / rate:.3g} ms at {rate:g} Hz; state a window")
+        raise InputError(f"{words}; {LEAST} are needed, that is {1e3 * LEAST / rate:.3g} ms at {rate:g} Hz; state a window")
     return acting
 
 
@@ -312,25 +315,21 @@ def _band(problem: Problem, acquired: Acquired, band: tuple[float, float] | None
     return 0.5 * lowest, min(max(highest, 1.5 * lowest), acquired.passed)
 
 
+def _excited(acquired: Acquired, band: tuple[float, float]) -> tuple[float, float]:
+    """Return the band up to where the spectrum of a measured force has fallen by 20 dB: from there on it has zeros, and excites nothing.
+
+    It is left as it is without a force, and where less than half an octave would remain.
+    """
+    ends = force_ends(acquired, band)
+    return band if ends is None or ends < np.sqrt(2.0) * band[0] else (band[0], ends)
+
+
 def _longest(acquired: Acquired) -> float:
     """Return the time that every hit has before the next one, or the end of the records [s]; a last one with less than half is left out."""
     gaps = [after - onset - LEAD for onset, after in itertools.pairwise(acquired.onsets)]
     last = acquired.value.shape[1] - acquired.onsets[-1]
     shortest = min(gaps, default=last)
     return (last if 0.5 * shortest <= last < shortest else shortest) / acquired.rate
-
-
-def _delay(acquired: Acquired, simulated: Floats, band: tuple[float, float], length: float) -> Delay:
-    """Return how much later the records are than the simulation, by what begins at the first touch."""
-    rate = acquired.rate
-    reach = max(_LEAST, round(min(_ALIGNED, length) * rate))
-    first = max(0, acquired.onsets[0] - LEAD - reach)
-    last = acquired.onsets[0] + reach
-    fade = np.ones(last - first)
-    end = reach // 2
-    fade[-end:] = 0.5 + 0.5 * np.cos(np.pi * (np.arange(end) + 0.5) / end)
-    later, earlier = (fade[: one.shape[1]] * one for one in (acquired.value[:, first:last], simulated[:, first:last]))
-    return delay_between(later, earlier, rate, band, reach / rate)
 
 
 def _responses(value: Floats, force: Floats | None, pieces: Sequence[slice]) -> tuple[Complex, Floats | None]:

@@ -117,6 +117,7 @@ def summary_of_correlation(found: Correlation) -> dict[str, Any]:
         found.sensors,
         found.polarity,
         found.coefficient,
+        found.skew,
         found.scale,
         found.relative_residual,
         found.frac,
@@ -136,12 +137,13 @@ def summary_of_correlation(found: Correlation) -> dict[str, Any]:
             sensor.name: {
                 "polarity": int(sign),
                 "correlation": float(alike),
+                "later_than_others_s": float(late),
                 "scale": float(scale),
                 "residual_rms_relative": float(part),
                 "frac": float(of),
                 "octave_frac": [None if np.isnan(value) else float(value) for value in octaves],
             }
-            for sensor, sign, alike, scale, part, of, octaves in records
+            for sensor, sign, alike, late, scale, part, of, octaves in records
         },
         "removed": {name: {"offset": one.offset, "drift": one.drift} for name, one in found.removed.items()},
         "modes": mode_table(found),

@@ -6,22 +6,31 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from vibroimpact.correlation.acquired import Acquired
+from vibroimpact.arrays import Floats
+from vibroimpact.correlation.acquired import LEAD, Acquired
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.shown import shown
-from vibroimpact.signals.block import Block
 from vibroimpact.signals.delay import Delay
-from vibroimpact.signals.features.clipping import FAMILY as CLIPPING
+from vibroimpact.signals.flat_tops import clipped_samples
 
 _ALIKE = 0.7
 """Correlation coefficient below which the delay may be off by a period."""
 _TOGETHER = 0.5
 """Delay behind a force of the same acquisition that is none, in samples."""
+_GAIN, _GAIN_ALIKE = 0.05, 0.95
+"""Logarithm of a gain from which on it is doubted, and the correlation coefficient from which on it is one."""
 _SOFT = 0.1
 """Part of the force's spectrum at low frequencies below which it excites nothing."""
 
 
-def doubts_about(problem: Problem, acquired: Acquired, delay: Delay, band: tuple[float, float], over: float) -> Iterator[str]:
+def doubts_about(
+    problem: Problem,
+    acquired: Acquired,
+    delay: Delay,
+    skew: Floats,
+    band: tuple[float, float],
+    sought: tuple[float, float],
+) -> Iterator[str]:
     """Yield the doubts about a correlation, one sentence each without its full stop.
 
     Parameters
@@ -32,10 +41,10 @@ def doubts_about(problem: Problem, acquired: Acquired, delay: Delay, band: tuple
         The records.
     delay : Delay
         How they were aligned.
-    band : tuple of two floats
-        The band of frequencies [Hz].
-    over : float
-        How long the force acts [s].
+    skew : array, shape (S,)
+        How much later each record is than the others [s].
+    band, sought : tuple of two floats
+        The band of frequencies that is compared, and that in which modes are sought [Hz].
     """
     rates = {sensor.rate for sensor in problem.sensors if sensor.name in {one.name for one in acquired.sensors}} - {acquired.rate}
     if rates:
@@ -50,25 +59,58 @@ def doubts_about(problem: Problem, acquired: Acquired, delay: Delay, band: tuple
             yield f"the record {name} has inverted polarity; its sign is changed"
         if alike < _ALIKE:
             yield f"the first parts of {name} and of its simulation differ (correlation {alike:.2f}): the delay may be wrong by a period"
-        yield from _clipped(f"the record {name}", value, recorded, acquired.rate)
+        yield from _clipped(f"the record {name}", value, recorded, acquired.onsets[0])
+    for sensor, late in zip(acquired.sensors, skew, strict=True):
+        if late:
+            words = f"{abs(late) * acquired.rate:.3g} samples {'later' if late > 0.0 else 'earlier'} than the others and its simulation"
+            yield f"the record {shown(sensor.name)} comes {words}: the channels were not sampled together; its FRAC and residual suffer"
+    yield from _of_gains(acquired, delay)
     if acquired.force is not None:
-        yield from _of_force(acquired, delay, band, over)
+        yield from _of_force(acquired, delay, band, sought)
     assert problem.plate.modes is not None
     highest = float(problem.plate.modes.frequencies[-1])
-    if highest < band[1]:
-        yield f"the modes of the case end at {highest:.5g} Hz, and the band at {band[1]:.5g} Hz: ask for more modes"
+    if highest < sought[1]:
+        yield f"the modes of the case end at {highest:.5g} Hz, and the band at {sought[1]:.5g} Hz: ask for more modes"
 
 
-def _clipped(what: str, value: np.ndarray, recorded: np.ndarray, rate: float) -> Iterator[str]:
-    part = float(CLIPPING.of(Block(value[None], rate, recorded=recorded[None]))[0, 0])
-    if part > 0.0:
-        yield f"{what} is clipped: {max(1, round(part * len(value)))} samples lie at its extremes; damping is estimated from what follows"
+def _clipped(what: str, value: np.ndarray, recorded: np.ndarray, onset: int) -> Iterator[str]:
+    samples = clipped_samples(value, recorded, value[: max(0, onset - LEAD)])
+    if samples:
+        yield f"{what} is clipped: {samples} samples lie at its extremes; damping is estimated from what follows"
 
 
-def _of_force(acquired: Acquired, delay: Delay, band: tuple[float, float], over: float) -> Iterator[str]:
+def _of_gains(acquired: Acquired, delay: Delay) -> Iterator[str]:
+    """Yield the doubts about records that are larger or smaller than their simulations, which else are like them."""
+    gain, like = np.abs(delay.gain), delay.correlation > _GAIN_ALIKE
+    others = "the impact and the contact of the case" if acquired.force is None else "the calibration of the force"
+    off = like & (np.abs(np.log(np.maximum(gain, 1e-300))) > _GAIN)
+    if off.all() and np.ptp(np.log(gain)) < _GAIN:
+        every = f"{'all records are' if len(gain) > 1 else 'the record is'} {np.exp(np.mean(np.log(gain))):.3g} times the simulation"
+        yield f"{every} in the first 5 ms: check {others}, the sensitivities, and mass and damping of the plate"
+        return
+    for sensor, times, wrong in zip(acquired.sensors, gain, off, strict=True):
+        if wrong:
+            words = "check its sensitivity and place, and the damping of the case"
+            yield f"the record {shown(sensor.name)} is {times:.3g} times its simulation in the first 5 ms: {words}"
+
+
+def force_ends(acquired: Acquired, band: tuple[float, float]) -> float | None:
+    """Return the lowest frequency in a band at which the spectrum of the measured force has fallen by 20 dB [Hz]; None if there is none."""
+    if acquired.force is None:
+        return None
+    begin = acquired.onsets[0]
+    over = max(end - onset for end, onset in zip(acquired.ends, acquired.onsets, strict=True))
+    pulse = acquired.force[begin : begin + max(4, over + 2)]
+    spectrum = np.abs(np.fft.rfft(pulse, 4096))
+    frequency = np.fft.rfftfreq(4096, 1.0 / acquired.rate)
+    weak = frequency[(spectrum < _SOFT * spectrum[0]) & (frequency <= band[1])]
+    return float(weak[0]) if len(weak) else None
+
+
+def _of_force(acquired: Acquired, delay: Delay, band: tuple[float, float], sought: tuple[float, float]) -> Iterator[str]:
     """Yield the doubts about the force of a hammer."""
     assert acquired.force is not None
-    yield from _clipped("the force", acquired.force, acquired.recorded[-1], acquired.rate)
+    yield from _clipped("the force", acquired.force, acquired.recorded[-1], acquired.onsets[0])
     if (delay.polarity < 0.0).all():
         yield "all records have inverted polarity: the sign of the force may be wrong"
     samples = delay.time * acquired.rate
@@ -76,10 +118,9 @@ def _of_force(acquired: Acquired, delay: Delay, band: tuple[float, float], over:
         yield f"the records come {samples:.3g} samples later than computed from the force: the channels were not sampled simultaneously"
     if acquired.pulses > len(acquired.onsets):
         yield f"double hit of the hammer: there are {acquired.pulses} pulses of force in {len(acquired.onsets)} hits"
-    begin = acquired.onsets[0]
-    pulse = acquired.force[begin : begin + max(4, int(np.ceil(over * acquired.rate)) + 2)]
-    spectrum = np.abs(np.fft.rfft(pulse, 4096))
-    frequency = np.fft.rfftfreq(4096, 1.0 / acquired.rate)
-    weak = frequency[(spectrum < _SOFT * spectrum[0]) & (frequency <= band[1])]
-    if len(weak):
-        yield f"the spectrum of the force has fallen by 20 dB at {weak[0]:.4g} Hz; use a harder tip, or a band that ends there"
+    ends = force_ends(acquired, sought)
+    if ends is not None and ends < band[1]:
+        yield f"the spectrum of the force has fallen by 20 dB at {ends:.4g} Hz; use a harder tip, or a band that ends there"
+    elif ends is not None:
+        words = "only decays are evaluated above; use a harder tip to compare more, or state a band"
+        yield f"the spectrum of the force has fallen by 20 dB at {ends:.4g} Hz, where the band ends: {words}"

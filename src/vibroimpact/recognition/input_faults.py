@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from vibroimpact.arrays import Floats, Indices
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.recognition.labelled_signals import GROUPS, LabelledSignals, lengths
 
 DURATION, FORCE = "first_duration_s", "largest_force_N"
+_COPY, _SUMS = 1e-4, 8
+"""Difference of two signals, over their size, below which one is a copy; and number of random sums by which copies are sought."""
 _CORNER = 0.67
 """Frequency at which the spectrum of Hertz's force has fallen by 3 dB, times the contact time."""
 
@@ -91,18 +94,33 @@ def check_lengths(signals: LabelledSignals, classes: Indices) -> None:
 
 
 def check_duplicates(signals: LabelledSignals, groups: Indices, group: str) -> None:
-    """Raise InputError if two groups hold the same signal, which would then be trained on and tested on; silent signals do not count."""
-    seen: dict[bytes, int] = {}
-    parts = [one.values for one in signals.sensors.values()]
-    silent = np.all([np.ptp(np.nan_to_num(part), axis=1) == 0.0 for part in parts], axis=0)
-    for number in np.flatnonzero(~silent):
-        row = b"".join(part[number].tobytes() for part in parts)
-        first = seen.setdefault(row, int(number))
-        if groups[first] != groups[number]:
+    """Raise InputError if two groups hold the same signal, which would then be trained on and tested on; silent signals do not count.
+
+    Signals that differ by less than a ten-thousandth are the same: scaled, rounded or resampled anew.
+    """
+    parts = [np.nan_to_num(one.values.astype(float)) for one in signals.sensors.values()]
+    silent = np.all([np.ptp(part, axis=1) == 0.0 for part in parts], axis=0)
+    loud = np.flatnonzero(~silent)
+    sizes = np.sqrt(sum(np.sum(part[loud] ** 2, axis=1) for part in parts))
+    # neighbours among a few random sums of samples are looked at whole
+    random = np.random.default_rng(0)
+    sums = sum(part[loud] @ random.standard_normal((part.shape[1], _SUMS)) for part in parts) / sizes[:, None]
+    pairs = cKDTree(sums).query_pairs(_COPY * _SUMS, output_type="ndarray")
+    for one, other in np.sort(loud[pairs], axis=1)[np.lexsort(pairs.T[::-1])].tolist():
+        if groups[one] == groups[other]:
+            continue
+        apart, size = (sum(float(np.sum(row**2)) for row in rows) for rows in _rows(parts, one, other))
+        if apart <= _COPY**2 * size:
+            exact = "are the same" if not apart else f"are the same to {np.sqrt(apart / size):.1g} of them"
             raise InputError(
-                f"signals {first} and {number} are the same and lie in two {group}s ({groups[first]} and {groups[number]}): one would be "
+                f"signals {one} and {other} {exact} and lie in two {group}s ({groups[one]} and {groups[other]}): one would be "
                 "trained on and the other tested on; remove one"
             )
+
+
+def _rows(parts: list[Floats], one: int, other: int) -> tuple[list[Floats], list[Floats]]:
+    """Return the differences of two signals, a row a sensor, and the first of them."""
+    return [part[one] - part[other] for part in parts], [part[one] for part in parts]
 
 
 def check_rates(signals: LabelledSignals, classes: Indices) -> list[str]:

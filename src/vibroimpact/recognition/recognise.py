@@ -26,6 +26,7 @@ from vibroimpact.recognition.labelled_signals import LabelledSignals
 from vibroimpact.recognition.onnx_runtime import silent_onnxruntime
 from vibroimpact.recognition.read_dataset import read_labelled_signals
 from vibroimpact.recognition.recogniser import Recogniser, graph_of
+from vibroimpact.recognition.recorder_leaks import recorder_leaks
 from vibroimpact.recognition.reliability import Reliable, reliability
 from vibroimpact.recognition.robustness import Noisy, score_in_noise
 from vibroimpact.recognition.scores import Bootstrap, Score, Scores, score
@@ -182,6 +183,8 @@ def recognise(
     doubts = check_signals(signals, group, folds) + baseline_doubts(signals)
     assert signals.classes is not None  # checked
     classes, groups = signals.classes, signals.groups[group]
+    if signals.bayes_error_sees is None:  # of what this program computed there is no recorder
+        doubts += recorder_leaks(signals, classes, groups, group, seed)
     progress("features", 0, 1)
     features = features_of(signals)
     progress("features", 1, 1)

@@ -27,11 +27,14 @@ class Delay(NamedTuple):
         1, or -1 where one is upside down.
     correlation : array, shape (S,)
         Correlation coefficient of each pair at this delay and polarity.
+    gain : array, shape (S,)
+        The multiple of the earlier signal that is nearest to the later one at this delay, of either sign.
     """
 
     time: float
     polarity: Floats
     correlation: Floats
+    gain: Floats
 
 
 def band_limited(value: Floats, rate: float, band: tuple[float, float]) -> Floats:
@@ -99,7 +102,8 @@ def delay_between(later: Floats, earlier: Floats, rate: float, band: tuple[float
         time += float(np.clip(step, -0.5 / (_FINE * rate), 0.5 / (_FINE * rate)))
         if abs(step) * rate < 1e-12:
             break
-    return Delay(time, polarity, polarity * (cross @ (twice * np.exp(turn * time))).real)
+    alike = (cross @ (twice * np.exp(turn * time))).real
+    return Delay(time, polarity, polarity * alike, alike * sizes[0] / np.maximum(sizes[1], 1e-300))
 
 
 def _gain(frequency: Floats, band: tuple[float, float]) -> Floats:

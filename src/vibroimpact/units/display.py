@@ -195,6 +195,46 @@ def column_texts(values: ArrayLike, significant: int = 5) -> list[str]:
     return [fixed(float(value), decimals) for value in numbers]
 
 
+def known_text(value: float, spread: float, most: int = 6) -> str:
+    """Return a number in the digits that its uncertainty leaves: down to the second digit of that.
+
+    Parameters
+    ----------
+    value, spread : float
+        The number, and its standard deviation or half an interval; 0 or NaN if it is exact or not known.
+    most : int, default 6
+        Significant digits of the number at most.
+
+    Examples
+    --------
+    >>> [known_text(0.81986, spread) for spread in (0.0196, 3.1e-6, 0.0)]
+    ['0.820', '0.819860', '0.819860']
+    >>> [known_text(value, 44.0) for value in (1234.5, 12.0, 0.3)]
+    ['1234', '12', '0']
+    """
+    if not (math.isfinite(value) and math.isfinite(spread) and spread > 0.0):
+        return digits(value, most)
+    places = 1 - int(f"{spread:.1e}".split("e")[1])
+    figures = places + 1 + (int(f"{value:.1e}".split("e")[1]) if value else 0)
+    if figures >= most:
+        return digits(value, most)
+    if figures < 1:
+        return fixed(0.0 if places < 0 else value, max(0, places))
+    return digits(round(value, places), figures) if places > 0 or abs(value) >= 1e7 else fixed(round(value, places), 0)
+
+
+def known_texts(values: ArrayLike, spreads: ArrayLike, most: int = 6) -> list[str]:
+    """Return numbers each in the digits that its uncertainty leaves, as `known_text` does.
+
+    Examples
+    --------
+    >>> known_texts([0.81986, 0.81987], [0.02, 1e-4])
+    ['0.820', '0.81987']
+    """
+    pairs = zip(np.asarray(values, dtype=float), np.asarray(spreads, dtype=float), strict=True)
+    return [known_text(float(value), float(spread), most) for value, spread in pairs]
+
+
 def fixed(value: float, decimals: int) -> str:
     """Return a number with a given number of decimals, an en dash for NaN and a true minus sign."""
     if not math.isfinite(value):

@@ -8,6 +8,7 @@ from typing import Any
 from vibroimpact._version import __version__
 from vibroimpact.calibration.bounces.rebounds import Rebounds
 from vibroimpact.calibration.bounces.speed_laws import SpeedLaw
+from vibroimpact.calibration.inputs import inputs_document
 
 
 def bounce_rows(found: Rebounds) -> list[dict[str, Any]]:
@@ -47,6 +48,7 @@ def bounce_document(found: Rebounds) -> dict[str, Any]:
             "drop_height_m": found.drop_height,
             "drop_height_given": found.height is not None,
             "drop_height_standard_deviation_m": found.drop_deviation,
+            "inputs": inputs_document(found.inputs),
             "impacts": bounce_rows(found),
             "fits": fits_document(found.laws, found.confidence),
             "others": [

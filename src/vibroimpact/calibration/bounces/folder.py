@@ -11,6 +11,7 @@ from vibroimpact.calibration.bounces.charts import bounce_charts
 from vibroimpact.calibration.bounces.document import bounce_document, bounce_rows
 from vibroimpact.calibration.bounces.rebounds import Rebounds
 from vibroimpact.calibration.bounces.tables import contact_sentence, drop_sentence, impact_cells, law_sentences, other_sentences
+from vibroimpact.calibration.inputs import inputs_sentence
 from vibroimpact.charts.figures_folder import write_figures
 from vibroimpact.report.page import render_page
 from vibroimpact.results.csv_files import write_csv
@@ -67,7 +68,7 @@ def save_rebounds(found: Rebounds, directory: str | PathLike[str], *, force: boo
             doubts=found.doubts,
             headers=headers,
             rows=cells,
-            notes=[drop_sentence(found), contact_sentence(found), *other_sentences(found)],
+            notes=[drop_sentence(found), contact_sentence(found), inputs_sentence(found.inputs), *other_sentences(found)],
             source=record.source,
             version=__version__,
         )

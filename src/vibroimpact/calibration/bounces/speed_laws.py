@@ -14,6 +14,7 @@ from vibroimpact.calibration.fitting import half_width
 CONSTANT, LINEAR, POWER = "constant", "linear", "power"
 
 _ROUNDS = 200
+_PASSES = 3
 
 
 @dataclass(frozen=True)
@@ -86,7 +87,9 @@ class Fitted(Protocol):
         """Confidence level of intervals."""
 
 
-def speed_laws(speed: Floats, restitution: Floats, covariance: Floats, count: Floats | None = None) -> list[SpeedLaw]:
+def speed_laws(
+    speed: Floats, restitution: Floats, covariance: Floats, count: Floats | None = None, shared: Floats | None = None
+) -> list[SpeedLaw]:
     """Return the fits to restitutions at several speeds: those with fewer coefficients than there are restitutions, the constant always.
 
     Real bounces scatter by more than times are uncertain: to their covariance that of a scatter is added, such that the sum of squared
@@ -100,6 +103,8 @@ def speed_laws(speed: Floats, restitution: Floats, covariance: Floats, count: Fl
         Covariance of the restitutions.
     count : array, shape (n,), optional
         The number of impacts of which each restitution is the mean, of which the scatter is that of one; 1 by default.
+    shared : array, shape (k, 2, n), optional
+        What one standard deviation of each of k inputs, such as gravity, changes in the restitutions and in the speeds.
 
     Examples
     --------
@@ -108,13 +113,23 @@ def speed_laws(speed: Floats, restitution: Floats, covariance: Floats, count: Fl
     [0.8, -0.25]
     """
     one = np.ones(len(speed)) if count is None else 1.0 / count
-    found = [_fitted(CONSTANT, np.ones((len(speed), 1)), restitution, covariance, one)]
+    of_value, of_speed = np.zeros((2, 0, len(speed))) if shared is None else (shared[:, 0], shared[:, 1])
+    found = [_fitted(CONSTANT, np.ones((len(speed), 1)), restitution, covariance + of_value.T @ of_value, one)]
     if len(speed) > 2 and np.ptp(speed) > 0.0:
-        found.append(_fitted(LINEAR, np.vander(speed, 2, increasing=True), restitution, covariance, one))
+        found.append(_along(LINEAR, speed, restitution, covariance, one, (of_value, of_speed)))
         relative = covariance / np.outer(restitution, restitution)
-        power = _fitted(POWER, np.vander(np.log(speed), 2, increasing=True), np.log(restitution), relative, one)
-        found.append(power)
+        found.append(_along(POWER, np.log(speed), np.log(restitution), relative, one, (of_value / restitution, of_speed / speed)))
     return found
+
+
+def _along(name: str, place: Floats, value: Floats, covariance: Floats, shares: Floats, shared: tuple[Floats, Floats]) -> SpeedLaw:
+    """Return a straight fit; what the inputs change in the places counts by the slope, which is found in a few rounds."""
+    design, slope, (of_value, of_place) = np.vander(place, 2, increasing=True), 0.0, shared
+    for _ in range(_PASSES):
+        moved = of_value - slope * of_place
+        fitted = _fitted(name, design, value, covariance + moved.T @ moved, shares)
+        slope = float(fitted.coefficients[1])
+    return fitted
 
 
 def _fitted(name: str, design: Floats, value: Floats, covariance: Floats, shares: Floats) -> SpeedLaw:

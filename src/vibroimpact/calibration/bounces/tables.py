@@ -6,16 +6,13 @@ import math
 
 import numpy as np
 
-from vibroimpact.arrays import Floats
 from vibroimpact.calibration.bounces.rebounds import Rebounds
 from vibroimpact.calibration.bounces.speed_laws import CONSTANT, LINEAR, POWER, Fitted, SpeedLaw
 from vibroimpact.calibration.report import Cells
-from vibroimpact.units.display import MISSING, column_texts, digits, fixed, text
+from vibroimpact.units.display import MISSING, digits, known_text, known_texts, multiple, text
 
 _MOST = 20
 """Touches that are no bounces, told one by one."""
-
-_MOST_DECIMALS = 6
 
 
 def impact_cells(found: Rebounds) -> Cells:
@@ -29,14 +26,14 @@ def impact_cells(found: Rebounds) -> Cells:
         ("Restitution", ""),
         (f"Interval, {per_cent}", ""),
     ]
-    decimals = decimals_of(found.deviation)
+    ends = [known_texts(end, found.deviation) for end in found.intervals.T]
     columns = [
         [str(number + 1) for number in range(len(found.restitution))],
-        column_texts(found.bounces.time, 6),
-        column_texts(found.approach_speed),
-        column_texts(found.separation_speed),
-        [_fixed(value, decimals) for value in found.restitution],
-        [f"{_fixed(low, decimals)} to {_fixed(high, decimals)}" if math.isfinite(low) else MISSING for low, high in found.intervals],
+        known_texts(found.bounces.time, found.bounces.deviation),
+        known_texts(found.approach_speed, found.approach_deviation),
+        known_texts(found.separation_speed, found.separation_deviation),
+        known_texts(found.restitution, found.deviation),
+        [low if low == MISSING else f"{low} to {high}" for low, high in zip(*ends, strict=True)],
     ]
     return headers, [list(row) for row in zip(*columns, strict=True)]
 
@@ -49,8 +46,8 @@ def law_sentences(found: Fitted) -> list[str]:
 def drop_sentence(found: Rebounds) -> str:
     """Return from how high the ball fell before the first touch."""
     if found.height is not None:
-        return f"It fell by {text(found.height, 'm')} before the first touch, as given."
-    about = text(found.drop_height, "m", 3)
+        return f"It fell by {_length(found.height, found.drop_deviation)} before the first touch, as given."
+    about = _length(found.drop_height, found.drop_deviation)
     return (
         f"It fell by about {about} before the first touch, if it bounced there with the mean restitution; the height, if it is known, "
         "gives the restitution of that impact."
@@ -73,21 +70,9 @@ def other_sentences(found: Rebounds) -> list[str]:
     return told if len(pairs) <= _MOST else [*told, f"{len(pairs) - _MOST} others are not bounces either; summary.json lists them."]
 
 
-def decimals_of(deviation: Floats) -> int:
-    """Return the decimals with which restitutions are told: two digits of the smallest uncertainty, six at most.
-
-    Examples
-    --------
-    >>> decimals_of(np.array([np.nan, 0.0012, 0.03]))
-    4
-    """
-    least = float(np.nanmin(deviation))
-    return int(np.clip(1 - math.floor(math.log10(least)), 3, _MOST_DECIMALS)) if least > 0.0 else _MOST_DECIMALS
-
-
 def _sentence(law: SpeedLaw, confidence: float) -> str:
     ends = law.intervals(confidence)
-    first, *second = [f"{digits(value, 4)} ({_range(low, high)})" for value, (low, high) in zip(law.coefficients, ends, strict=True)]
+    first, *second = [_known(value, low, high) for value, (low, high) in zip(law.coefficients, ends, strict=True)]
     said = {
         CONSTANT: f"Constant: e = {first}",
         LINEAR: f"Linear: e = a + b v with a = {first} and b = {''.join(second)} s/m",
@@ -99,9 +84,14 @@ def _sentence(law: SpeedLaw, confidence: float) -> str:
     return f"{said}; the restitutions scatter by {scatter} about it."
 
 
-def _range(low: float, high: float) -> str:
-    return f"{digits(low, 4)} to {digits(high, 4)}" if math.isfinite(low) and math.isfinite(high) else "interval unknown"
+def _length(value: float, spread: float) -> str:
+    best = multiple("m", value)
+    return f"{known_text(value / best.size, spread / best.size, 3)}\u00a0{best.unit}"
 
 
-def _fixed(value: float, decimals: int) -> str:
-    return fixed(float(value), decimals) if math.isfinite(value) else MISSING
+def _known(value: float, low: float, high: float) -> str:
+    """Return a value with its interval, in as many digits as that leaves."""
+    if not (math.isfinite(low) and math.isfinite(high)):
+        return f"{digits(value, 4)} (interval unknown)"
+    shown, first, last = (known_text(end, 0.5 * (high - low)) for end in (value, low, high))
+    return f"{shown} ({first} to {last})"

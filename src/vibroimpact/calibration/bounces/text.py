@@ -7,6 +7,7 @@ from rich.text import Text
 
 from vibroimpact.calibration.bounces.rebounds import Rebounds
 from vibroimpact.calibration.bounces.tables import contact_sentence, drop_sentence, impact_cells, law_sentences, other_sentences
+from vibroimpact.calibration.inputs import inputs_sentence
 from vibroimpact.calibration.text import cells_table
 
 
@@ -23,6 +24,7 @@ def bounce_summary(found: Rebounds) -> RenderableType:
         Text(),
         Text(drop_sentence(found)),
         Text(contact_sentence(found)),
+        Text(inputs_sentence(found.inputs)),
         *(Text(sentence) for sentence in other_sentences(found)),
     ]
     parts += [Text(), *(Text(f"Doubt: {doubt}.") for doubt in found.doubts)] if found.doubts else []

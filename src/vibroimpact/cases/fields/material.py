@@ -8,7 +8,7 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator
 
 from vibroimpact.cases.fields.json_schema import JsonSchema
-from vibroimpact.cases.fields.quantities import Quantity
+from vibroimpact.cases.fields.quantities import Quantity, UncertainQuantity
 from vibroimpact.cases.fields.section import Section, read_inner_table
 from vibroimpact.cases.fields.size_limits import Name
 from vibroimpact.errors import InputError
@@ -20,7 +20,7 @@ from vibroimpact.shown import shown
 class InlineMaterial(Section):
     """A material given by its numbers."""
 
-    density: Annotated[float, Quantity("kg/m^3", "density", Range(above=0))]
+    density: Annotated[float, UncertainQuantity("kg/m^3", "density", Range(above=0))]
     youngs_modulus: Annotated[float, Quantity("Pa", "Young's modulus", Range(above=0))]
     poissons_ratio: Annotated[float, Quantity("", "Poisson's ratio", Range(above=-1, below=0.5))]
     yield_strength: Annotated[float, Quantity("Pa", "yield strength", Range(above=0))] | None = None

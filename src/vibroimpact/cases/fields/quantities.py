@@ -13,6 +13,7 @@ from vibroimpact.errors import InputError
 from vibroimpact.ranges import Range
 from vibroimpact.shown import shown
 from vibroimpact.units.reading import number_and_unit, to_si
+from vibroimpact.units.written import Written, has_deviation, read_written, without_deviation
 
 SMALLEST, LARGEST = 1e-50, 1e50
 """Range of the magnitude of a nonzero quantity in SI, within which squares and products neither overflow nor underflow."""
@@ -31,6 +32,10 @@ def read_quantity(value: Any, unit: str, allowed: Range) -> float:
     >>> read_quantity("25 mm", "m", Range(above=0))
     0.025
     """
+    if has_deviation(value):
+        keys = "drop.height, drop.speed, drop.gravity, sphere.radius and material.density"
+        words = f"a standard deviation enters the intervals of a calibration by {keys} alone"
+        raise InputError(f'{shown(value, 80)}: {words}; write "{without_deviation(value)}"')
     try:
         number = to_si(value, unit)
     except InputError:
@@ -69,6 +74,36 @@ class Quantity:
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
         return quantity_schema(self.unit, self.meaning)
+
+
+@dataclass(frozen=True)
+class UncertainQuantity(Quantity):
+    """Annotation of a quantity with which a measurement is evaluated: a text may have a standard deviation, "0.6 m +- 5 mm"."""
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_plain_validator_function(lambda value: read_uncertain(value, self.unit, self.allowed))
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        return quantity_schema(self.unit, f'{self.meaning}; for calibrations with a standard deviation, as in "... +- 1 %"')
+
+
+def read_uncertain(value: Any, unit: str, allowed: Range) -> Written:
+    """Return the value of a quantity in SI after checking its range, with its standard deviation.
+
+    Raises
+    ------
+    InputError
+        If it can't be read, or lies outside its range.
+
+    Examples
+    --------
+    >>> read_uncertain("0.6 m +- 5 mm", "m", Range(above=0)).deviation
+    0.005
+    """
+    if isinstance(value, Written):
+        return value
+    read_quantity(without_deviation(value) if has_deviation(value) else value, unit, allowed)
+    return read_written(value, unit)
 
 
 def quantity_schema(unit: str, description: str) -> dict[str, Any]:

@@ -1,0 +1,157 @@
+"""What the uncertainty of the numbers of a case, such as the height of fall, changes in a measurement and in the impacts that match it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.calibration.inputs import EARTH, Input, as_input
+from vibroimpact.calibration.matching import Tunable
+from vibroimpact.calibration.observations import Effects, Observations
+from vibroimpact.cases.case import Case
+from vibroimpact.dynamics.problem import STANDARD_GRAVITY
+from vibroimpact.errors import InputError
+from vibroimpact.materials import material_library
+from vibroimpact.units.written import Written
+
+_KEYS = {
+    "drop.height": "m",
+    "drop.speed": "m/s",
+    "drop.gravity": "m/s^2",
+    "sphere.radius": "m",
+    "sphere.material.density": "kg/m^3",
+    "plate.material.density": "kg/m^3",
+}
+"""Keys whose numbers evaluate a measurement, with their units. That of the plate counts only where its standard deviation is given."""
+
+_NAMED = 0.01
+"""Standard deviation of the density of a material that is given by its name, as a part of it."""
+
+_STEP = 1e-4
+"""Relative step of the differences."""
+
+
+class Moved(NamedTuple):
+    """An input, a step from its value in SI, and the measurement and the impacts with the value after the step."""
+
+    typed: Input
+    step: float
+    seen: Observations
+    tunable: Tunable
+
+
+def typed_inputs(case: Case) -> list[Input]:
+    """Return the numbers of a case that evaluate a measurement, by their keys; not those that are exact.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> case = vi.load_case("paper:type1-theory", {"drop.height": "4 m +- 1 cm", "sphere.radius": "25.0 mm +- 0"})
+    >>> [(one.name, round(one.value.deviation, 5)) for one in typed_inputs(case)]
+    [('drop.height', 0.01), ('drop.gravity', 0.02887), ('sphere.material.density', 13.8)]
+    """
+    inputs = []
+    for key, unit in _KEYS.items():
+        value = _number(case, key)
+        if value is None or not isinstance(value, Written) or not value * value.deviation:
+            continue
+        one = as_input(key, value, unit)
+        name = case.sphere.material.name
+        if value.stated or not key.startswith("plate."):
+            inputs.append(one._replace(why=f"as of a material by its name, {name}") if value.text == name else one)
+    return inputs
+
+
+def moved_inputs(case: Case, evaluated: Callable[[Case], tuple[Observations, Tunable]], seen: Observations) -> list[Moved]:
+    """Return measurement and impacts with each uncertain number of a case changed a little.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+    evaluated : callable
+        Takes a case, and returns the measurement as it is evaluated with it, and its impacts.
+    seen : Observations
+        The measurement with the numbers as they are given.
+
+    Raises
+    ------
+    InputError
+        If the measurement can't be evaluated a little above the number nor below it; the message is that of the evaluation.
+    """
+    found = []
+    for one in typed_inputs(case):
+        for step in (_STEP * one.value, -_STEP * one.value):
+            try:
+                moved, tunable = evaluated(_with_number(case, one.name, one.value + step))
+            except InputError:
+                if step < 0.0:
+                    raise
+                continue
+            if len(moved.speeds) == len(seen.speeds):
+                found.append(Moved(one, step, moved, tunable))
+                break
+    return found
+
+
+def effects_of(
+    moved: Sequence[Moved], tunable: Tunable, seen: Observations, weights: Mapping[str, float], values: Floats
+) -> Effects | None:
+    """Return what one standard deviation of each input changes; None if there are none that change anything.
+
+    Parameters
+    ----------
+    moved : sequence of Moved
+        Measurement and impacts with each input changed a little.
+    tunable : Tunable
+        The parameter.
+    seen : Observations
+        The measurement.
+    weights : mapping of str to float
+        The matched quantities.
+    values : array, shape (n,)
+        The values of the parameter.
+    """
+    at = np.where(np.isfinite(values), values, tunable.start)
+    computed = tunable.respond(seen.speeds, at, seen.which) if moved else {}
+    inputs, speeds = [], []
+    wanted: dict[str, list[Floats]] = {name: [] for name in weights}
+    for typed, step, other, changed in moved:
+        per = typed.value.deviation / step
+        faster = per * (other.speeds - seen.speeds)
+        computes = changed.respond(seen.speeds, at, seen.which)
+        more = {name: per * (other.wanted[name] - seen.wanted[name] - computes[name] + computed[name]) for name in weights}
+        if np.any(faster) or any(np.any(part) for part in more.values()):
+            inputs.append(typed)
+            speeds.append(faster)
+            for name, part in more.items():
+                wanted[name].append(part)
+    if not inputs:
+        return None
+    return Effects(tuple(inputs), np.stack(speeds, axis=1), {name: np.stack(parts, axis=1) for name, parts in wanted.items()})
+
+
+def _number(case: Case, key: str) -> float | None:
+    """Return a number of a case with its standard deviation, a plain number if it is exact, and None if there is none."""
+    section, *way = key.split(".")
+    body = getattr(case, section)
+    value: float | None = body.material.density if way[0] == "material" else getattr(body, way[0])
+    if value is None or (isinstance(value, Written) and value.stated):
+        return value
+    if key == "drop.gravity" and value == STANDARD_GRAVITY:
+        return EARTH
+    if way[0] == "material" and body.material.name in material_library():
+        return Written(value, _NAMED * value, body.material.name, stated=False)
+    return value
+
+
+def _with_number(case: Case, key: str, value: float) -> Case:
+    """Return a case with another number at a key."""
+    section, *way = key.split(".")
+    body = getattr(case, section)
+    changed = {"material": replace(body.material, density=value)} if way[0] == "material" else {way[0]: value}
+    return case.model_copy(update={section: body.model_copy(update=changed)})
