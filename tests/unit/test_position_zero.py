@@ -171,6 +171,18 @@ def test_a_clock_that_runs_fast() -> None:
     assert "3 % too fast" in doubt
 
 
+def test_lengths_that_are_wrong_make_the_speeds_wrong_by_what_is_said() -> None:
+    """A scale that is 2 % too large looks like a clock that runs 1 % too slowly, and makes the speeds 1 % too high."""
+    made = track(zero=1e-3)
+    seen = impacts_in_position(
+        made.time, 1.02 * made.position, radius=1.02 * RADIUS, gravity=GRAVITY, first_speed=float(made.speeds[0]), contact_duration=HERTZ
+    )
+    too_fast = 100.0 * float(np.mean(seen.speeds / made.speeds[:4]) - 1.0)
+    (doubt,) = (doubt for doubt in seen.doubts if "curve as under" in doubt)
+    assert too_fast == pytest.approx(1.0, abs=0.02)
+    assert f"all speeds are {too_fast:+.2g} % off" in doubt
+
+
 def test_a_clock_in_another_unit_is_refused() -> None:
     made = track()
     with pytest.raises(vi.InputError, match=r"curve as under .* its unit, time and gravity those of the record"):

@@ -128,6 +128,11 @@ def test_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: py
         ("speed,restitution\n1,0.8\n2,0.7\n", (), 'column "speed": the unit is missing'),
         ("speed [m/s],e,count\n1,0.8,2.5\n", (), "line 2: count is 2.5; it must be a whole number"),
         ("speed [m/s],v [m/s],e\n1,1,0.8\n", (), "the columns speed and v both mean approach_speed; leave one of them out"),
+        (
+            "speed [m/s],separation_speed [m/s],restitution_standard_deviation\n1,0.8,0.01\n2,1.5,0.01\n",
+            (),
+            "restitutions are those of separation_speed; give separation_speed_standard_deviation",
+        ),
         ("speed [m/s],e\n1,0.8\n", ("--height", "1 m"), "--height goes with a record of bounces"),
         ("speed [m/s],e\n1,0.8\n", ("--channel", "e"), "--channel goes with a record of bounces"),
     ],

@@ -177,10 +177,12 @@ def _told(joint: JointFlights, rises: Floats, radius: float, gravity: float, spe
         )
     if abs(clock.value - 1.0) > max(_LARGE_CLOCK, _SURE * clock.deviation):
         off = 100.0 * (clock.value - 1.0)
+        # speeds are those of the time that is corrected
+        too_fast = 100.0 * (1.0 / clock.value - 1.0)
         doubts.append(
             f"the flights curve as under {gravity / clock.value**2:.4g} m/s^2, not {gravity:.4g} m/s^2: the clock of the record is taken "
             f"to run {abs(off):.2g} % too {'fast' if off > 0.0 else 'slowly'}, which is corrected; if its lengths are wrong instead, all "
-            f"speeds are {off:+.2g} % off, and restitutions the same"
+            f"speeds are {too_fast:+.2g} % off, and restitutions the same"
         )
     if joint.scatter > _LARGE_SCATTER * float(rises.min()):
         doubts.append(

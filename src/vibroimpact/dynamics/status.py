@@ -52,7 +52,7 @@ def status_of(run: Ended) -> str:
         finished = f", and the contact under way was finished, at {_time(run, end, 9)} s" if end > asked else ""
         rides = run.problem.shaken and number and np.isnan(run.impacts["separation_speed_m_s"][-1])
         riding = f"; {_riding(run)}" if np.isfinite(run.rest.left[0]) or rides else ""
-        return f"Stopped {after} at {asked:.6g} s, the duration asked for{finished}{riding}."
+        return f"Stopped {after} at {asked:.6g} s, the end of the run{finished}{riding}."
     if outcome is Outcome.LIMIT:
         return f"Stopped {after}, the most that are followed, at {_time(run, end, 6)} s; the sphere is not at rest."
     if outcome is Outcome.LEFT:

@@ -86,8 +86,9 @@ class Restitutions:
 def read_restitutions(path: str | PathLike[str], *, confidence: float = 0.95) -> Restitutions:
     r"""Return the restitutions of a table with a row for each approach speed, and their fits.
 
-    A row has `approach_speed` [m/s] and `restitution`, or `separation_speed` [m/s]; `restitution_standard_deviation`, if it is known; and
-    `count`, if it is the mean of several impacts: then the standard deviation is that of one impact. Without standard deviations the
+    A row has `approach_speed` [m/s] and `restitution`, or `separation_speed` [m/s]; the standard deviation of that column,
+    such as `restitution_standard_deviation`, if it is known; and `count`, if it is the mean of several impacts: then the standard
+    deviation is that of one impact. Without standard deviations the
     scatter about the fit tells them; what the digits of the table leave open is added.
 
     Parameters
@@ -126,7 +127,10 @@ def read_restitutions(path: str | PathLike[str], *, confidence: float = 0.95) ->
     by_speeds = "restitution" not in columns
     restitution = columns["separation_speed"] / speed if by_speeds else columns["restitution"]
     _check_height(table, restitution)
-    known = columns.get(f"separation_speed{DEVIATION}" if by_speeds else f"restitution{DEVIATION}")
+    measured, other = ("separation_speed", "restitution") if by_speeds else ("restitution", "separation_speed")
+    if f"{other}{DEVIATION}" in columns:
+        raise InputError(f"{path}: it has {other}{DEVIATION}, but restitutions are those of {measured}; give {measured}{DEVIATION}")
+    known = columns.get(f"{measured}{DEVIATION}")
     rounding = rounding_step(columns["separation_speed"] if by_speeds else restitution)
     scale = 1.0 / speed if by_speeds else np.ones(len(speed))
     deviation = np.full(len(speed), np.nan) if known is None else scale * known / np.sqrt(count)
