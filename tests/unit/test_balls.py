@@ -17,15 +17,18 @@ import pytest
 from rich.console import Console
 
 import vibroimpact as vi
+from oracles.adams import Motion
+from oracles.adams_dataset import read_dataset, read_solver_commands
 from oracles.bouncing_in_air import AIR, Medium, bounces
 from support import plain_case
 from vibroimpact.bodies.ball import HOLLOW, SOLID, ball_volume, mean_density
 from vibroimpact.bounds.falls import falls_of_sweep
+from vibroimpact.calibration.charts import calibration_charts
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.doubts import doubts
 from vibroimpact.cases.expected import expected_of
 from vibroimpact.cases.keys import with_values
-from vibroimpact.cases.pair import ball_of, resized, sphere_density
+from vibroimpact.cases.pair import ball_of, contact_pair, resized, sphere_density
 from vibroimpact.exporting.formats import adams_solver, exudyn, lammps, matlab, mujoco, yade
 from vibroimpact.exporting.load_drop import drop_of_result
 from vibroimpact.runs.case_explained import case_explained
@@ -411,11 +414,11 @@ class TestPython:
 class TestExports:
     """Mass and moment of inertia in the files for other programs."""
 
-    def drop(self, inertia: Any = "hollow", law: str = "coulomb", contact: str = "tsuji") -> Any:
+    def drop(self, inertia: Any = "hollow", law: str = "coulomb", contact: str = "tsuji", coefficient: float = 0.9) -> Any:
         start = {"height": 0.3, "velocity": [0.5, 0.0, 0.0]}
         given = table(sphere__inertia=inertia, drop=start, contact={"law": contact, "restitution": 0.8})
         if law:
-            given["contact"]["friction"] = {"law": law, "coefficient": 0.9}
+            given["contact"]["friction"] = {"law": law, "coefficient": coefficient}
         case = vi.read_case(given)
         return drop_of_result(vi.result_of(vi.simulate(case)), case)
 
@@ -430,6 +433,19 @@ class TestExports:
         assert float(re.search(r"MASS = ([0-9.]+)", text)[1]) == MASS
         moments = [float(value) for value in re.search(r"IP = ([^\n]+)", text)[1].split(",")]
         assert moments == pytest.approx([0.72] * 3)  # kg mm^2
+
+    @pytest.mark.slow
+    @pytest.mark.parametrize("coefficient", [0.05, 0.9])
+    def test_adams_integrated(self, coefficient: float) -> None:
+        """The model that a parser reads moves as the drop did: a shell that slides throughout, and one that rolls at last."""
+        drop = self.drop(contact="flores", coefficient=coefficient)
+        files = {name[-3:]: text.decode() for name, text in adams_solver.write(drop).items()}
+        model = read_dataset(files["adm"])
+        read_solver_commands(files["acf"], model)
+        found = Motion(model).run()[0].along
+        impacts = {name: float(values[0]) for name, values in drop.impacts.items()}
+        assert found[0] == pytest.approx(impacts["separation_velocity_x_m_s"], abs=2e-5)
+        assert RADIUS * found[3] == pytest.approx(RADIUS * impacts["spin_y_after_rad_s"], abs=2e-5)
 
     def test_mujoco(self) -> None:
         root = ElementTree.fromstring(next(iter(mujoco.FORMAT.write(self.drop(law="")).values())).decode())
@@ -510,6 +526,30 @@ class TestEstimates:
         calibrate = {"target": str(tmp_path / "measured.csv"), "parameter": "friction.slip_restitution"}
         found = vi.calibrate_case(vi.read_calibration({**given, "calibrate": calibrate}))
         assert found.values == pytest.approx([beta], abs=1e-6)
+
+    @pytest.mark.parametrize("measured", ["velocity", "spin"])
+    def test_the_slip_map_of_a_calibration(self, tmp_path: Path, measured: str) -> None:
+        """Marks of measured impacts lie where momentum has them: friction that slows a shell by dv changes its spin by 3/2 dv/R."""
+        angles, speed = np.radians([20.0, 30.0, 40.0]), 3.0
+        given = table(
+            sphere__inertia="hollow", drop={"speed": speed, "angle": 0.1, "gravity": 0.0},
+            contact={"law": "newton", "restitution": 0.8, "friction": {"law": "coulomb", "coefficient": 0.1}},
+        )  # fmt: skip
+        along, normal = speed * np.sin(angles), speed * np.cos(angles)
+        slowed = np.array([0.31, 0.35, 0.3])
+        column = {"velocity": ("separation_velocity_x [m/s]", along - slowed), "spin": ("spin_y_after [rad/s]", 1.5 * slowed / RADIUS)}
+        name, values = column[measured]
+        rows = "".join(f"{np.degrees(angle):.12g},3.0,{value:.12g}\n" for angle, value in zip(angles, values, strict=True))
+        (tmp_path / "measured.csv").write_text(f"angle [deg],speed [m/s],{name}\n{rows}", encoding="utf-8")
+        calibrate = {"target": str(tmp_path / "measured.csv"), "parameter": "friction.coefficient"}
+        found = vi.calibrate_case(vi.read_calibration({**given, "calibrate": calibrate}))
+        assert isinstance(found, vi.FrictionCalibration)
+        chart = next(one for one in calibration_charts(found) if one.name == "slip_map")
+        marks = next(mark for row in chart.rows for panel in row for mark in panel.marks if getattr(mark, "name", "") == "measured")
+        pair = contact_pair(vi.read_case(given))
+        scale = found.values[0] * float(pair.effective_modulus / pair.effective_shear_modulus) * normal
+        np.testing.assert_allclose(marks.x, along / scale, rtol=1e-9)
+        np.testing.assert_allclose(marks.y, (along - 2.5 * slowed) / scale, rtol=1e-6, atol=1e-6)
 
     def test_the_falls_of_a_population(self) -> None:
         classes = {

@@ -182,7 +182,7 @@ def check_ball(section: Any) -> None:
     if abs(found.mass - solid.mass) > _ROUNDED * solid.mass:
         words = f"an elastic sphere is solid, {solid.mass:.4g} kg of its material, not {found.mass:.4g} kg"
         raise InputError(f"{words}; {remedy}, or a material with the density {mean_density(found.mass, radius):.4g} kg/m^3", "mass")
-    if found.inertia is not None and abs(found.inertia - solid.inertia) > _ROUNDED * solid.inertia:
+    if found.inertia is not None and solid.inertia is not None and abs(found.inertia - solid.inertia) > _ROUNDED * solid.inertia:
         words = f"an elastic sphere is solid, with {solid.inertia:.4g} kg m^2 of its material, not {found.inertia:.4g} kg m^2"
         raise InputError(f"{words}; {remedy}", "inertia")
 
