@@ -18,6 +18,8 @@ class ResolvedBody(TypedDict, total=False):
     material: Any  # a table of numbers, or "rigid"
     model: str
     radius: Array
+    mass: Array
+    inertia: Array | str
     modes: int
     max_frequency: float
     damping: Any

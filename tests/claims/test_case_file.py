@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import re
 from pathlib import Path
 from typing import Any
@@ -13,8 +14,12 @@ import vibroimpact as vi
 from stated import ROOT, says
 from vibroimpact.bodies.elastic import plate_recipe
 from vibroimpact.calibration.section import CalibrateSection
-from vibroimpact.cases.fields import quantities, size_limits
+from vibroimpact.cases.build import resolved_case
+from vibroimpact.cases.doubts import doubts
+from vibroimpact.cases.expected import expected_of
+from vibroimpact.cases.fields import elastic_body, quantities, size_limits
 from vibroimpact.cases.limit import limits
+from vibroimpact.cases.rigid import touch_speed
 from vibroimpact.cli import main
 from vibroimpact.dynamics.problem import MOST_IMPACTS
 from vibroimpact.materials import find_material
@@ -51,6 +56,31 @@ def test_defaults_of_the_drop(tmp_path: Path, blocks: list[str]) -> None:
     says(PAGE, "({} Pa s), or a constant", air.viscosity)
     says(PAGE, "({} kg/m^3) and", water.density)
     says(PAGE, "({} Pa s); ", water.viscosity)
+
+
+def test_hollow_balls(tmp_path: Path, blocks: list[str]) -> None:
+    text = next(block for block in blocks if '"hollow"' in block)
+    case = case_of(tmp_path, text)
+    says(PAGE, "the mass over the volume, here {} kg/m^3", 0.0027 / (4.0 / 3.0 * math.pi * 0.02**3))
+    says(PAGE, "with the drag of `air` alone, and at {} m/s in", touch_speed(in_air_as_liquid(tmp_path, text)))
+    says(PAGE, "this one touches at {} m/s with the drag", touch_speed(case))
+    assert any("buoyancy" in doubt for doubt in doubts(resolved_case(case), expected_of(case)))
+    says(PAGE, "its material by more than {} % is refused", 100.0 * elastic_body._ROUNDED)
+    shell, solid = ({"sphere.inertia": word} for word in ("hollow", "solid"))
+    for changes, part in ((shell, 3 / 5), (solid, 5 / 7)):
+        rolling = case_of(
+            tmp_path, text, **changes, **{"contact.friction": {"law": "coulomb", "coefficient": 5.0}, "drop.air": False, "run.impacts": 1}
+        )
+        left = vi.simulate(rolling).impacts["separation_velocity_x_m_s"][0]
+        assert left == pytest.approx(part * 1.0, rel=1e-6)
+    says(PAGE, "A rolling thin shell keeps {}/5 of its velocity of sliding, a solid ball {}/7.", 3, 5)
+
+
+def in_air_as_liquid(folder: Path, text: str) -> vi.Case:
+    """Return the drop of the page in a liquid with the density and the viscosity of air."""
+    air = vi.Air()
+    liquid = {"density": air.density, "viscosity": air.viscosity}
+    return case_of(folder, text.replace("air = true", ""), **{"contact.liquid": liquid})
 
 
 @pytest.mark.parametrize(("given", "is_allowed"), [(1e-13, True), (0.99e-13, False), (1e-6, True), (1.01e-6, False)])

@@ -41,6 +41,7 @@ def test_thresholds() -> None:
     says(PAGE, "over the tensile strength | above {} |", threshold("sphere_strength"))
     says(PAGE, "(Clift and Gauvin 1970; {} kg/m^3)", AIR_DENSITY)
     says(PAGE, "| above {} % | the loss, and the speed with drag", threshold("air_drag", 100.0))
+    says(PAGE, "which `drop.air` leaves out | above {} %", threshold("air_buoyancy", 100.0))
     says(
         PAGE,
         "Reynolds number at first touch over {}, for flights in air or in a liquid, unless a drag coefficient is given | above {} |",

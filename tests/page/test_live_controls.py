@@ -272,6 +272,26 @@ def test_a_body_that_becomes_elastic_and_rigid_again(page: Page, server: Server)
     assert shown(page) == before  # modes, supports and sensors are those of before
 
 
+def test_a_ball_that_is_hollow_and_again_solid(page: Page, server: Server) -> None:
+    """Mass and inertia are given, kept while other values change, put aside for an elastic sphere, which is solid, and come back."""
+    open_live(page, server, RIGID)
+    row(page, "contact.friction.law").locator("select").select_option("mdr")
+    settle(page)
+    type_value(page, "sphere.mass", 2.7)
+    row(page, "sphere.inertia").locator("select").select_option("hollow")
+    settle(page)
+    type_value(page, "sphere.radius", 20)
+    assert faults(page) == []
+    case = shown(page)
+    assert (case["sphere"]["radius"], case["sphere"]["mass"], case["sphere"]["inertia"]) == (0.02, 0.0027, "hollow")
+    for value in ("elastic", "rigid"):
+        row(page, "sphere.model").locator("select").select_option(value)
+        settle(page)
+        assert faults(page) == []
+        assert ("mass" in shown(page)["sphere"]) == (value == "rigid")
+    assert shown(page)["sphere"] == case["sphere"]
+
+
 def test_sensors_are_added_named_moved_and_removed(page: Page, server: Server) -> None:
     open_live(page, server, ELASTIC)
     page.get_by_role("button", name="Add a sensor").click()

@@ -13,7 +13,7 @@ from vibroimpact.cli import main
 
 NAN, INF = float("nan"), float("inf")
 FAULTS = [
-    ({"sphere__raduis": 1}, 'sphere.raduis: unknown key "raduis"; [sphere] takes radius, material, model,'),
+    ({"sphere__raduis": 1}, 'sphere.raduis: unknown key "raduis"; [sphere] takes radius, material, mass, inertia, model,'),
     ({"sphere__diameter": "50 mm"}, "sphere.diameter: give radius, half the diameter, in its place"),
     ({"contakt": {}}, 'contakt: unknown key "contakt"; a case takes'),
     ({"contact__restitutoin": 0.5}, 'contact.restitutoin: unknown key "restitutoin"'),

@@ -86,6 +86,10 @@ def in_air(speed: float, **changes: Any) -> dict[str, Any]:
     return {"drop": {"speed": speed, "air": True}, **changes}
 
 
+def light(density: float) -> dict[str, Any]:
+    return in_air(2.0, sphere__material={"density": density, "youngs_modulus": 1e7, "poissons_ratio": 0.3})
+
+
 def in_water(speed: float) -> dict[str, Any]:
     return {"drop": {"speed": speed}, "contact": {"law": "tsuji", "restitution": 0.6, "liquid": True}}
 
@@ -102,6 +106,8 @@ def in_water(speed: float) -> dict[str, Any]:
         # Reynolds number 1.2 v 2 R / 1.81e-5 in air, 998 v 2 R / 1e-3 in water, of a radius of 25 mm
         ("drag_coefficient", 1.0, in_air(90.0), in_air(91.0), ["Reynolds number", "drop.air.drag_coefficient"]),
         ("drag_coefficient", 1.0, in_water(5.9), in_water(6.1), ["Reynolds number", "uncertain"]),
+        # 1 - (rho - 1.2) / (rho + 0.6) of a density rho
+        ("air_buoyancy", 0.01, light(180.0), light(179.0), ["buoyancy", "contact.liquid = { density = 1.2, viscosity = 1.81e-05 }"]),
         ("mach", 0.3, in_air(102.0), in_air(104.0), ["speed of sound", "drop.speed"]),
         ("speeds_given", 1.05, given_up_to(0.96), given_up_to(0.95), ["is given for approach speeds", "the nearest one holds"]),
     ],

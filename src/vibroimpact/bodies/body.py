@@ -28,6 +28,9 @@ class Body:
         Elastic modes; without them the body is rigid.
     rigid : ModalBasis, optional
         Rigid motions, as modes of frequency zero, of a plate that supports leave free, or of a sphere in its place.
+    inertia : float or array, optional
+        Moment of inertia of a sphere about any axis through its centre [kg m^2], > 0; by default that of the `inertia_ratio` of an
+        `Oblique`, which is that of a solid ball.
 
     Examples
     --------
@@ -43,12 +46,15 @@ class Body:
     contact_offset: Array
     modes: ModalBasis | None = None
     rigid: ModalBasis | None = None
+    inertia: Array | None = None
 
     def __post_init__(self) -> None:
-        for name in ("mass", "contact_offset"):
+        for name in ("mass", "contact_offset", "inertia"):
             if isinstance(getattr(self, name), (list, tuple)):
                 object.__setattr__(self, name, np.asarray(getattr(self, name), dtype=float))
         if not np.all(np.asarray(self.mass) > 0):
             raise InputError("the mass of a body must be positive [kg]")
         if not np.all(np.asarray(self.contact_offset) >= 0):
             raise InputError("the contact offset of a body must not be negative [m]")
+        if self.inertia is not None and not np.all(np.isfinite(self.inertia) & (np.asarray(self.inertia) > 0)):
+            raise InputError("the moment of inertia of a body must be positive and finite [kg m^2]", "inertia")

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.arrays import Floats
+from vibroimpact.bodies.ball import ball_volume, mean_density
 from vibroimpact.cases.case import Case
 from vibroimpact.dynamics.problem import STANDARD_GRAVITY
 from vibroimpact.errors import InputError
@@ -32,7 +33,7 @@ class Falls:
     classes : array of str
         Class of the rock.
     radius, density, modulus : array
-        Of the sphere [m, kg/m^3], and Young's modulus of its material [Pa].
+        Of the sphere [m], its mean density [kg/m^3], and Young's modulus of its material [Pa].
     speed, restitution, duration : array
         Approach speed [m/s], restitution achieved, and duration of the contact [s].
     """
@@ -48,7 +49,7 @@ class Falls:
     @property
     def mass(self) -> Floats:
         """Mass of the sphere [kg]."""
-        return np.asarray(4.0 / 3.0 * np.pi * self.radius**3 * self.density)
+        return np.asarray(ball_volume(self.radius) * self.density)
 
     @property
     def impulse(self) -> Floats:
@@ -90,7 +91,7 @@ def falls_of_sweep(sweep: Sweep) -> Falls:
     if sweep.population is None:
         raise InputError('it has no classes; a bound needs design = "population"', "sweep.design")
     plate = {key: value for key, value in sweep.table["plate"].items() if key in _OF_RIGID_PLATES}
-    sphere = {key: value for key, value in sweep.table["sphere"].items() if key in ("radius", "material")}
+    sphere = {key: value for key, value in sweep.table["sphere"].items() if key in ("radius", "material", "mass", "inertia")}
     table = {**sweep.table, "plate": plate, "sphere": sphere, "run": {"impacts": 1}}
     table.pop("sensors", None)
     columns = {key: values for key, values in sweep.plan.columns.items() if not key.startswith(("plate.", "sensors."))}
@@ -113,6 +114,9 @@ def _falls(
     number = len(classes)
     radius = np.broadcast_to(columns.get("sphere.radius", first.sphere.radius), number).astype(float)
     density, modulus = (_of_material(name, first, table, columns, number) for name in ("density", "youngs_modulus"))
+    mass = columns.get("sphere.mass", first.sphere.mass)
+    if mass is not None:
+        density = np.broadcast_to(mean_density(mass, radius), number).astype(float)
     there = np.isfinite(speed) & np.isfinite(duration)
     return Falls(*(values[there] for values in (classes, radius, density, modulus, speed, restitution, duration)))
 

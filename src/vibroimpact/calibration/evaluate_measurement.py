@@ -13,6 +13,7 @@ from vibroimpact.calibration.fluid_flights import FluidFlights
 from vibroimpact.calibration.observations import Observations
 from vibroimpact.calibration.restitution_limit import measured_restitutions
 from vibroimpact.cases.case import Case
+from vibroimpact.cases.pair import sphere_density
 from vibroimpact.cases.rigid import fluid_of, touch_speed
 from vibroimpact.dynamics.air import Air
 from vibroimpact.dynamics.fluid import Fluid
@@ -56,7 +57,7 @@ def evaluate(case: Case, measurement: Measurement, air: bool | None) -> Observat
         raise InputError("the sphere flies through air, as given by drop.air; leave one of them out", "air")
     if case.drop.gravity == 0.0:  # no flight returns
         return measurement.evaluated(None)
-    through, sphere = Air() if own is None else own, (case.sphere.radius, case.sphere.material.density)
+    through, sphere = Air() if own is None else own, (case.sphere.radius, float(sphere_density(case.sphere)))
     fallen = 0.0 if case.drop.height is None or isinstance(own, Liquid) else case.drop.height - case.sphere.radius
     pull = FluidFlights(case.drop.gravity, *sphere, 1.0, through).pull
     flights = FluidFlights(

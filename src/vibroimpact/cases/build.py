@@ -14,7 +14,7 @@ from vibroimpact.cases.fields.item_labels import item_label
 from vibroimpact.cases.fields.material import material_table
 from vibroimpact.cases.motion import motion_length
 from vibroimpact.cases.oblique import friction_law_of, oblique_keys
-from vibroimpact.cases.pair import is_free_sphere
+from vibroimpact.cases.pair import is_free_sphere, sphere_density
 from vibroimpact.cases.rigid import (
     PLATE_FALLS,
     by_speed_of,
@@ -61,7 +61,7 @@ def check_case(case: CaseTable) -> None:
     _check_oblique(case, law)
     _check_liquid(case, law)
     if case.drop.air is not None:
-        check_thin(case.drop.air.density, case.sphere.material.density, "drop.air.density")
+        check_thin(case.drop.air.density, sphere_density(case.sphere), "drop.air.density")
     _check_motion(case)
     if case.sensors and case.plate.model == "rigid" and case.plate.motion is None:
         remedy = 'give it model = "elastic", or leave out the sensors' if case.plate.radius is None else "leave out the sensors"
@@ -134,7 +134,7 @@ def _check_liquid(case: CaseTable, law: ContactLaw) -> None:
     if case.drop.air is not None:
         raise InputError("the sphere meets the plate in a liquid, and can't fall through air to it; leave one of them out", "drop.air")
     if case.drop.gravity:
-        check_sinks(case.contact.local.liquid.density, case.sphere.material.density, "contact.liquid.density")
+        check_sinks(case.contact.local.liquid.density, sphere_density(case.sphere), "contact.liquid.density")
 
 
 def _check_motion(case: CaseTable) -> None:
@@ -238,7 +238,7 @@ def _body(case: CaseTable, name: Literal["sphere", "plate"]) -> dict[str, Any]:
     section: SphereSection | PlateSection = getattr(case, name)
     found = section.model_dump(exclude_none=True, exclude={"material", "supports", "damping", "mesh"})
     if section.model == "rigid":
-        found = {key: found[key] for key in ("radius", "size", "model", "inclination", "motion") if key in found}
+        found = {key: found[key] for key in ("radius", "mass", "inertia", "size", "model", "inclination", "motion") if key in found}
         found |= {"supports": "free"} if name == "plate" and is_free_sphere(case) else {}
     else:
         from vibroimpact.cases.elastic.bodies import elastic_table  # imports scipy.sparse

@@ -11,6 +11,7 @@ from typing import Any, Literal
 import numpy as np
 
 from vibroimpact.arrays import Array
+from vibroimpact.bodies.ball import ball_volume, mean_density
 from vibroimpact.contact.elastic_plastic import ElasticPlasticLaw
 from vibroimpact.contact.law import ContactLaw, InstantaneousLaw
 from vibroimpact.contact.pair import effective_modulus, hertz_stiffness
@@ -89,7 +90,13 @@ class Conditions:
     @cached_property
     def mass(self) -> Array:
         """Mass of the sphere [kg]."""
-        return 4.0 / 3.0 * math.pi * np.power(self.radius, 3) * self.materials["sphere"].density
+        given = self.case["sphere"].get("mass")
+        return ball_volume(np.asarray(self.radius)) * self.materials["sphere"].density if given is None else given
+
+    @property
+    def density(self) -> Array:
+        """Mass of the sphere over its volume [kg/m^3]."""
+        return mean_density(self.mass, self.radius)
 
     @cached_property
     def effective_radius(self) -> Array:
@@ -103,7 +110,7 @@ class Conditions:
         plate = self.case["plate"]
         if "radius" not in plate or plate.get("supports") != "free":
             return self.mass
-        below = 4.0 / 3.0 * math.pi * np.power(plate["radius"], 3) * self.materials["plate"].density
+        below = ball_volume(np.asarray(plate["radius"])) * self.materials["plate"].density
         return self.mass * below / (self.mass + below)
 
     @cached_property

@@ -8,11 +8,11 @@ import numpy as np
 
 from vibroimpact.arrays import Array
 from vibroimpact.bodies.body import Body
-from vibroimpact.bodies.rigid import rigid_plate, rigid_sphere
+from vibroimpact.bodies.rigid import rigid_plate
 from vibroimpact.cases.fields.section import derived
 from vibroimpact.cases.motion import motion_length, motion_of
 from vibroimpact.cases.oblique import normal_motion_of, oblique_of
-from vibroimpact.cases.pair import contact_pair, is_free_sphere
+from vibroimpact.cases.pair import ball_of, contact_pair, is_free_sphere, sphere_density
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.contact.registry import find_contact_law
 from vibroimpact.contact.speed_function import BySpeed, SpeedFunction, SpeedTable, held
@@ -35,7 +35,7 @@ PLATE_FALLS = (
 
 def mass_of_sphere(case: CaseTable) -> float:
     """Return the mass of the falling sphere [kg]."""
-    return float(rigid_sphere(case.sphere.radius, case.sphere.material).mass)
+    return float(ball_of(case.sphere).mass)
 
 
 @derived
@@ -75,7 +75,7 @@ def in_liquid(case: CaseTable, law: ContactLaw) -> ContactLaw:
     functions, table = by_speed_of(case), case.contact.local.liquid
     if functions:
         law = law.changed({key: held(function, touch_speed(case)) for key, function in functions.items()})
-    return law if table is None else table.liquid().around(law, touch_speed(case), case.sphere.radius, case.sphere.material.density)
+    return law if table is None else table.liquid().around(law, touch_speed(case), case.sphere.radius, sphere_density(case.sphere))
 
 
 def impact_limit(case: CaseTable) -> int | None:
@@ -106,7 +106,7 @@ def deforms(case: CaseTable) -> bool:
 def rigid_problem(case: CaseTable) -> Problem:
     """Return the problem of a case with rigid bodies; the numbers of the case may be arrays, one value per drop."""
     return Problem(
-        sphere=rigid_sphere(case.sphere.radius, case.sphere.material),
+        sphere=ball_of(case.sphere),
         plate=_rigid_below(case),
         laws=contact_laws_of(case),
         by_speed=by_speed_of(case),

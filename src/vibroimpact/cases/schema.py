@@ -9,6 +9,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, Field, StrictBool, model_validator
 
+from vibroimpact.bodies.ball import INERTIA_RATIOS
 from vibroimpact.calibration.section import CalibrateSection
 from vibroimpact.cases.fields.air import AirField
 from vibroimpact.cases.fields.contact import ContactSection, read_contact
@@ -20,6 +21,7 @@ from vibroimpact.cases.fields.elastic_body import (
     ModesField,
     PlateMeshField,
     SphereMeshField,
+    check_ball,
     check_elastic,
     check_plate,
     check_sphere_below,
@@ -64,6 +66,12 @@ class SphereSection(Section):
 
     radius: Annotated[float, UncertainQuantity("m", "radius", Range(above=0))]
     material: MaterialField
+    mass: (
+        Annotated[float, Quantity("kg", "mass of a ball that is hollow or filled; by default that of a solid one", Range(above=0))] | None
+    ) = None
+    inertia: Annotated[Any, Quantity("kg m^2", "moment of inertia", Range(above=0), words=tuple(INERTIA_RATIOS))] = Field(
+        None, description='moment of inertia about an axis through the centre [kg m^2], "solid" (default) or "hollow"'
+    )
     model: Literal["rigid", "elastic"] = Field("rigid", description="rigid, or elastic with vibration modes")
     modes: ModesField | None = Field(None, description="number of modes, from the lowest")
     max_frequency: FrequencyField | None = None
@@ -82,7 +90,9 @@ class SphereSection(Section):
     @model_validator(mode="after")
     def _check_body(self) -> SphereSection:
         if self.material is RIGID:
-            raise InputError('"rigid" has no density, and the sphere needs a mass; only the plate can be rigid', "material")
+            lacks = "no density, and the sphere needs a mass" if self.mass is None else "no modulus, and the sphere needs one"
+            raise InputError(f'"rigid" has {lacks}; only the plate can be rigid', "material")
+        check_ball(self)
         check_elastic(self)
         return self
 

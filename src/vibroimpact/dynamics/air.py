@@ -51,11 +51,6 @@ class Air(Fluid):
         return super().coefficient(reynolds) if self.drag_coefficient is None else self.drag_coefficient
 
 
-def density_of(mass: Array, radius: Array) -> Array:
-    """Return the density of a solid sphere [kg/m^3]."""
-    return mass / (4.0 / 3.0 * np.pi * np.asarray(radius) ** 3)
-
-
 def check_thin(density: Array, of_sphere: Array, key: str = "") -> None:
     """Raise InputError, with a key, unless air is so thin beside a sphere that drag is what matters of it; densities [kg/m^3]."""
     part = float(np.max(density / of_sphere))

@@ -22,7 +22,7 @@ from typing import Literal
 import numpy as np
 
 from vibroimpact.arrays import Bools, Drops, Floats
-from vibroimpact.dynamics.air import density_of
+from vibroimpact.bodies.ball import mean_density
 from vibroimpact.dynamics.collocation import collocation_rule
 from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.fluid import Fluid
@@ -291,7 +291,7 @@ def flights_of(problem: Problem, gap: Floats, velocity: Floats) -> FluidFlight:
     part = problem.net_weight / problem.flight_inertia
     along = velocities[:, None] * alike, gravity[:, None] * part * alike
     pull = problem.gravity * part * alike
-    return FluidFlight(0.0 * alike, gap, velocity, pull, radius, density_of(mass, radius), problem.fluid, along)
+    return FluidFlight(0.0 * alike, gap, velocity, pull, radius, mean_density(mass, radius), problem.fluid, along)
 
 
 def speed_of_fall(problem: Problem) -> float:

@@ -12,12 +12,13 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 
 from vibroimpact.arrays import Array, Complex, Floats
+from vibroimpact.bodies.ball import SOLID, mean_density
 from vibroimpact.bodies.body import Body
 from vibroimpact.contact.friction.law import CompliantFriction
 from vibroimpact.contact.law import ContactLaw, InstantaneousLaw
 from vibroimpact.contact.quasi_static import QuasiStatic
 from vibroimpact.contact.speed_function import BySpeed, held
-from vibroimpact.dynamics.air import Air, check_thin, density_of
+from vibroimpact.dynamics.air import Air, check_thin
 from vibroimpact.dynamics.fluid import Fluid
 from vibroimpact.dynamics.liquid import Liquid, check_sinks
 from vibroimpact.dynamics.oblique.statement import Oblique
@@ -198,6 +199,8 @@ class Problem:
             raise InputError(f"oblique must be an Oblique, not {self.oblique!r}")
         if self.oblique is not None and not np.all(np.asarray(self.sphere.contact_offset) > 0.0):
             raise InputError("a sphere that may turn needs a radius: its contact_offset, greater than 0 m")
+        if self.oblique is not None and self.sphere.inertia is not None and np.any(np.asarray(self.oblique.inertia_ratio) != SOLID):
+            raise InputError("the moment of inertia is given twice; leave out the inertia_ratio, or the inertia of the sphere")
         if self.oblique is not None and self.vibrates:
             self._check_rubbing(self.oblique)
         if self.oblique is not None and isinstance(self.oblique.friction, CompliantFriction) and isinstance(self.laws[0], InstantaneousLaw):
@@ -259,7 +262,7 @@ class Problem:
             raise InputError(f"air must be an Air, not {air!r}")
         if not np.all(np.asarray(self.sphere.contact_offset) > 0.0):
             raise InputError("a sphere that flies through air needs a radius: its contact_offset, greater than 0 m")
-        check_thin(air.density, density_of(self.sphere.mass, self.sphere.contact_offset))
+        check_thin(air.density, self.sphere_density)
 
     def _check_liquid(self, liquid: Liquid) -> None:
         """Raise InputError unless it is known what a liquid leaves of the restitution."""
@@ -272,7 +275,7 @@ class Problem:
         if self.air is not None:
             raise InputError("the sphere is either in a liquid or in air; leave one of them out")
         if np.any(np.asarray(self.gravity) > 0.0):
-            check_sinks(liquid.density, density_of(self.sphere.mass, self.sphere.contact_offset))
+            check_sinks(liquid.density, self.sphere_density)
 
     @property
     def fluid(self) -> Fluid | None:
@@ -280,9 +283,31 @@ class Problem:
         return self.air if self.liquid is None else self.liquid
 
     @property
+    def sphere_density(self) -> Array:
+        """Mass of the sphere over its volume [kg/m^3]."""
+        return mean_density(self.sphere.mass, self.sphere.contact_offset)
+
+    @property
+    def sphere_inertia(self) -> Array:
+        """Moment of inertia of the sphere about an axis through its centre [kg m^2]."""
+        return self._unit_inertia * self.inertia_ratio if self.sphere.inertia is None else self.sphere.inertia
+
+    @property
+    def inertia_ratio(self) -> Array:
+        """Moment of inertia of the sphere over its mass and the square of its radius [-]."""
+        if self.sphere.inertia is not None:
+            return self.sphere.inertia / self._unit_inertia
+        return SOLID if self.oblique is None else self.oblique.inertia_ratio
+
+    @property
+    def _unit_inertia(self) -> Array:
+        """Mass of the sphere times the square of its radius [kg m^2]."""
+        return self.sphere.mass * np.square(self.sphere.contact_offset)
+
+    @property
     def net_weight(self) -> Array:
         """Weight of the sphere, less its buoyancy, over that in a vacuum [-]."""
-        return 1.0 if self.fluid is None else self.fluid.weight(density_of(self.sphere.mass, self.sphere.contact_offset))
+        return 1.0 if self.fluid is None else self.fluid.weight(self.sphere_density)
 
     @property
     def net_gravity(self) -> Array:
@@ -292,7 +317,7 @@ class Problem:
     @property
     def flight_inertia(self) -> Array:
         """Mass that is accelerated in flight, with that of a liquid that moves along, over that of the sphere [-]."""
-        return 1.0 if self.fluid is None else self.fluid.inertia(density_of(self.sphere.mass, self.sphere.contact_offset))
+        return 1.0 if self.fluid is None else self.fluid.inertia(self.sphere_density)
 
     @property
     def vibrates(self) -> bool:
@@ -319,7 +344,8 @@ class Problem:
     @cached_property
     def shape(self) -> tuple[int, ...]:
         """() for one drop, (B,) for a batch."""
-        values = [self.sphere.mass, self.sphere.contact_offset, self.height, self.velocity, self.speed, self.gravity, self.rest_speed]
+        values = [self.height, self.velocity, self.speed, self.gravity, self.rest_speed]
+        values += [self.sphere.mass, self.sphere.contact_offset, self.sphere.inertia]
         values += [getattr(law, item.name) for law in self.laws for item in fields(law)]
         values += [] if self.oblique is None else self.oblique.values
         values += [value for fluid in (self.air, self.liquid) if fluid is not None for value in fluid.values]
@@ -340,7 +366,7 @@ class Problem:
             return value if np.ndim(value) == 0 else np.asarray(value)[drop]
 
         def part(body: Body) -> Body:
-            return replace(body, mass=one(body.mass), contact_offset=one(body.contact_offset))
+            return replace(body, **{name: one(getattr(body, name)) for name in ("mass", "contact_offset", "inertia")})
 
         return replace(
             self,

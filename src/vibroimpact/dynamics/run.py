@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from vibroimpact.arrays import Drops, Floats
+from vibroimpact.bodies.ball import mean_density
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, InstantaneousLaw
 from vibroimpact.contact.static import static_indentation
-from vibroimpact.dynamics.air import density_of
 from vibroimpact.dynamics.bodies import Bodies
 from vibroimpact.dynamics.columns import CARRIED_IMPACT_COLUMNS, OBLIQUE_IMPACT_COLUMNS, SHAKEN_IMPACT_COLUMNS
 from vibroimpact.dynamics.contact import CAPTURED, FAILED, RIDING
@@ -47,7 +47,8 @@ class Run:
             self.gap = self.gap + problem.surface(0.0)[0] + 4e-15 * np.abs(problem.surface_phasors).sum()
         self.oblique = None
         if problem.oblique is not None:
-            self.oblique = ObliqueMotion(problem.oblique.with_weight(problem.net_weight), self.mass, self.radius, problem.motion)
+            inertia = self.spread(problem.sphere_inertia)
+            self.oblique = ObliqueMotion(problem.oblique.with_weight(problem.net_weight), self.mass, self.radius, inertia, problem.motion)
         self.ahead: tuple[Drops, FluidFlight] | None = None  # flights whose tops have been computed already
         self.liquid_at_start = self.energy_of_liquid(self.velocity)
         self.energy_in = self.mechanical_energy() + self.liquid_at_start
@@ -126,7 +127,7 @@ class Run:
     def law_at(self, drops: Drops, speed: Floats) -> ContactLaw:
         """Return the law of the next impact of drops at an approach speed [m/s], with what a liquid leaves of its restitution."""
         law, liquid, radius = self.problem.law_at(self.law(drops), speed), self.problem.liquid, self.radius[drops]
-        return law if liquid is None else liquid.take(drops).around(law, speed, radius, density_of(self.mass[drops], radius))
+        return law if liquid is None else liquid.take(drops).around(law, speed, radius, mean_density(self.mass[drops], radius))
 
     # one flight and one contact --------------------------------------------------------------------
 
@@ -141,7 +142,7 @@ class Run:
         if self.ahead is None or not np.array_equal(self.ahead[0], drops):
             none = np.zeros((0, len(drops)))
             velocity, pull = (none, none) if self.oblique is None else self.oblique.pulled(drops)
-            sphere = self.radius[drops], density_of(self.mass[drops], self.radius[drops])
+            sphere = self.radius[drops], mean_density(self.mass[drops], self.radius[drops])
             flights = FluidFlight(*now, *sphere, fluid.take(drops), (velocity, pull / self.inertia[drops]))
             self.ahead = drops, flights
         return self.ahead[1]

@@ -58,6 +58,7 @@ class AdamsModel:
     title: str
     contact: AdamsContact
     mass: float
+    inertia_ratio: float
     centre: tuple[float, float, float]
     velocity: float
     motion: AdamsMotion | None
@@ -75,8 +76,8 @@ class AdamsModel:
 
     @property
     def inertia(self) -> float:
-        """Moment of inertia of the solid sphere about any axis through its centre [kg mm^2]."""
-        return 0.4 * self.mass * self.radius**2
+        """Moment of inertia of the sphere about any axis through its centre [kg mm^2]."""
+        return self.inertia_ratio * self.mass * self.radius**2
 
     @property
     def pull(self) -> tuple[float, float, float]:
@@ -110,6 +111,7 @@ def adams_model(drop: Drop) -> AdamsModel:
         title=f'the case "{plain_words(drop.name).replace("_", " ")}"',
         contact=contact,
         mass=drop.mass,
+        inertia_ratio=drop.inertia_ratio,
         centre=(1e3 * x, 1e3 * y, 1e3 * drop.height),
         velocity=-1e3 * drop.speed,
         motion=adams_motion(drop),

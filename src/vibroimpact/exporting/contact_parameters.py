@@ -9,7 +9,6 @@ from functools import cache
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.bodies.body import Body
 from vibroimpact.bodies.rigid import rigid_plate
 from vibroimpact.contact.kelvin_voigt import KelvinVoigtLaw
 from vibroimpact.contact.law import ContactLaw
@@ -116,9 +115,8 @@ def linear_or_hertzian(drop: Drop, program: str) -> tuple[float, float]:
 
 def first_contact(law: ContactLaw, drop: Drop) -> tuple[float, float]:
     """Return duration [s] and peak force [N] of a contact at the drop's first approach speed, between rigid bodies without gravity."""
-    ball = Body(mass=drop.mass, contact_offset=drop.radius)
     impacts = simulate(
-        Problem(sphere=ball, plate=rigid_plate(), laws=(law,), speed=approach_speeds(drop)[0], gravity=0.0, impacts=1)
+        Problem(sphere=drop.ball, plate=rigid_plate(), laws=(law,), speed=approach_speeds(drop)[0], gravity=0.0, impacts=1)
     ).impacts
     return float(impacts["duration_s"][0]), float(np.nanmax(impacts["max_force_N"]))
 

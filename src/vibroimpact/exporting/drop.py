@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from vibroimpact.arrays import Floats
+from vibroimpact.bodies.ball import SOLID
+from vibroimpact.bodies.body import Body
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.contact.speed_function import SpeedFunction
 from vibroimpact.dynamics.oblique.statement import Oblique
@@ -13,6 +15,8 @@ from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.sensors.recording import Signal
 from vibroimpact.dynamics.shaken.statement import PlateMotion
 from vibroimpact.materials import Material
+
+_SAME = 1e-9  # relative difference of moments of inertia that is rounding
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,6 +29,8 @@ class Drop:
         Name of the case.
     radius, mass : float
         Radius [m] and mass [kg] of the sphere.
+    inertia_ratio : float, default 0.4
+        Moment of inertia of the sphere over mass and square of the radius [-]; that of a solid one by default.
     sphere_material, plate_material : Material
         Their materials; the plate's modulus may be infinite.
     plate_size : tuple of three floats, optional
@@ -79,6 +85,7 @@ class Drop:
     name: str
     radius: float
     mass: float
+    inertia_ratio: float = SOLID
     sphere_material: Material
     plate_material: Material
     plate_size: tuple[float, float, float] | None = None
@@ -103,3 +110,18 @@ class Drop:
     signals: Mapping[str, Signal] = field(default_factory=dict, repr=False)
     surface: Mapping[str, Floats] = field(default_factory=dict, repr=False)
     doubts: tuple[str, ...] = field(default=(), repr=False)
+
+    @property
+    def ball(self) -> Body:
+        """The sphere as a rigid body."""
+        return Body(mass=self.mass, contact_offset=self.radius, inertia=self.inertia)
+
+    @property
+    def inertia(self) -> float:
+        """Moment of inertia of the sphere about an axis through its centre [kg m^2]."""
+        return self.inertia_ratio * self.mass * self.radius**2
+
+    @property
+    def is_solid(self) -> bool:
+        """Whether the sphere turns like a solid one."""
+        return abs(self.inertia_ratio - SOLID) < _SAME * SOLID

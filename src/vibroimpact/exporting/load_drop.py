@@ -73,6 +73,7 @@ def drop_of_result(result: Result, case: Case, function: tuple[str, SpeedFunctio
         name=result.name,
         radius=case.sphere.radius,
         mass=mass_of_sphere(case),
+        inertia_ratio=float(rigid_problem(case).inertia_ratio),
         sphere_material=case.sphere.material,
         plate_material=case.plate.material,
         plate_size=case.plate.size,

@@ -8,7 +8,6 @@ from dataclasses import fields, replace
 
 import numpy as np
 
-from vibroimpact.bodies.body import Body
 from vibroimpact.bodies.rigid import rigid_plate
 from vibroimpact.contact.friction.law import CompliantFriction, FrictionLaw
 from vibroimpact.contact.laws.hertz import Hertz
@@ -116,7 +115,7 @@ def _first_rebound(drop: Drop, friction: FrictionLaw) -> float:
         size=None,
     )
     problem = Problem(
-        sphere=Body(mass=drop.mass, contact_offset=drop.radius),
+        sphere=drop.ball,
         plate=rigid_plate(),
         laws=(laws_of_impacts(drop)[0],),
         speed=approach_speeds(drop)[0],

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from vibroimpact.arrays import Floats
+from vibroimpact.cases.pair import resized
 from vibroimpact.cases.rigid import rigid_problem
 from vibroimpact.cases.schema import CaseTable
 from vibroimpact.dynamics.problem import Problem
@@ -48,13 +49,13 @@ def contact_forces(case: CaseTable, plate: Problem, radius: Floats, speed: Float
     Parameters
     ----------
     case : CaseTable
-        The case: material of the sphere, contact law.
+        The case: material and mean density of the sphere, contact law.
     plate : Problem
         Its problem with the contact at a place.
     radius, speed : array, shape (n,)
         Radius [m] and approach speed [m/s] of each sphere.
     """
-    sphere = case.sphere.model_copy(update={"radius": radius})
+    sphere = resized(case.sphere, radius)
     drop = case.drop.model_copy(update={"speed": speed, "height": None, "velocity": None, "air": None})
     rigid = rigid_problem(case.model_copy(update={"sphere": sphere, "drop": drop}))
     response = simulate(

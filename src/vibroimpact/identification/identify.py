@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vibroimpact.bodies.rigid import rigid_sphere
+from vibroimpact.cases.pair import ball_of, resized
 from vibroimpact.cases.schema import CaseTable
 from vibroimpact.errors import InputError
 from vibroimpact.identification.doubts import doubts_about
@@ -239,7 +239,7 @@ def _estimates(case: CaseTable, measured: Measured, sphere: SphereFit, force: Fo
     deviations = np.sqrt(np.diag(sphere.covariance)).tolist()
     of_force = np.sqrt(np.diag(sphere.force_covariance)).tolist()
     peak, impulse, duration = (Estimate(*pair) for pair in zip(sphere.force.facts.tolist(), of_force, strict=True))
-    mass = float(rigid_sphere(math.exp(radius), case.sphere.material).mass)
+    mass = float(ball_of(resized(case.sphere, math.exp(radius))).mass)
     return {
         "place_x_m": Estimate(at_x, deviations[0]),
         "place_y_m": Estimate(at_y, deviations[1]),

@@ -21,7 +21,7 @@ from typing import NamedTuple
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.cases.pair import contact_pair
+from vibroimpact.cases.pair import contact_pair, sphere_density
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.sensors.place_responses import sampled_responses
 from vibroimpact.identification.contact import ContactForce, contact_forces
@@ -109,7 +109,7 @@ def fit_sphere(plate: Plate, measured: Measured, start: Candidate, place: Place 
         The place [m], if it is known.
     """
     case = plate.case
-    pulse = (start.impulse, start.duration, case.sphere.material.density, contact_pair(case).effective_modulus)
+    pulse = (start.impulse, start.duration, float(sphere_density(case.sphere)), contact_pair(case).effective_modulus)
     radius, speed = sphere_of_pulse(*pulse, _RESTITUTION)
     parameters = np.array([*(start.place if place is None else place), np.log(radius), np.log(speed), start.touch])
     lacking, deviation = compliance_error(plate, plate.problem)

@@ -19,8 +19,17 @@ from vibroimpact.cases.fields.instruments import INSTRUMENTS, AccelerometerTable
 from vibroimpact.cases.fields.quantities import quantity_of
 from vibroimpact.cases.motion import motion_length
 from vibroimpact.cases.oblique import friction_law_of, is_oblique
-from vibroimpact.cases.pair import contact_pair, is_free_sphere
-from vibroimpact.cases.rigid import by_speed_of, contact_laws_of, deforms, elastic_names, impact_limit, mass_of_sphere, touch_speed
+from vibroimpact.cases.pair import ball_of, contact_pair, is_free_sphere, sphere_density
+from vibroimpact.cases.rigid import (
+    by_speed_of,
+    contact_laws_of,
+    deforms,
+    elastic_names,
+    impact_limit,
+    mass_of_sphere,
+    rigid_problem,
+    touch_speed,
+)
 from vibroimpact.cases.schema import SensorSection
 from vibroimpact.contact.law import CompliantLaw, unit_of
 from vibroimpact.dynamics.liquid import restitution_kept
@@ -28,6 +37,8 @@ from vibroimpact.dynamics.problem import STANDARD_GRAVITY
 from vibroimpact.materials import RIGID, Material
 from vibroimpact.report.terminal_table import facts
 from vibroimpact.runs.text import doubt_lines
+
+_LIKE_SOLID = 0.1  # relative difference of the mean density of a sphere from that of its material, up to which it may be solid
 
 
 def _plate_text(case: Case) -> str:
@@ -54,6 +65,7 @@ def case_explained(case: Case, aside: Container[str] = ()) -> RenderableType:
     mass, radius, gravity = mass_of_sphere(case), case.sphere.radius, case.drop.gravity
     rows: list[tuple[str, str]] = [
         ("sphere", f"radius {radius:g} m, mass {mass:.6g} kg, {case.sphere.model}, of {_material_text(case.sphere.material)}"),
+        *_ball_rows(case),
         ("plate", f"{_plate_text(case)}, of {_material_text(case.plate.material)}"),
         *_motion_rows(case),
         *_elastic_rows(case),
@@ -77,7 +89,7 @@ def case_explained(case: Case, aside: Container[str] = ()) -> RenderableType:
         )
         rows.append((f"  {item.name}", f"{shown} {unit_of(item, getattr(laws[0], 'exponent', 1))}"))
     if (table := case.contact.local.liquid) is not None:
-        stokes = table.liquid().stokes_number(speed, case.sphere.radius, case.sphere.material.density)
+        stokes = table.liquid().stokes_number(speed, case.sphere.radius, sphere_density(case.sphere))
         left = f"at the first touch the Stokes number is {stokes:.4g}, and {restitution_kept(stokes):.5g} of the restitution remains"
         rows.append(("liquid", f"{fluid_words(table.model_dump())}: {left}"))
     if (friction := friction_law_of(case)) is not None:
@@ -105,6 +117,26 @@ def case_explained(case: Case, aside: Container[str] = ()) -> RenderableType:
     rows += [("" if number else "cost", line) for number, line in enumerate(describe_costs(case))]
     found = doubts(resolved_case(case), expected, aside)
     return Group(Text(case.name or "a drop", style="bold"), facts(rows), *doubt_lines(found))
+
+
+def _ball_rows(case: Case) -> list[tuple[str, str]]:
+    """Return rows on a sphere whose mass or moment of inertia is given: its mean density, and how it turns."""
+    sphere, ball, lines = case.sphere, ball_of(case.sphere), []
+    if sphere.mass is not None:
+        ratio = sphere_density(sphere) / sphere.material.density
+        lines.append(f"of a mean density of {sphere_density(sphere):.4g} kg/m3, {ratio:.3g} of its material's" + _inside(ratio))
+    if sphere.inertia is not None or (sphere.mass is not None and is_oblique(case)):
+        problem = rigid_problem(case)
+        turns = f"moment of inertia {problem.sphere_inertia:.4g} kg m2, {problem.inertia_ratio:.4g} of mass and squared radius"
+        lines.append(turns if ball.inertia is not None else f'{turns}, as of a solid ball; of a shell: sphere.inertia = "hollow"')
+    return [("", line) for line in lines]
+
+
+def _inside(ratio: float) -> str:
+    """Return what a ball may be whose mean density is so many times that of its material, and what that means for the contact."""
+    if ratio < 1.0 - _LIKE_SOLID:
+        return ", so hollow or light inside; a stiffness from Hertz's theory is that of a solid ball"
+    return ", so heavy inside" if ratio > 1.0 + _LIKE_SOLID else ""
 
 
 def _motion_rows(case: Case) -> list[tuple[str, str]]:

@@ -192,6 +192,10 @@ def _body_words(body: Mapping[str, Any]) -> str:
     words = [str(body.get("model", "rigid"))]
     if body.get("radius") is not None:
         words.append(f"radius {as_given(float(body['radius']), 'm')}")
+    if body.get("mass") is not None:
+        words.append(f"mass {as_given(float(body['mass']), 'kg')}")
+    if (inertia := body.get("inertia")) is not None:
+        words.append(inertia if isinstance(inertia, str) else f"moment of inertia {as_given(float(inertia), 'kg m^2')}")
     if body.get("size"):
         words.append(" \u00d7 ".join(as_given(float(side), "m") for side in body["size"]))
     material = body.get("material")

@@ -20,7 +20,6 @@ from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.marks import Level, Line, Mark
 from vibroimpact.contact.friction.law import CompliantFriction, FrictionLaw
-from vibroimpact.dynamics.oblique.statement import SOLID_SPHERE
 
 _ABOVE = 1.5
 """The line of sliding is drawn from this ψ below zero; impacts without loss slip throughout from 1 below zero on."""
@@ -63,7 +62,9 @@ def slips(impacts: Mapping[str, Floats], radius: Floats | float) -> tuple[Floats
         return speed, np.asarray((before * after).sum(axis=0) / speed)
 
 
-def slip_map(marks: Sequence[Mark], before: Floats, restitution: Floats, ratio: Floats, caption: str) -> Chart:
+def slip_map(
+    marks: Sequence[Mark], before: Floats, restitution: Floats, ratio: Floats, inertia_ratio: Floats | float, caption: str
+) -> Chart:
     r"""Return the chart of the dimensionless map, with the line of impacts that slip throughout, if there is one for all of them.
 
     Parameters
@@ -72,6 +73,8 @@ def slip_map(marks: Sequence[Mark], before: Floats, restitution: Floats, ratio: 
         The impacts.
     before, restitution, ratio : array, shape (n,)
         Dimensionless slips before the impacts, their restitutions along the normal, and E*/G*.
+    inertia_ratio : float or array, shape (n,)
+        Moment of inertia of the spheres over mass and square of the radius.
     caption : str
         What the marks are.
 
@@ -80,7 +83,7 @@ def slip_map(marks: Sequence[Mark], before: Floats, restitution: Floats, ratio: 
     Maw, N., Barber, J. R. and Fawcett, J. N. (1976). The oblique impact of elastic spheres. Wear 38, 101-114.
     """
     lines: list[Mark] = [Level(0.0)]
-    lost = (1.0 + 1.0 / SOLID_SPHERE) * (1.0 + restitution) / ratio
+    lost = (1.0 + 1.0 / inertia_ratio) * (1.0 + restitution) / ratio
     if len(before) and np.ptp(lost) <= _ALIKE * lost.mean():
         ends = np.array([max(float(lost.mean()) - _ABOVE, 0.0), float(before.max())])
         lines.append(Line(ends, ends - lost.mean(), "slips throughout", "reference"))

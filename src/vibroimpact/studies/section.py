@@ -202,7 +202,7 @@ def _read_item(item: Any, quantity: Quantity) -> Any:
     """Return one value of a list; keys with plain numbers may also take names and tables, such as the damping."""
     if isinstance(item, (list, dict)) or (isinstance(item, str) and not quantity.unit):
         return item
-    return _number(item, quantity, quantity.allowed)
+    return quantity.read(item)
 
 
 def _number(value: Any, quantity: Quantity, allowed: Range, key: str = "") -> float:

@@ -28,6 +28,7 @@ _LONGEST = 80  # characters of a quantity
 _KIND = {
     "m": "length",
     "kg": "mass",
+    "kg m^2": "moment of inertia",
     "s": "time",
     "m/s": "speed",
     "m/s^2": "acceleration",
@@ -55,6 +56,7 @@ _KIND = {
 _EXAMPLE = {
     "m": "25 mm",
     "kg": "90 g",
+    "kg m^2": "7.2 g cm^2",
     "s": "5 ms",
     "m/s": "8.8 m/s",
     "m/s^2": "9.8 m/s^2",

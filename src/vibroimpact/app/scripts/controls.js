@@ -172,6 +172,20 @@
     return rows;
   };
 
+  // Mass and moment of inertia of a ball that is not solid; an elastic one is.
+  const ball = (controls) => {
+    const { sphere, contact } = controls.resolved, mass = { path: ["sphere", "mass"], label: "Mass", unit: "g", size: 1e-3 };
+    if (sphere.model === "elastic") return [];
+    const rows = [sphere.mass === undefined ? openField(controls, { ...mass, hint: "of a solid one" }) : slider(controls, { ...mass, low: 0.1, high: 10000, log: true })];
+    const path = ["sphere", "inertia"];
+    if (contact.friction || sphere.inertia !== undefined) rows.push(choice(controls, {
+      path, label: "Inertia", options: [["solid", "of a solid ball"], ["hollow", "of a thin shell"]],
+      chosen: (table) => at(table, path) ?? "solid",
+      choose: (table, value) => put(table, path, value === "solid" ? undefined : value),
+    }));
+    return rows;
+  };
+
   const bodyRows = (controls, body) => {
     const resolved = controls.resolved[body];
     const model = choice(controls, {
@@ -183,8 +197,9 @@
     return [model, slider(controls, { path: [body, "modes"], label: "Modes", low: 1, high: 300, whole: true, log: true }), ...damping(controls, body)];
   };
 
-  // What only an elastic body has goes with its model, and a plate that is to vibrate needs a size.
+  // What only an elastic body has goes with its model, as what only a rigid one has, and a plate that is to vibrate needs a size.
   const ELASTIC = ["modes", "max_frequency", "damping", "mesh", "reduction", "attachment_mode", "element", "supports"];
+  const RIGID = { sphere: ["mass", "inertia"], plate: [] };
   const setModel = (table, body, value, controls) => {
     const section = table[body];
     section.model = value;
@@ -192,6 +207,10 @@
     for (const key of ELASTIC) {
       if (value === "rigid" && key in section && !(key === "supports" && section.radius !== undefined)) { controls.kept[body][key] = section[key]; delete section[key]; }
       if (value === "elastic" && key in controls.kept[body] && !(key in section)) section[key] = controls.kept[body][key];
+    }
+    for (const key of RIGID[body]) {
+      if (value === "elastic" && key in section) { controls.kept[body][key] = section[key]; delete section[key]; }
+      if (value === "rigid" && key in controls.kept[body] && !(key in section)) section[key] = controls.kept[body][key];
     }
     if (body === "plate" && value === "rigid") {
       controls.kept.sensors = table.sensors;
@@ -442,7 +461,7 @@
       this.moving = false;
       this.beginning = false;
       const shape = JSON.stringify([
-        table.contact.law, Object.entries(resolved.contact).map(([name, value]) => [name, Array.isArray(value) ? "list" : typeof value]), resolved.sphere.model, resolved.plate.model, resolved.plate.material === "rigid", "height" in resolved.drop && !("speed" in table.drop),
+        table.contact.law, Object.entries(resolved.contact).map(([name, value]) => [name, Array.isArray(value) ? "list" : typeof value]), resolved.sphere.model, "mass" in resolved.sphere, "inertia" in resolved.sphere, resolved.plate.model, resolved.plate.material === "rigid", "height" in resolved.drop && !("speed" in table.drop),
         "velocity" in resolved.drop, "friction" in resolved.contact, "motion" in resolved.plate, table.plate.supports && resolved.plate.supports, typeof resolved.plate.damping, typeof resolved.sphere.damping,
         (table.sensors || []).map((sensor) => sensor.name), resolved.plate.size && resolved.plate.size.slice(0, 2), resolved.plate.radius === undefined,
       ]);
@@ -458,7 +477,7 @@
       const below = plate.radius !== undefined ? [slider(this, { path: ["plate", "radius"], label: "Radius", unit: "mm", size: 1e-3, low: 2, high: 200, log: true })] : [];
       const all = plate.model === "elastic" ? [group("Supports", ...supports(this)), group("Sensors", ...sensors(this))] : [];
       this.form.replaceChildren(
-        group("Sphere", slider(this, { path: ["sphere", "radius"], label: "Radius", unit: "mm", size: 1e-3, low: 1, high: 100, log: true }), ...material(this, "sphere"), ...bodyRows(this, "sphere")),
+        group("Sphere", slider(this, { path: ["sphere", "radius"], label: "Radius", unit: "mm", size: 1e-3, low: 1, high: 100, log: true }), ...ball(this), ...material(this, "sphere"), ...bodyRows(this, "sphere")),
         group("Drop", ...drop(this)),
         this.law = group("Contact", ...law(this), ...friction(this)),
         group("Plate", ...below, ...inclination, ...size.map(([label, side, low, high]) => slider(this, { path: ["plate", "size", side], label, unit: "mm", size: 1e-3, low, high, log: true })), ...material(this, "plate"), ...bodyRows(this, "plate"), ...motion(this)),

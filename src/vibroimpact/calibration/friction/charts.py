@@ -18,7 +18,6 @@ from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.made import made_charts
 from vibroimpact.charts.marks import Line, Mark, Points
-from vibroimpact.dynamics.oblique.statement import SOLID_SPHERE
 from vibroimpact.runs.slip_map import moduli_ratio, slip_map
 
 _SMOOTH = 121
@@ -83,7 +82,7 @@ def _slip_chart(found: FrictionCalibration, curves: list[Curve]) -> Chart | None
     scale, radius = float(law.coefficient) * ratio, float(found.problem.sphere.contact_offset)
     if not scale > 0.0:
         return None
-    whole = 1.0 + 1.0 / SOLID_SPHERE  # of the change of the centre's velocity is that of the contact point
+    whole = 1.0 + 1.0 / float(found.problem.inertia_ratio)  # of the change of the centre's velocity is that of the contact point
 
     def psi(one: ImpactModel, outcomes: Mapping[str, Floats], more: Floats | float = 0.0) -> tuple[Floats, Floats]:
         """Return dimensionless slips before and after impacts that leave so much more velocity along the plate than computed [m/s]."""
@@ -99,7 +98,7 @@ def _slip_chart(found: FrictionCalibration, curves: list[Curve]) -> Chart | None
     marks.append(Points(*psi(model, found.outcomes, more), "measured", "matched", impacts.seen.labels))
     restitution = found.outcomes["separation_speed"] / impacts.seen.speeds
     caption = "Single impacts, measured, and computed with the fitted parameters."
-    return slip_map(marks, before, restitution, np.full(len(before), ratio), caption)
+    return slip_map(marks, before, restitution, np.full(len(before), ratio), found.problem.inertia_ratio, caption)
 
 
 def _measured_velocity(found: FrictionCalibration, radius: float) -> Floats:
@@ -112,7 +111,7 @@ def _measured_velocity(found: FrictionCalibration, radius: float) -> Floats:
     if "rebound_angle" in matched:
         return np.asarray(found.outcomes["separation_speed"] * np.tan(np.radians(matched["rebound_angle"])))
     turned = matched["spin_y_after"] - found.outcomes["spin_y_after"]
-    return np.asarray(found.outcomes["separation_velocity_x"] - SOLID_SPHERE * radius * turned)
+    return np.asarray(found.outcomes["separation_velocity_x"] - float(found.problem.inertia_ratio) * radius * turned)
 
 
 def _curves(found: FrictionCalibration) -> list[Curve]:

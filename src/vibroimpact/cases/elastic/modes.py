@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vibroimpact.bodies.ball import ball_volume
 from vibroimpact.bodies.elastic import ElasticBody
 from vibroimpact.cases.elastic.bodies import elastic_bodies
 from vibroimpact.cases.elastic.meshes import meshes_of
@@ -192,7 +193,7 @@ def _doubts_of_mass(case: CaseTable, name: str, body: ElasticBody, model: ModalM
     said = f"the mesh of the {name} is {size} m large and weighs {model.properties.mass:.4g} kg"
     remedy = 'give mesh = { file = "...", unit = "mm" }' if brought else 'write "520 mm", as a bare number is in metres'
     hint = f"; if it is in millimetres, {remedy}" if extent.max() > _LARGE else ""
-    volume = 4.0 / 3.0 * math.pi * case.sphere.radius**3 if name == "sphere" else math.prod(case.plate.size) if case.plate.size else None
+    volume = ball_volume(case.sphere.radius) if name == "sphere" else math.prod(case.plate.size) if case.plate.size else None
     if name == "plate" and model.mesh.materials:
         volume = None  # whose mass is that of no one material; a sphere falls with the mass that the case describes
     expected = body.recipe.density * (volume or math.nan)

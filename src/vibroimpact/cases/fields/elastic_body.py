@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
+from vibroimpact.bodies.ball import mean_density
+from vibroimpact.bodies.rigid import rigid_sphere
 from vibroimpact.cases.fields.json_schema import JsonSchema
 from vibroimpact.cases.fields.material import MaterialField, material_table
 from vibroimpact.cases.fields.quantities import Quantity
@@ -191,6 +193,9 @@ ModesField = Annotated[int, Field(ge=1, le=MOST_MODES, strict=True)]
 FrequencyField = Annotated[float, Quantity("Hz", "all modes up to this frequency", Range(above=0))]
 MethodField = Literal["modal", "craig-bampton"]
 
+_ROUNDED = 1e-3
+"""Relative difference of a mass or a moment of inertia from that of a solid sphere that counts as rounding."""
+
 _ELASTIC_KEYS = ("modes", "max_frequency", "damping", "supports", "mesh", "reduction", "attachment_mode", "element")
 
 
@@ -218,6 +223,27 @@ def check_elastic(section: Any) -> None:
         raise InputError("the constraint modes of craig-bampton hold it already; leave it out", "attachment_mode")
     if section.material.name == "rigid":
         raise InputError('"rigid" does not deform; an elastic body needs a material with a modulus', "material")
+
+
+def check_ball(section: Any) -> None:
+    """Check mass and moment of inertia of the sphere, which of an elastic one follow from its material.
+
+    Raises
+    ------
+    InputError
+        With the invalid key.
+    """
+    radius, material = section.radius, section.material
+    found = rigid_sphere(radius, material, mass=section.mass, inertia=section.inertia)  # raises if no ball has that moment of inertia
+    if section.model == "rigid":
+        return
+    solid, remedy = rigid_sphere(radius, material, inertia="solid"), 'leave it out, or give model = "rigid"'
+    if abs(found.mass - solid.mass) > _ROUNDED * solid.mass:
+        words = f"an elastic sphere is solid, {solid.mass:.4g} kg of its material, not {found.mass:.4g} kg"
+        raise InputError(f"{words}; {remedy}, or a material with the density {mean_density(found.mass, radius):.4g} kg/m^3", "mass")
+    if found.inertia is not None and solid.inertia is not None and abs(found.inertia - solid.inertia) > _ROUNDED * solid.inertia:
+        words = f"an elastic sphere is solid, with {solid.inertia:.4g} kg m^2 of its material, not {found.inertia:.4g} kg m^2"
+        raise InputError(f"{words}; {remedy}", "inertia")
 
 
 def check_plate(section: Any) -> None:

@@ -9,7 +9,7 @@ from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic.fields import FieldInfo
 from pydantic_core import CoreSchema, core_schema
 
-from vibroimpact.errors import InputError
+from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.ranges import Range
 from vibroimpact.shown import shown
 from vibroimpact.units.reading import number_and_unit, to_si
@@ -63,17 +63,44 @@ def _check(number: float, value: Any, unit: str, allowed: Range) -> None:
 
 @dataclass(frozen=True)
 class Quantity:
-    """Annotation of a quantity field with its SI unit, meaning and range, from which pydantic validates it and makes its JSON schema."""
+    """Annotation of a quantity field with its SI unit, meaning and range, from which pydantic validates it and makes its JSON schema.
+
+    `words` may stand in place of a value, and are left as they are.
+    """
 
     unit: str
     meaning: str
     allowed: Range = Range()
+    words: tuple[str, ...] = ()
+
+    def read(self, value: Any) -> Any:
+        """Return a value in SI, or one of the words.
+
+        Raises
+        ------
+        InputError
+            If it can't be read, or lies outside its range.
+
+        Examples
+        --------
+        >>> mass = Quantity("kg", "mass", Range(above=0), words=("light",))
+        >>> mass.read("2.7 g"), mass.read("light")
+        (0.0027, 'light')
+        """
+        if not (self.words and isinstance(value, str) and value.strip()[:1].isalpha()):
+            return read_quantity(value, self.unit, self.allowed)
+        if value not in self.words:
+            known = " or ".join(f'"{word}"' for word in self.words)
+            words = f"{shown(value)} is not allowed; it must be {known}, or a {self.meaning} with its unit [{self.unit}]"
+            raise InputError(f"{words}.{did_you_mean(value, self.words)}")
+        return value
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return core_schema.no_info_plain_validator_function(lambda value: read_quantity(value, self.unit, self.allowed))
+        return core_schema.no_info_plain_validator_function(self.read)
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
-        return quantity_schema(self.unit, self.meaning)
+        found = quantity_schema(self.unit, self.meaning)
+        return {"anyOf": [{"enum": list(self.words)}, found], "description": found["description"]} if self.words else found
 
 
 @dataclass(frozen=True)

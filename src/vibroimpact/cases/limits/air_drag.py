@@ -44,7 +44,7 @@ def _number(drops: Conditions) -> Array:
     height = drops.case["drop"].get("height")
     if height is None or drops.case["drop"].get("air") is not None or drops.case["contact"].get("liquid") is not None:
         return math.nan
-    return drag_loss(drops.radius, drops.materials["sphere"].density, height - drops.radius, drops.case["drop"]["gravity"])
+    return drag_loss(drops.radius, drops.density, height - drops.radius, drops.case["drop"]["gravity"])
 
 
 def _sentence(drop: Conditions, lost: float) -> str:

@@ -14,7 +14,7 @@ def _number(drops: Conditions) -> Array:
     liquid = drops.case["contact"].get("liquid")
     if liquid is None:
         return math.nan
-    return CRITICAL_STOKES / Liquid(**liquid).stokes_number(drops.summary.speed, drops.radius, drops.materials["sphere"].density)
+    return CRITICAL_STOKES / Liquid(**liquid).stokes_number(drops.summary.speed, drops.radius, drops.density)
 
 
 def _sentence(drop: Conditions, number: float) -> str:

@@ -8,8 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from vibroimpact.bodies.ball import SOLID, ball_volume
 from vibroimpact.cases.slips.hertz_estimate import HertzEstimate
 from vibroimpact.cases.slips.plausible import PlausibleRange, count_text, number_text, ratio_text
+from vibroimpact.dynamics.air import AIR_DENSITY
 
 _GRAVITY = 9.8  # m/s^2, for the weight on springs, independent of drop.gravity
 
@@ -70,6 +72,30 @@ def sphere_radius(estimate: HertzEstimate, table: Mapping[str, Any]) -> Plausibl
     return PlausibleRange(
         high=float(np.fmin(3.0, 4.0 * estimate.across)),
         above=lambda value: "is very large for a sphere" if value > 3.0 else f"is far more than the plate is long, {estimate.across:g} m",
+    )
+
+
+def sphere_mass(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
+    """Return the range of the mass of a sphere, hollow or not: from that of the air in its place to that of the heaviest metal."""
+    volume = float(ball_volume(np.asarray(estimate.radius)))
+    return PlausibleRange(
+        low=AIR_DENSITY * volume,
+        high=_DENSITY[1] * volume,
+        below="is lighter than the air in its place",
+        above=lambda value: f"would be {number_text(value / volume, 2)} kg/m^3, heavier than any metal",
+        remedy="look at its unit, and at the radius",
+    )
+
+
+def sphere_inertia(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
+    """Return the range of the moment of inertia of a sphere; more than that of a thin shell is refused elsewhere."""
+    solid = SOLID * estimate.mass * float(np.square(estimate.radius))
+    return PlausibleRange(
+        low=0.02 * solid,
+        below=lambda value: f"is {count_text(solid / value)} times less than that of a solid ball, {number_text(solid, 3)} kg m^2",
+        reference=solid,
+        within=2.0,
+        remedy="leave it out if the ball is solid, or look at its unit",
     )
 
 

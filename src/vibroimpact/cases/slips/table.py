@@ -44,6 +44,8 @@ CHECKED_KEYS: tuple[CheckedKey, ...] = (
     CheckedKey("plate.size.thickness", "m", _LENGTHS, rules.plate_thickness),
     CheckedKey("plate.radius", "m", _LENGTHS, rules.sphere_radius),
     CheckedKey("sphere.radius", "m", _LENGTHS, rules.sphere_radius),
+    CheckedKey("sphere.mass", "kg", ("g", "mg"), rules.sphere_mass),
+    CheckedKey("sphere.inertia", "kg m^2", ("kg cm^2", "g m^2", "kg mm^2", "g cm^2", "g mm^2"), rules.sphere_inertia),
     CheckedKey("drop.height", "m", _LENGTHS, between(high=300.0, above="is very high")),
     CheckedKey("drop.speed", "m/s", _SPEEDS, between(high=1000.0, above="is very fast")),
     CheckedKey("drop.gravity", "m/s^2", _ACCELERATIONS, rules.gravitational_acceleration),

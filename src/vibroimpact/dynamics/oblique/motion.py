@@ -33,17 +33,17 @@ class ObliqueMotion:
     ----------
     oblique : Oblique
         What the drops have at the start.
-    mass, radius : array, shape (B,)
-        Of the spheres [kg], [m].
+    mass, radius, inertia : array, shape (B,)
+        Of the spheres [kg], [m], [kg m^2].
     motion : PlateMotion or None
         Of the plate.
     """
 
-    def __init__(self, oblique: Oblique, mass: Floats, radius: Floats, motion: PlateMotion | None) -> None:
+    def __init__(self, oblique: Oblique, mass: Floats, radius: Floats, inertia: Floats, motion: PlateMotion | None) -> None:
         def spread(values: Any) -> Floats:
             return np.array([np.broadcast_to(np.asarray(value, dtype=float), mass.shape) for value in values])
 
-        self.sphere = Sphere(mass, radius, mass * radius**2 * oblique.inertia_ratio, spread(oblique.gravity))
+        self.sphere = Sphere(mass, radius, inertia, spread(oblique.gravity))
         self.state = State(spread(oblique.position), spread(oblique.velocity), spread(oblique.spin))
         self.start, self.half = self.state.position, None if oblique.size is None else 0.5 * np.array(oblique.size)[:, None]
         self.law, self.lost, self.microslip = oblique.friction, np.zeros(len(mass)), np.zeros(len(mass))

@@ -8,11 +8,9 @@ from typing import Any, Self
 import numpy as np
 
 from vibroimpact.arrays import Array
+from vibroimpact.bodies.ball import SOLID
 from vibroimpact.contact.friction.law import FrictionLaw
 from vibroimpact.errors import InputError
-
-SOLID_SPHERE = 0.4
-"""Moment of inertia of a solid sphere over mass and square of the radius [-]."""
 
 
 def _are_numbers(value: Any) -> bool:
@@ -42,7 +40,8 @@ class Oblique:
     size : tuple of two floats, optional
         Length and width of the plate [m], beyond which the sphere falls off its edge; by default it never does.
     inertia_ratio : float or array, default 0.4
-        Moment of inertia over mass and square of the radius [-]; 0.4 of a solid sphere.
+        Moment of inertia over mass and square of the radius [-]; 0.4 of a solid sphere. Leave it out where the body of the sphere has
+        its own `inertia`.
 
     Raises
     ------
@@ -61,7 +60,7 @@ class Oblique:
     gravity: tuple[Array, Array] = (0.0, 0.0)
     friction: FrictionLaw | None = None
     size: tuple[float, float] | None = None
-    inertia_ratio: Array = SOLID_SPHERE
+    inertia_ratio: Array = SOLID
 
     def __post_init__(self) -> None:
         for name, count in (("velocity", 2), ("spin", 3), ("position", 2), ("gravity", 2)):

@@ -134,7 +134,7 @@ def forces_along_plate(mbs, t, item, angles, rates):
     return [x + MASS * PULL[0], y + MASS * PULL[1], RADIUS * y, -RADIUS * x]
 
 
-INERTIA = 0.4 * MASS * RADIUS**2
+INERTIA = {drop.inertia_ratio!r} * MASS * RADIUS**2
 rates = {[x, y, about_x, about_y]!r}
 start = {{"referenceCoordinates": [0] * 4, "initialCoordinates": [0] * 4, "initialCoordinates_t": rates}}
 moving = mbs.AddNode(NodeGenericODE2(**start, numberOfODE2Coordinates=4))

@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from vibroimpact.bodies.ball import mean_density
 from vibroimpact.contact.friction.law import CompliantFriction, FrictionLaw
 from vibroimpact.contact.kelvin_voigt import KelvinVoigtLaw
 from vibroimpact.contact.law import ContactLaw
@@ -16,6 +17,7 @@ from vibroimpact.contact.laws.kuwabara_kono import KuwabaraKono
 from vibroimpact.contact.laws.tsuji import Tsuji
 from vibroimpact.dynamics.oblique.statement import Oblique
 from vibroimpact.dynamics.restitution import achieved_restitution
+from vibroimpact.errors import InputError
 from vibroimpact.exporting.contact_parameters import (
     approach_speeds,
     clipped_dashpot,
@@ -76,7 +78,14 @@ def _normals(drop: Drop) -> list[_Normal]:
 
 
 def _friction(drop: Drop) -> FrictionLaw | None:
-    return friction_in(drop, "LAMMPS", _FRICTION)
+    law = friction_in(drop, "LAMMPS", _FRICTION)
+    if law is not None and not drop.is_solid:
+        raise InputError(
+            f"{drop.inertia:.4g} kg m^2 can't be written for LAMMPS, whose spheres turn like solid ones, with 2/5 of the mass times the "
+            "square of the radius; a drop without friction can",
+            "sphere.inertia",
+        )
+    return law
 
 
 def _tangential(drop: Drop) -> str:
@@ -103,7 +112,7 @@ def _write(drop: Drop) -> Mapping[str, bytes]:
     oblique = drop.oblique or Oblique()
     velocity, spin = (" ".join(repr(float(part)) for part in parts) for parts in (oblique.velocity, oblique.spin))
     pull = (*map(float, oblique.gravity), -drop.gravity)
-    density = drop.mass / (4.0 / 3.0 * math.pi * drop.radius**3)
+    density = float(mean_density(drop.mass, drop.radius))
     text = f"""\
 # The case "{plain_words(drop.name)}"
 # A sphere that falls on a plate, for LAMMPS with its package GRANULAR: lmp -in FILE. Units: m, kg, s, N.
@@ -170,6 +179,8 @@ jump            SELF next_impact
 def _notes(drop: Drop) -> list[str]:
     law, normals, speeds = laws_of_impacts(drop)[0], _normals(drop), approach_speeds(drop)
     notes = [*shared_notes(drop), *friction_notes(drop, "LAMMPS", _friction(drop))]
+    if not drop.is_solid:
+        notes.append("LAMMPS has the moment of inertia of a solid sphere, which does not matter without friction.")
     if not normals[0].exact:
         spring = "hooke" if linear_or_hertzian(drop, "LAMMPS")[1] == 1.0 else "hertz"
         notes.append(

@@ -104,6 +104,7 @@ def _facts(drop: Drop) -> tuple[dict[str, Any], dict[str, Any]]:
         "name": (one_line(drop.name), ""),
         "radius": (drop.radius, "m"),
         "mass": (drop.mass, "kg"),
+        "inertia": (drop.inertia, "kg m2"),
         "height": (drop.height, "m"),
         "speed": (drop.speed, "m/s"),
         "gravity": (drop.gravity, "m/s2"),

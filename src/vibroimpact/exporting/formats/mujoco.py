@@ -93,7 +93,6 @@ def _write(drop: Drop) -> Mapping[str, bytes]:
     length, width, _ = drop.plate_size or (0.0, 0.0, 0.0)  # zero means infinite extent
     x, y = (float(value) for value in drop.position)
     motion = _motion(drop)
-    inertia = 0.4 * drop.mass * drop.radius**2
     comment = f"""\
 {plain_words(drop.name)}. Units: m, kg, s, N.
 The contact law is {laws[0].name}: {laws[0].equation}
@@ -116,7 +115,7 @@ Duration of the first contact {duration:.6g} s; largest force {force:.6g} N, whe
     <geom name="plate" type="plane" size="{0.5 * length!r} {0.5 * width!r} 1"/>
     <body name="sphere" pos="{x!r} {y!r} {drop.height!r}">
       {motion.joint}
-      <inertial pos="0 0 0" mass="{drop.mass!r}" diaginertia="{inertia!r} {inertia!r} {inertia!r}"/>
+      <inertial pos="0 0 0" mass="{drop.mass!r}" diaginertia="{_numbers(*[drop.inertia] * 3)}"/>
       <geom name="surface" type="sphere" size="{drop.radius!r}"/>
     </body>
   </worldbody>

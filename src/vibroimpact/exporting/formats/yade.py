@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from vibroimpact.arrays import Array
+from vibroimpact.bodies.ball import mean_density
 from vibroimpact.contact.friction.law import CompliantFriction, FrictionLaw
 from vibroimpact.contact.kelvin_voigt import damping_ratio_from_restitution
 from vibroimpact.contact.law import ContactLaw
@@ -90,6 +91,11 @@ def _poissons_ratio(drop: Drop) -> float:
     return (3.0 - 2.0 * ratio) / (3.0 - ratio)
 
 
+def _inertia(drop: Drop) -> str:
+    """Return the line that sets the moment of inertia of a sphere that is not solid, as which YADE takes it."""
+    return "" if drop.is_solid else f"ball.state.inertia = ({', '.join([repr(drop.inertia)] * 3)})\n"
+
+
 def _write(drop: Drop) -> Mapping[str, bytes]:
     laws, speeds = laws_of_impacts(drop), approach_speeds(drop)
     stiffness, _ = linear_or_hertzian(drop, "YADE")
@@ -100,7 +106,7 @@ def _write(drop: Drop) -> Mapping[str, bytes]:
     along, spin = (", ".join(repr(float(part)) for part in parts) for parts in (oblique.velocity, oblique.spin))
     poisson, friction = _poissons_ratio(drop), _friction(drop)
     # YADE computes the mass from the density
-    density = drop.mass / (4.0 / 3.0 * math.pi * drop.radius**3)
+    density = float(mean_density(drop.mass, drop.radius))
     # YADE combines the properties of two bodies; sphere and wall get values whose combination is the contact's stiffness and damping
     if _linear(drop):
         comment = "# springs and dashpots of sphere and wall are in series: each is twice the contact's"
@@ -138,7 +144,7 @@ O.materials.append(material)
 O.bodies.append(wall(0, axis=2, sense=1, material=material))
 O.bodies.append(sphere((0, 0, HEIGHT), RADIUS, material=material))
 ball = O.bodies[1]  # its mass is that of the density
-physics = {physics}
+{_inertia(drop)}physics = {physics}
 O.engines = [
     ForceResetter(),
     InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Wall_Aabb()], verletDist=RADIUS),

@@ -10,12 +10,12 @@ With the density and the modulus known, the two give R and v.
 
 from __future__ import annotations
 
-import math
 from functools import cache
 
 import numpy as np
 
 from vibroimpact.arrays import Floats
+from vibroimpact.bodies.ball import ball_volume
 
 _NODES = 48
 _TIME = 2.868
@@ -118,6 +118,6 @@ def sphere_of_pulse(impulse: float, duration: float, density: float, modulus: fl
     >>> [round(float(value), 6) for value in sphere_of_pulse(mass * 3.0 * 1.6, duration, 2600.0, 20e9, 0.6)]
     [0.02, 3.0]
     """
-    weight = 4.0 / 3.0 * math.pi * density
+    weight = ball_volume(1.0) * density
     radius = ((duration / _TIME) ** 5 * modulus**2 * impulse / ((1.0 + restitution) * weight**3)) ** 0.125
     return radius, impulse / ((1.0 + restitution) * weight * radius**3)

@@ -9,6 +9,7 @@ import numpy as np
 
 from vibroimpact.arrays import Floats, Indices
 from vibroimpact.cases.oblique import friction_law_of
+from vibroimpact.cases.rigid import rigid_problem
 from vibroimpact.charts.chart import Chart
 from vibroimpact.charts.marks import Points
 from vibroimpact.dynamics.columns import OBLIQUE_IMPACT_COLUMNS
@@ -20,8 +21,8 @@ from vibroimpact.studies.study import Study
 from vibroimpact.studies.swept_keys import case_at
 
 _COLUMNS = (*tuple(OBLIQUE_IMPACT_COLUMNS)[2:12], "approach_speed_m_s", "restitution_achieved")
-_OF_THE_CONTACT = ("sphere.radius", "sphere.material", "plate.radius", "plate.material", "contact.")
-"""Beginnings of the keys on which radius, coefficient and moduli depend."""
+_OF_THE_CONTACT = ("sphere.radius", "sphere.mass", "sphere.inertia", "sphere.material", "plate.radius", "plate.material", "contact.")
+"""Beginnings of the keys on which radius, moment of inertia, coefficient and moduli depend."""
 
 
 def slip_chart(study: Study) -> Chart | None:
@@ -44,14 +45,15 @@ def slip_chart(study: Study) -> Chart | None:
     axes = [axis for axis in study_axes(study) if axis.varies]
     groups = grouped(study, axes, numbers[there], drop_texts(study, told, numbers[there]))
     marks = [Points(before[there][one.chosen], after[there][one.chosen], one.name, one.role, one.texts, one.keys) for one in groups]
-    restitution, ratio = impacts["restitution_achieved"][there], pairs.ratio[there]
-    return slip_map(marks, before[there], restitution, ratio, "The first impact of each drop a mark.")
+    restitution, ratio, inertia = impacts["restitution_achieved"][there], pairs.ratio[there], pairs.inertia_ratio[there]
+    return slip_map(marks, before[there], restitution, ratio, inertia, "The first impact of each drop a mark.")
 
 
 class _Pairs(NamedTuple):
-    """Radius of the sphere [m], coefficient of friction and E*/G* of drops; NaN where they are not known."""
+    """Radius [m] and moment of inertia (over m R^2) of the sphere, coefficient of friction and E*/G* of drops; NaN where not known."""
 
     radius: Floats
+    inertia_ratio: Floats
     coefficient: Floats
     ratio: Floats
 
@@ -67,5 +69,5 @@ def _pairs(study: Study, numbers: Indices) -> _Pairs:
         case = case_at(table, {**first, **dict(zip((axis.key for axis in axes), row, strict=True))})
         law = friction_law_of(case)
         known = (np.nan, np.nan) if law is None else (law.coefficient, moduli_ratio(law, case))
-        found[row] = (case.sphere.radius, *known)
+        found[row] = (case.sphere.radius, rigid_problem(case).inertia_ratio, *known)
     return _Pairs(*np.array([found[row] for row in rows], dtype=float).T)
