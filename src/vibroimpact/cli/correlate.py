@@ -10,6 +10,7 @@ import typer
 from vibroimpact.cli.shared import (
     CaseArgument,
     Changes,
+    Columns,
     Figures,
     Force,
     Json,
@@ -49,6 +50,7 @@ def correlate(
         str | None,
         typer.Option("--band", metavar="FROM,TO", help='Band of frequencies, such as "100 Hz, 5 kHz"; by default that of the modes.'),
     ] = None,
+    columns: Columns = None,
     changes: Changes = None,
     figures: Figures = False,
     force: Force = False,
@@ -72,7 +74,7 @@ def correlate(
     check_free(target, force=force)
     length = None if window is None else quantity_in("--window", window, "s")
     ends = None if band is None else pair_in("--band", band, "Hz", "a lower and an upper frequency", "100 Hz, 5 kHz")
-    heard = [record for path in records for record in read_records(path)]
+    heard = [record for path in records for record in read_records(path, columns)]
     push = None if hammer is None else _force_among(heard, hammer)
     with exit_on_interrupt():
         with patient_progress("correlating", console(err=as_json)) as progress:
