@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from stated import says
+from vibroimpact.measurements import recorded_table
 from vibroimpact.signals import baseline
 from vibroimpact.signals.bounces import touches
 from vibroimpact.signals.reading import coded_sound
@@ -16,6 +17,15 @@ def test_numbers_of_the_baseline() -> None:
     says(PAGE, "removed only if it exceeds {} of its standard deviations", baseline._SURE)
     says(PAGE, "neither does one of fewer than {} samples", baseline._LEAST)
     assert baseline._LARGE == 0.1  # "of more than a tenth of the largest magnitude"
+
+
+def test_numbers_of_cells_without_a_number() -> None:
+    says(
+        PAGE,
+        "else up to {} in a row, and {} % of all, are filled in by cubic splines",
+        recorded_table._LONGEST_GAP,
+        100.0 * recorded_table._MOST_MISSING,
+    )
 
 
 def test_numbers_of_coded_sound() -> None:
