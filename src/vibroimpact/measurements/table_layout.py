@@ -22,6 +22,7 @@ from vibroimpact.measurements.table_lines import (
     filled,
     first_rows,
     has_digits,
+    header_cells,
     is_row,
     mark_of,
 )
@@ -188,8 +189,7 @@ def _first_line_is_row(head: Head, comment: tuple[int, str]) -> Found | None:
         return None
     columns = len(fields_of(line, mark))
     for separator in (",", ";", "\t", None):
-        cells = [cell.strip() for cell in fields_of(comment[1], separator)]
-        cells = _joined(cells) if separator is None else cells
+        cells = header_cells(comment[1], separator)
         if len(cells) == columns and all(cells):
             return Found(comment[0], cells, mark, 0)
     seen = f"the comment before them does not have as many ({comment[1][:40]!r})" if comment[1] else "no header is above them"
@@ -200,25 +200,16 @@ def _first_line_is_row(head: Head, comment: tuple[int, str]) -> Found | None:
     raise InputError(f"line {number}: it has {columns_are}, and {seen}; write a header, such as time [s],force [N], {remedy}")
 
 
-def _joined(words: list[str]) -> list[str]:
-    """Return words between blanks with the units that follow them in brackets."""
-    cells: list[str] = []
-    for word in words:
-        if cells and word.startswith(("[", "(")):
-            cells[-1] += f" {word}"
-        else:
-            cells.append(word)
-    return cells
-
-
 def _header_above_rows(head: Head) -> Found:
     """Return the header: the first line, or, if this can be none, the nearest one above the rows; with units from a line below it."""
     rows = first_rows(head)
     at = 0
     mark: str | None = head.mark or next((mark for mark in MARKS if mark in head.lines[0][1]), ",")
-    if rows is not None and (above := _above(head, *rows)) is not None:
-        at, mark = above, rows[1]
-    cells = [cell.strip() for cell in fields_of(head.lines[at][1], mark)]
+    if rows is not None:
+        above = _above(head, *rows)
+        if above is not None or _fits(header_cells(head.lines[0][1], rows[1]), fields_of(head.lines[rows[0]][1], rows[1])):
+            at, mark = above or 0, rows[1]
+    cells = header_cells(head.lines[at][1], mark)
     below = at + 1
     full = [place for place in range(at + 1, len(head.lines)) if head.lines[place][1]]
     for place in full[:1]:
@@ -233,7 +224,7 @@ def _header_above_rows(head: Head) -> Found:
 
 def _above(head: Head, rows: int, mark: str | None) -> int | None:
     """Return the place of the header above rows; None if it is the first line, or there is none."""
-    cells = {place: fields_of(head.lines[place][1], mark) for place in range(rows + 1) if head.lines[place][1]}
+    cells = {place: header_cells(head.lines[place][1], mark) for place in range(rows + 1) if head.lines[place][1]}
     above = [place for place in cells if place < rows and _fits(cells[place], cells[rows])]
     for before, place in pairwise(above):
         if are_units(cells[place]) and not are_units(cells[before]):

@@ -67,6 +67,23 @@ def fields_of(line: str, mark: str | None) -> list[str]:
     return line.split(mark) if mark is None or '"' not in line else next(csv.reader([line], delimiter=mark))
 
 
+def header_cells(line: str, mark: str | None) -> list[str]:
+    """Return the cells of a header; where blanks separate them, a unit in brackets belongs to the word before it.
+
+    Examples
+    --------
+    >>> header_cells("time [s] force [N]", None)
+    ['time [s]', 'force [N]']
+    """
+    cells: list[str] = []
+    for cell in fields_of(line, mark):
+        if mark is None and cells and cell.startswith(("[", "(")):
+            cells[-1] += f" {cell}"
+        else:
+            cells.append(cell.strip())
+    return cells
+
+
 def filled(cells: Sequence[str]) -> int:
     """Return the number of cells without the empty ones at the end.
 
@@ -80,7 +97,7 @@ def filled(cells: Sequence[str]) -> int:
 
 def content(whole: str) -> str:
     """Return a line without its comment; "" if there is nothing in it."""
-    line = whole.rstrip()
+    line = whole.rstrip("\r\n ")  # a tab at the end may stand before an empty field
     if "#" not in line:
         return line if line.strip(" ,;\t") else ""
     start = next((found.start() for found in re.finditer("#", line) if _begins_comment(line, found.start())), len(line))

@@ -134,12 +134,11 @@ def at_equal_steps(time: Floats, values: Sequence[Floats], lines: Sequence[int] 
         step = np.diff(time)
         if not (step >= 0.0).all() or not (step > 0.0).any():
             raise
-        if (twice := _written_twice(time, values)).any():
+        twice, words = written_twice(time, values, lines)
+        if words:
             kept = at_equal_steps(
                 time[~twice], [one[~twice] for one in values], None if lines is None else np.asarray(lines)[~twice].tolist()
             )
-            first = _sample(int(np.argmax(twice)), lines)
-            words = f"{twice.sum()} samples have time and value of the one before, the first is {first}: they are left out"
             return kept._replace(doubts=tuple(f"{words}; {doubt}" if doubt else words for doubt in kept.doubts))
         if len(time) < _FEWEST:
             raise
@@ -180,12 +179,21 @@ def _sample(place: int, lines: Sequence[int] | None) -> str:
     return f"sample {place + 1}" if lines is None else f"sample {place + 1} (line {lines[place]})"
 
 
-def _written_twice(time: Floats, values: Sequence[Floats]) -> Bools:
-    """Return which samples repeat the one before: all that have its time must have its values, which are not all one."""
+def written_twice(time: Floats, values: Sequence[Floats], lines: Sequence[int] | None = None) -> tuple[Bools, str]:
+    """Return which samples repeat the one before, and a sentence on them; "" if none does.
+
+    All samples that have the time of the one before must have its values, which are not all one; else their times are rounded.
+    """
     same_time = np.append(False, np.diff(time) == 0.0)
     same = np.append(False, np.logical_and.reduce([np.diff(one) == 0.0 for one in values])) & same_time
     changes = any(np.any(np.diff(one)[~same_time[1:]] != 0.0) for one in values)
-    return same if changes and np.array_equal(same, same_time) else np.zeros(len(time), dtype=bool)
+    if not (same.any() and changes and np.array_equal(same, same_time)):
+        return np.zeros(len(time), dtype=bool), ""
+    count = int(same.sum())
+    have = "samples have" if count > 1 else "sample has"
+    are = "they are" if count > 1 else "it is"
+    first = _sample(int(np.argmax(same)), lines)
+    return same, f"{count} {have} time and value of the one before, the first is {first}: {are} left out"
 
 
 def _resampled(time: Floats, values: Sequence[Floats]) -> Sampled:

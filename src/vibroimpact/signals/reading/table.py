@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+import numpy as np
+
 from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError
 from vibroimpact.measurements.header_cells import name_and_unit
@@ -12,7 +14,7 @@ from vibroimpact.measurements.recorded_table import RecordedChannel, filled_in, 
 from vibroimpact.measurements.table_file import in_table
 from vibroimpact.measurements.table_layout import Layout
 from vibroimpact.shown import shown
-from vibroimpact.signals.reading.equal_steps import Sampled, at_equal_steps, is_regular
+from vibroimpact.signals.reading.equal_steps import Sampled, at_equal_steps, is_regular, written_twice
 from vibroimpact.signals.reading.si_units import in_si
 from vibroimpact.signals.record import Record
 
@@ -65,14 +67,18 @@ def _sampled(channel: RecordedChannel) -> tuple[Sampled, tuple[str, ...]]:
     """
     if not channel.missing or is_regular(channel.time):
         return _at_equal_steps(channel, channel.time, channel.value, channel.lines), ()
+    twice, words = written_twice(channel.time, [channel.value], channel.lines)
+    lines = np.asarray(channel.lines)[~twice].tolist()
+    channel = channel._replace(time=channel.time[~twice], value=channel.value[~twice], lines=lines)
+    told = (words,) if words else ()
     try:
         time, value, doubt = filled_in(channel)
     except InputError as many:
         try:
-            return _at_equal_steps(channel, channel.time, channel.value), ()  # of another rate, with times that jitter
+            return _at_equal_steps(channel, channel.time, channel.value), told  # of another rate, with times that jitter
         except InputError:
             raise many from None
-    return _at_equal_steps(channel, time, value), (doubt,)
+    return _at_equal_steps(channel, time, value), (*told, doubt)
 
 
 def _at_equal_steps(channel: RecordedChannel, time: Floats, value: Floats, lines: Sequence[int] | None = None) -> Sampled:
