@@ -416,3 +416,22 @@ def test_a_table_file_with_stated_columns(tmp_path: Path) -> None:
 )
 def test_what_was_understood_is_said(text: str, told: str, tmp_path: Path) -> None:
     assert told in refused(tmp_path, text)
+
+
+def test_what_was_done_to_a_record_is_a_doubt_of_its_calibration(tmp_path: Path) -> None:
+    """A sample written twice with another value, and a byte of Latin-1."""
+    slow = np.arange(132) / 240.0
+    rows = [f"{at:.6f};{up:.7f}\n" for at, up in zip(slow, height(slow), strict=True)]
+    rows.insert(30, rows[29].replace("\n", "1\n"))
+    rows.insert(60, f"{slow[58]:.6f};0.5\n")
+    (tmp_path / "record.csv").write_bytes(
+        "# Prüfstand\nZeit [s];position [m]\n".encode("latin-1") + "".join(rows).replace(".", ",").encode()
+    )
+    section = {"target": str(tmp_path / "record.csv"), "degree": 0, "air": False}
+    sphere, contact = {"radius": RADIUS, "material": "steel"}, {"law": "newton", "restitution": 0.5}
+    case = plain_case(sphere=sphere, drop={"speed": SPEED, "gravity": 9.80665}, contact=contact, calibrate=section)
+    found = vi.calibrate_case(vi.read_calibration(case))
+    assert found.values == pytest.approx(RESTITUTION, abs=2e-3)
+    doubts = " ".join(found.doubts)
+    assert "line 1 has the byte FC, which is not UTF-8" in doubts
+    assert "position: 1 sample has the time of the one before and another value, in line 63: it is left out" in doubts

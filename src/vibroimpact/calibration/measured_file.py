@@ -172,8 +172,11 @@ def _without(channel: RecordedChannel, rises: Bools) -> list[str]:
     change = np.append(0.0, np.abs(np.diff(channel.value)))
     other = np.flatnonzero(~rises & (change > _SAME * float(np.ptp(channel.value))))
     if other.size:
-        first = channel.lines[int(other[0])]
-        told.append(f"{other.size} samples have the time of the one before and another value, the first in line {first}: they are left out")
+        line = channel.lines[int(other[0])]
+        have, first = (
+            ("samples have", f"the first in line {line}: they are") if other.size > 1 else ("sample has", f"in line {line}: it is")
+        )
+        told.append(f"{other.size} {have} the time of the one before and another value, {first} left out")
     return told
 
 
