@@ -161,6 +161,13 @@ def test_an_older_tektronix_oscilloscope(tmp_path: Path) -> None:
     np.testing.assert_allclose(record.value, VALUE, atol=1e-6)
 
 
+def test_a_siglent_oscilloscope(tmp_path: Path) -> None:
+    head = "Record Length,Analog:50\nVertical Units,CH1:V\nHorizontal Units,s\nModel Number,SDS1104X-E\nSource,CH1\nSecond,Volt\n"
+    (record,) = read(tmp_path, head + "".join(f"{at / 1e4 - 0.01:.6f},{value:.6f}\n" for at, value in enumerate(VALUE)))
+    assert (record.name, record.unit, record.rate, record.start) == ("ch1", "V", 10e3, -0.01)
+    np.testing.assert_allclose(record.value, VALUE, atol=1e-6)
+
+
 def test_audacity_in_decibels_is_refused(tmp_path: Path) -> None:
     assert refused(tmp_path, "a.wav   1 channel (mono)\nSample Rate: 8000 Hz. Sample values on dB scale.\n-6.0\n-7.0\n").startswith(
         "record.csv, line 2: the samples are in dB, without their sign; export them on the linear scale"
