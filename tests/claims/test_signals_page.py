@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from stated import says
+from vibroimpact.measurements import recorded_table
 from vibroimpact.signals import baseline, registry
 from vibroimpact.signals.bounces import touches
 from vibroimpact.signals.reading import coded_sound, equal_steps
@@ -19,6 +20,15 @@ def test_numbers_of_the_baseline() -> None:
     assert equal_steps._LONGEST_STEP == 3.0
     assert equal_steps._LARGEST_JITTER == 0.5
     assert baseline._LARGE == 0.1  # "of more than a tenth of the largest magnitude"
+
+
+def test_numbers_of_cells_without_a_number() -> None:
+    says(
+        PAGE,
+        "else up to {} in a row, and {} % of all, are filled in by cubic splines",
+        recorded_table._LONGEST_GAP,
+        100.0 * recorded_table._MOST_MISSING,
+    )
 
 
 def test_numbers_of_coded_sound() -> None:

@@ -119,7 +119,7 @@ def is_quick(command: str) -> bool:
 
 
 def write_records(folder: Path) -> None:
-    """Write the records of bounces and the table of restitutions that commands and examples name."""
+    """Write the records of bounces and the tables that commands and examples name."""
     sound = heard(0, 0.7, 7, decibels=30.0).record
     wavfile.write(folder / "bounces.wav", round(sound.rate), (0.5 * sound.value / np.abs(sound.value).max()).astype("f4"))
     plate = heard(1, 0.6, 6, decibels=30.0, rate=8e3).record
@@ -127,6 +127,8 @@ def write_records(folder: Path) -> None:
     (folder / "plate.csv").write_text("time [s],geophone [V]\n" + "".join(rows))
     table = next(block for block in blocks(DOCS / "calibration.md", "text") if block.startswith("speed [m/s],restitution"))
     (folder / "ev.csv").write_text(table)
+    np.savetxt(folder / "sound.txt", sound.value)
+    np.savetxt(folder / "force.txt", np.stack([plate.time, plate.time, plate.value], axis=1))
 
 
 def write_cases(folder: Path) -> None:

@@ -360,7 +360,15 @@ def test_the_command(command: Callable[..., tuple[int, str, str]]) -> None:
     assert told["records"]["a1"]["frac"] > 0.999
     assert told["modes"][0]["damping_ratio"] == pytest.approx(0.008, rel=1e-3)
     assert {key: one for key, one in told.items() if key != "folder"} == json.loads(Path("again/summary.json").read_text())
+    np.savetxt("bare.txt", table)
+    columns = ("--columns", "time=s,hammer=N,a1=g,a2=g")
+    code, out, _ = command(
+        "correlate", "case.toml", "bare.txt", *columns, "--hammer", "hammer", "-o", "bare", "--band", "300 Hz, 1.7 kHz", "--json"
+    )
+    assert code == 0
+    assert json.loads(out)["records"] == told["records"]
     for words, message in (
+        (("bare.txt", "-o", "new"), "no header is above them; write a header, such as time [s],force [n], or give --columns"),
         (("tap.csv", "-o", "new"), 'no sensor "hammer"'),
         (("tap.csv", "-o", "new", "--hammer", "hamer"), "did you mean"),
         (("tap.csv", "-o", "new", "--band", "300 Hz"), "give a lower and an upper frequency"),

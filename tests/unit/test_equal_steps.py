@@ -64,3 +64,15 @@ def test_a_phone_s_table_is_read_with_a_doubt(tmp_path: Path) -> None:
 def test_other_steps_are_refused(time: np.ndarray) -> None:
     with pytest.raises(vi.InputError, match="do not rise"):
         at_equal_steps(time, [time])
+
+
+@pytest.mark.parametrize("form", ["%.6g", "%.5g", "%.4g"])
+def test_times_with_a_number_of_digits(form: str) -> None:
+    """As C, MATLAB and numpy.savetxt write them by default: the step of the rounding grows with the time, here beyond 1 s."""
+    rate = 2.0 * 10.0 ** (int(form[2]) - 1)
+    time = np.arange(int(2.0 * rate) + 1) / rate
+    written = np.array([float(form % at) for at in time])
+    found = at_equal_steps(written, [swing(time)])
+    assert found.rate == pytest.approx(rate, rel=1e-3)
+    np.testing.assert_array_equal(found.values[0], swing(time))
+    assert found.doubts[0].startswith(f"its times are rounded to {form[2]} digits, up to ")

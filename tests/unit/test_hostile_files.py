@@ -12,7 +12,8 @@ from attack import attack
 from support import plain_case
 from vibroimpact.calibration.calibrate_case import read_calibration
 from vibroimpact.cases.elastic.meshes import meshes_of
-from vibroimpact.measurements.table_file import name_and_unit, read_table_file
+from vibroimpact.measurements.header_cells import name_and_unit
+from vibroimpact.measurements.table_file import read_table_file
 from vibroimpact.meshes.mesh_file import read_mesh
 from vibroimpact.meshes.parsed_mesh import Selection
 from vibroimpact.runs.case_explained import case_explained

@@ -322,9 +322,14 @@ def test_the_command(command: Callable[..., tuple[int, str, str]]) -> None:
     told = json.loads(out)
     assert told["estimates"]["radius_m"]["value"] == pytest.approx(0.02, rel=1e-3)
     assert {key: value for key, value in told.items() if key != "folder"} == json.loads(Path("known/summary.json").read_text())
+    Path("bare.csv").write_text("0,1\n1,2\n")
     for words, message in (
         (("run", "-o", "found"), "there already"),
         (("run", "-o", "new", "--place", "20 mm"), "give x and y"),
+        (
+            ("bare.csv", "-o", "new", "--columns", "time=s,a1=m/s^2,a2=m/s^2"),
+            "--columns: line 1 has 2 fields, separated by commas, and 3 columns",
+        ),
         (("nowhere", "-o", "new"), "nowhere"),
     ):
         code, _, err = command("identify", "case.toml", *words)

@@ -44,7 +44,8 @@ def test_a_table_with_units(tmp_path: Path) -> None:
         ("time_s,force_N\n0,1\n", "two samples or more"),
         ("time_s,force_N\n0,1\n1,2\n5,3\n", "do not rise by equal steps"),
         ("time_s,force_N\n1,1\n0,2\n", "the times do not rise"),
-        ("time_s,force_N\n0,1\n1,nan\n", "not finite"),
+        ("time_s,force_N\n0,1\n1,nan\n", "two samples or more"),
+        ("time_s,force_N\n0,1\n1,1e31\n", "it must be less than 1e30"),
         ("time_s,force_N\n0,1\n1,x\n", "line 3"),
     ],
 )

@@ -78,7 +78,7 @@ def test_bytes_that_are_no_text_are_refused(text: bytes, tmp_path: Path) -> None
         ("# time [s],force [N],way [m]\n0,0\n1,1\n", r"line 2: it has 2 numbers, and the comment before them does not have as many"),
         ("# time [s],force [N]\n0,0\n0.001,x\n", r'line 3, column "force \[N\]": "x" is not a number'),
         ("sep=;\n", "the file is empty"),
-        ("Recorder\n\ntime [s],force [N]\n0,0\n0.001,1\n0.002,\n", r'line 6, column "force \[N\]": the cell is empty'),
+        ("Recorder\n\ntime [s],force [N]\n0,0\n0.001,1\n0.002,x\n", r'line 6, column "force \[N\]": "x" is not a number'),
     ],
 )
 def test_what_is_not_read_is_said_with_its_line(text: str, message: str, tmp_path: Path) -> None:

@@ -9,7 +9,8 @@ from os import PathLike
 import numpy as np
 
 from vibroimpact.errors import InputError
-from vibroimpact.measurements.table_file import TableFile, header_of, name_and_unit, read_table_file
+from vibroimpact.measurements.header_cells import name_and_unit
+from vibroimpact.measurements.table_file import TableFile, header_of, read_table_file
 
 DEVIATION = "_standard_deviation"
 """Ending of the names of columns with standard deviations."""
@@ -43,16 +44,16 @@ def is_impact_table(names: Collection[str]) -> bool:
     return "approach_speed" in names and ("restitution" in names or "separation_speed" in names)
 
 
-def holds_restitutions(path: str | PathLike[str]) -> bool:
+def holds_restitutions(path: str | PathLike[str], columns: str | None = None) -> bool:
     """Return whether a file is a table of restitutions over the approach speed, by its header; False if it can't be read."""
     try:
-        names = [name_and_unit(cell)[0] for cell in header_of(path)]
+        names = [name_and_unit(cell)[0] for cell in header_of(path, columns)]
         return "time" not in names and is_impact_table([_standard(names).get(name, name) for name in names])
     except InputError:  # the reader of the file reports the error
         return False
 
 
-def read_impact_table(path: str | PathLike[str], units: Mapping[str, str] = _RESTITUTIONS) -> TableFile:
+def read_impact_table(path: str | PathLike[str], units: Mapping[str, str] = _RESTITUTIONS, columns: str | None = None) -> TableFile:
     """Read the known columns of a table, some of which may have another usual name, such as `speed`, `e` or `n`.
 
     Parameters
@@ -61,6 +62,8 @@ def read_impact_table(path: str | PathLike[str], units: Mapping[str, str] = _RES
         The file.
     units : mapping of str to str
         The SI unit of each known column; by default those of restitutions over the approach speed.
+    columns : str, optional
+        The columns as a user states them in place of a header.
 
     Raises
     ------
@@ -68,7 +71,7 @@ def read_impact_table(path: str | PathLike[str], units: Mapping[str, str] = _RES
         As `read_table_file`, or if a column is there under two names.
     """
     try:
-        names = [name_and_unit(cell)[0] for cell in header_of(path)]
+        names = [name_and_unit(cell)[0] for cell in header_of(path, columns)]
     except InputError:  # reported below, with its line
         names = []
     standard = {name: other for name, other in _standard(names).items() if other in units and "time" not in names}
@@ -76,7 +79,7 @@ def read_impact_table(path: str | PathLike[str], units: Mapping[str, str] = _RES
         several = [name for name in names if standard.get(name, name) == other]
         if len(several) > 1:
             raise InputError(f"{path}: the columns {' and '.join(several)} both mean {other}; leave one of them out")
-    table = read_table_file(path, {**units, **{name: units[other] for name, other in standard.items()}})
+    table = read_table_file(path, {**units, **{name: units[other] for name, other in standard.items()}}, [], columns)
     return replace(table, columns={standard.get(name, name): values for name, values in table.columns.items()})
 
 

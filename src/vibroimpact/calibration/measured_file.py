@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Bools, Floats
 from vibroimpact.calibration.bounce_record import impacts_in_bounces
 from vibroimpact.calibration.evaluate_measurement import Measurement, speed_at_touch
 from vibroimpact.calibration.flights import Flights, VacuumFlights, vacuum_height
@@ -26,8 +26,11 @@ from vibroimpact.cases.pair import contact_pair
 from vibroimpact.cases.rigid import mass_of_sphere
 from vibroimpact.contact.power_law import HERTZ_TIME
 from vibroimpact.errors import InputError
+from vibroimpact.measurements.header_cells import name_and_unit
 from vibroimpact.measurements.record_file import SPHERE_ACCELERATION, is_universal, read_universal_record
-from vibroimpact.measurements.table_file import TableFile, strictly_increasing
+from vibroimpact.measurements.recorded_table import RecordedChannel, recorded_channels, rising
+from vibroimpact.measurements.table_file import TableFile, factor_to_si, header_of
+from vibroimpact.measurements.table_layout import Layout
 from vibroimpact.signals.bounces.find import find_bounces
 from vibroimpact.signals.one_record import one_record
 from vibroimpact.signals.reading.coded_sound import FORMATS as CODED_SOUND
@@ -49,6 +52,9 @@ _COLUMNS = {
 }
 _HEARD = (".wav", *CODED_SOUND, ".nc", ".nc4", ".h5")
 """Endings of files that are records of sound or vibration, in which bounces are heard."""
+
+_SAME = 1e-6
+"""Difference, as a part of the range of a record, within which two samples at one time are the same."""
 
 _RECORDED = ("position", "force", "sphere_acceleration")
 _KINDS = (
@@ -84,6 +90,8 @@ def file_measurement(case: Case, target: FileTarget, by_rebound: bool) -> Measur
     if target.contact_duration is not None:
         raise InputError("it applies to a record of bounces; give its channel, or leave this out", "target.contact_duration")
     if is_universal(target.file):
+        if target.columns is not None:
+            raise InputError("a universal file has functions, and no columns; leave this out", "target.columns")
         found = read_universal_record(target.file, target.function, by_rebound)
         if found.quantity == "acceleration" and found.identification != SPHERE_ACCELERATION:
             raise InputError(f'{target.file}: "{found.identification}": in a table, {_WHOSE}', "target")
@@ -91,10 +99,13 @@ def file_measurement(case: Case, target: FileTarget, by_rebound: bool) -> Measur
         return _naming_file(target.file, _record_measurement(case, Recorded(found.time, {column: found.values}, None), by_rebound))
     if target.function is not None:
         raise InputError("only a universal file has functions; the columns of a table are named in its header", "target.function")
-    table = _table(target.file)
+    names = _names(target)
+    if set(_RECORDED) & names and not {"approach_speed", "rebound_height"} & names:
+        return _naming_file(target.file, _table_record_measurement(case, target, by_rebound))
+    table = _table(target)
     columns = table.columns
     if "approach_speed" in columns:
-        return _naming_file(target.file, _rows_measurement(case, table))
+        return _naming_file(target.file, _rows_measurement(case, table), table.doubts)
     try:
         if "rebound_height" in columns:
             if table.empty:
@@ -102,16 +113,71 @@ def file_measurement(case: Case, target: FileTarget, by_rebound: bool) -> Measur
                 raise InputError(f"line {table.empty[0]}: {words}")
             labels = tuple(f"line {line}" for line in table.lines)
             deviation = columns.get(f"rebound_height{DEVIATION}")
-            return _naming_file(target.file, heights_measurement(case, columns["rebound_height"], deviation, labels))
-        if "acceleration" in columns and not set(_RECORDED) & set(columns):
+            return _naming_file(target.file, heights_measurement(case, columns["rebound_height"], deviation, labels), table.doubts)
+        if "acceleration" in columns:
             raise InputError(_WHOSE)
-        if "time" not in columns or not set(_RECORDED) & set(columns):
-            raise InputError(f"the columns {', '.join(columns)} do not describe impacts; a file has {_KINDS}")
-        table = strictly_increasing(table, "time")
-        values = {name: table.columns[name] for name in _RECORDED if name in table.columns}
-        return _naming_file(target.file, _record_measurement(case, Recorded(table.columns["time"], values, table.lines), by_rebound))
+        raise InputError(f"the columns {', '.join(columns)} do not describe impacts; a file has {_KINDS}")
     except InputError as error:
         raise in_file(target.file, error) from None
+
+
+def _names(target: FileTarget) -> set[str]:
+    """Return the names of the columns of a table; none if its header can't be read, which its reader reports."""
+    try:
+        return {name_and_unit(cell)[0] for cell in header_of(target.file, target.columns)}
+    except InputError:
+        return set()
+
+
+def _table_record_measurement(case: Case, target: FileTarget, by_rebound: bool) -> Measurement:
+    """Return the measurement of a record in a table: of its position, force or the sphere's acceleration, with the times of this column."""
+    doubts: list[str] = []
+    try:
+        channels = recorded_channels(target.file, _unit_of, doubts, target.columns)
+    except InputError as error:
+        raise InputError(_told(error), "target") from None
+    found: dict[str, RecordedChannel] = {}
+    for channel in channels:
+        name = name_and_unit(channel.cell)[0]
+        if name in found:
+            words = f'there are two columns "{name}"; leave one out by columns = "time=s,-,{name}={channel.unit}", with - for it'
+            raise in_file(target.file, InputError(words))
+        found[name] = channel
+    channel = found[_evaluated(found, by_rebound)]
+    try:
+        rises = rising(channel)
+    except InputError as error:
+        raise in_file(target.file, error) from None
+    doubts += [f"{channel.name}: {doubt}" for doubt in (*channel.doubts, *_without(channel, rises))]
+    record = Recorded(channel.time[rises], {channel.name: channel.value[rises]}, np.asarray(channel.lines)[rises].tolist())
+    return _naming_file(target.file, _record_measurement(case, record, by_rebound), doubts)
+
+
+def _unit_of(layout: Layout, cell: str) -> tuple[float, str] | None:
+    name, unit = name_and_unit(cell)
+    return (factor_to_si(layout, cell, unit, _COLUMNS[name]), _COLUMNS[name]) if name in _RECORDED else None
+
+
+def _evaluated(names: Iterable[str], by_rebound: bool) -> str:
+    """Return which quantity of a record is evaluated; if only the rebound is matched, the position."""
+    there = [name for name in _RECORDED if name in names]
+    return "position" if "position" in there and (by_rebound or len(there) == 1) else next(name for name in there if name != "position")
+
+
+def _without(channel: RecordedChannel, rises: Bools) -> list[str]:
+    """Return what a record lacks, as sentences: samples that are missing, and others at the time of the one before."""
+    told, missing = [], channel.missing
+    if missing:
+        told.append(f"{len(missing)} of its samples have no number, the first in line {missing[0]}: it is evaluated without them")
+    change = np.append(0.0, np.abs(np.diff(channel.value)))
+    other = np.flatnonzero(~rises & (change > _SAME * float(np.ptp(channel.value))))
+    if other.size:
+        line = channel.lines[int(other[0])]
+        have, first = (
+            ("samples have", f"the first in line {line}: they are") if other.size > 1 else ("sample has", f"in line {line}: it is")
+        )
+        told.append(f"{other.size} {have} the time of the one before and another value, {first} left out")
+    return told
 
 
 def _heard_measurement(case: Case, target: FileTarget) -> Measurement:
@@ -122,7 +188,7 @@ def _heard_measurement(case: Case, target: FileTarget) -> Measurement:
     if gravity == 0.0:
         raise InputError("without gravity a sphere rises for ever, and does not bounce", "target")
     try:
-        bounces = find_bounces(one_record(target.file, target.channel), target.contact_duration or 0.0)
+        bounces = find_bounces(one_record(target.file, target.channel, target.columns), target.contact_duration or 0.0)
     except InputError as error:
         raise in_file(target.file, error) from None
 
@@ -134,7 +200,7 @@ def _heard_measurement(case: Case, target: FileTarget) -> Measurement:
 
 def _record_measurement(case: Case, record: Recorded, by_rebound: bool) -> Measurement:
     time, values, lines = record
-    if "position" in values and (by_rebound or len(values) == 1):
+    if _evaluated(values, by_rebound) == "position":
         if case.drop.gravity == 0.0:
             raise InputError("without gravity a sphere rises for ever; a record of its position does not determine a rebound")
         radius, position, pair = case.sphere.radius, values["position"], contact_pair(case)
@@ -209,24 +275,30 @@ def known_deviations(path: Path, columns: Mapping[str, Floats], wanted: Iterable
     return {name: columns[f"{name}{DEVIATION}"] for name in known}
 
 
-def _table(file: str) -> TableFile:
+def _table(target: FileTarget) -> TableFile:
     try:
-        return read_impact_table(file, _COLUMNS)
+        return read_impact_table(target.file, _COLUMNS, target.columns)
     except InputError as error:
-        if "acceleration; expected a " in error.message:  # given where a force or a position is required
-            what = error.message.partition(" (a number in ")[0]  # without the hint how to write a force
-            raise InputError(f"{what}. In a record {_WHOSE}", "target") from None
-        raise InputError(error.message, "target") from None
+        raise InputError(_told(error), "target") from None
 
 
-def _naming_file(file: str, measurement: Measurement) -> Measurement:
-    """Return the measurement with error messages that name the file."""
+def _told(error: InputError) -> str:
+    """Return the message of an error, with what else to give where an acceleration is given in place of a force or a position."""
+    if "acceleration; expected a " not in error.message:
+        return error.message
+    what = error.message.partition(" (a number in ")[0]  # without the hint how to write a force
+    return f"{what}. In a record {_WHOSE}"
+
+
+def _naming_file(file: str, measurement: Measurement, doubts: Sequence[str] = ()) -> Measurement:
+    """Return the measurement with error messages that name the file, and with the doubts about the file."""
 
     def evaluated(flights: Flights | None) -> Observations:
         try:
-            return measurement.evaluated(flights)
+            found = measurement.evaluated(flights)
         except InputError as error:
             raise in_file(file, error) from None
+        return replace(found, doubts=(*doubts, *found.doubts)) if doubts else found
 
     return Measurement(evaluated, measurement.highest)
 

@@ -94,6 +94,9 @@ class FileTarget(Section):
         None, description="the channel with the bounces: of a WAV or NetCDF file that has several, or of a file of another kind"
     )
     contact_duration: Annotated[float, Quantity("s", "contact time of the impacts in a record of bounces", _POSITIVE)] | None = None
+    columns: str | None = Field(
+        None, description='the columns of a table in place of its header, in order, such as "time=s,-,force=N", with - for one left out'
+    )
 
 
 Target = ContactSection | RestitutionTarget | HeightsTarget | ImpactTarget | FileTarget

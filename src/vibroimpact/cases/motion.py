@@ -52,7 +52,7 @@ def _motion(table: MotionTable) -> tuple[PlateMotion, float]:
     from vibroimpact.dynamics.shaken.tabulated import periodic_motion, tabulated_motion  # here, as few plates are shaken
 
     try:
-        step, displacement = _samples(table.file, table.repeat)
+        step, displacement = _samples(table.file, table.columns, table.repeat)
     except InputError as error:
         raise InputError(error.message, "plate.motion.file") from None
     if table.repeat:
@@ -60,8 +60,8 @@ def _motion(table: MotionTable) -> tuple[PlateMotion, float]:
     return tabulated_motion(step, displacement, direction), step * (len(displacement) - 1)
 
 
-def _samples(file: str, repeat: bool) -> tuple[float, Floats]:
-    """Return the step [s] and the displacements [m] of a file; `repeat`: of one period.
+def _samples(file: str, columns: str | None, repeat: bool) -> tuple[float, Floats]:
+    """Return the step [s] and the displacements [m] of a file, whose columns may be stated; `repeat`: of one period.
 
     Raises
     ------
@@ -72,7 +72,7 @@ def _samples(file: str, repeat: bool) -> tuple[float, Floats]:
     from vibroimpact.dynamics.shaken.tabulated import integrated_twice, integrated_twice_over_period
     from vibroimpact.measurements.table_file import read_table_file
 
-    table = read_table_file(file, {"time": "s", "displacement": "m", "acceleration": "m/s^2"})
+    table = read_table_file(file, {"time": "s", "displacement": "m", "acceleration": "m/s^2"}, columns=columns)
     missing = "time" if "time" not in table.columns else "displacement [m], or acceleration [m/s^2]" if len(table.columns) == 1 else ""
     if missing or len(table.columns) > 2:
         words = f"there is no column {missing}" if missing else "it has displacement and acceleration; leave one of them out"

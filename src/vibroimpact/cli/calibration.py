@@ -7,9 +7,10 @@ from typing import Annotated
 
 import typer
 
-from vibroimpact.cli.completion import RECORDS, complete_case_or_record
+from vibroimpact.cli.completion import RECORDS, TABLES, complete_case_or_record
 from vibroimpact.cli.shared import (
     Changes,
+    Columns,
     Figures,
     Force,
     Json,
@@ -23,8 +24,6 @@ from vibroimpact.cli.shared import (
     written_in,
 )
 from vibroimpact.errors import InputError
-
-_TABLES = (".csv", ".txt")
 
 
 @app.command()
@@ -61,6 +60,7 @@ def calibrate(
         str | None,
         typer.Option("--contact", metavar="TIME", help='Contact time of the impacts of a record, such as "0.2 ms +- 10 %"; by default 0.'),
     ] = None,
+    columns: Columns = None,
     figures: Figures = False,
     force: Force = False,
     as_json: Json = False,
@@ -80,15 +80,15 @@ def calibrate(
         if changes:
             raise InputError("--set changes the keys of a case, and a record has none")
         check_free(target, force=force)
-        if Path(case).suffix.lower() in _TABLES and holds_restitutions(case):
+        if Path(case).suffix.lower() in TABLES and holds_restitutions(case, columns):
             of_records = [option for option, value in given.items() if value is not None]
             if of_records:
                 raise InputError(f"{of_records[0]} goes with a record of bounces; {case} is a table of restitutions, which has no times")
-            _fit_table(Path(case), target, figures=figures, force=force, as_json=as_json)
+            _fit_table(Path(case), target, columns, figures=figures, force=force, as_json=as_json)
             return
-        _listen(Path(case), target, channel, gravity, height, contact, figures=figures, force=force, as_json=as_json)
+        _listen(Path(case), target, channel, columns, gravity, height, contact, figures=figures, force=force, as_json=as_json)
         return
-    for option, value in given.items():
+    for option, value in {**given, "--columns": columns}.items():
         if value is not None:
             raise InputError(f"{option} goes with a record of bounces ({', '.join(RECORDS)}); a case has its own keys")
     from vibroimpact.calibration.calibrate_case import calibrate_case, load_calibration
@@ -109,14 +109,14 @@ def calibrate(
     show_folder(folder, lambda: {**told.document, **told.tables}, lambda: calibration_summary(what.case, told), as_json=as_json)
 
 
-def _fit_table(file: Path, target: Path, *, figures: bool, force: bool, as_json: bool) -> None:
+def _fit_table(file: Path, target: Path, columns: str | None, *, figures: bool, force: bool, as_json: bool) -> None:
     """Fit the restitutions of a table over the approach speed, and print and write them."""
     from vibroimpact.calibration.restitutions.document import restitution_document
     from vibroimpact.calibration.restitutions.folder import save_restitutions
     from vibroimpact.calibration.restitutions.restitutions import read_restitutions
     from vibroimpact.calibration.restitutions.text import restitution_summary
 
-    found = read_restitutions(file)
+    found = read_restitutions(file, columns=columns)
     folder = save_restitutions(found, target, force=force, figures=("png",) if figures else ())
     show_folder(folder, lambda: restitution_document(found), lambda: restitution_summary(found), as_json=as_json)
 
@@ -125,6 +125,7 @@ def _listen(
     file: Path,
     target: Path,
     channel: str | None,
+    columns: str | None,
     gravity: str | None,
     height: str | None,
     contact: str | None,
@@ -147,7 +148,7 @@ def _listen(
         lasts = BRIEF if contact is None else written_in("--contact", contact, "s")
         acceleration = None if gravity is None else written_in("--gravity", gravity, "m/s^2")
         fallen = None if height is None else written_in("--height", height, "m")
-        record = one_record(file, channel)
+        record = one_record(file, channel, columns)
         try:
             found = rebounds_of(find_bounces(record, lasts), gravity=acceleration, height=fallen)
         except InputError as error:

@@ -17,7 +17,8 @@ PROGRAM, VARIABLE = "vibroimpact", "_VIBROIMPACT_COMPLETE"
 WORDS = Path(__file__).with_name("completion.json")
 """The names and keys, which `completion_words` collects."""
 
-RECORDS = (".wav", ".m4a", ".mp3", ".ogg", ".opus", ".flac", ".csv", ".txt", ".uff", ".unv", ".nc", ".nc4", ".h5")
+TABLES = (".csv", ".txt", ".tsv", ".asc", ".lvm")
+RECORDS = (".wav", ".m4a", ".mp3", ".ogg", ".opus", ".flac", *TABLES, ".uff", ".unv", ".nc", ".nc4", ".h5")
 """Endings of the files of records."""
 
 _LIBRARY = Path(__file__).parents[1] / "cases" / "library"

@@ -10,6 +10,7 @@ import typer
 from vibroimpact.cli.shared import (
     CaseArgument,
     Changes,
+    Columns,
     Figures,
     Force,
     Json,
@@ -56,6 +57,7 @@ def correlate(
             ),
         ),
     ] = None,
+    columns: Columns = None,
     changes: Changes = None,
     figures: Figures = False,
     force: Force = False,
@@ -79,7 +81,7 @@ def correlate(
     check_free(target, force=force)
     length = None if window is None else quantity_in("--window", window, "s")
     ends = None if band is None else pair_in("--band", band, "Hz", "a lower and an upper frequency", "100 Hz, 5 kHz")
-    heard = [record for path in records for record in read_records(path)]
+    heard = [record for path in records for record in read_records(path, columns)]
     push = None if hammer is None else _force_among(heard, hammer)
     with exit_on_interrupt():
         with patient_progress("correlating", console(err=as_json)) as progress:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from vibroimpact.cli.completion import complete_features
-from vibroimpact.cli.shared import Json, app, console, exit_on_interrupt, names_in, note, quantity_in, say, show
+from vibroimpact.cli.shared import Columns, Json, app, console, exit_on_interrupt, names_in, note, quantity_in, say, show
 from vibroimpact.errors import InputError
 
 if TYPE_CHECKING:
@@ -44,6 +44,7 @@ def features(
     window: Annotated[
         str | None, typer.Option("--window", metavar="TIME", help='Length of each record to use, from its onset on, such as "40 ms".')
     ] = None,
+    columns: Columns = None,
     packets: Annotated[bool, typer.Option("--packets", help="One row for each packet, instead of one for each record.")] = False,
     listed: Annotated[bool, typer.Option("--list", help="List the features: name, unit, equation, source.")] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
@@ -76,7 +77,7 @@ def features(
         raise InputError("--only names no feature; --list lists them")
     silence = quantity_in("--dead-time", dead_time, "s")
     length = None if window is None else quantity_in("--window", window, "s")
-    records = _records(paths, threshold, silence, length, packets=packets)
+    records = _records(paths, columns, threshold, silence, length, packets=packets)
     screen = console(err=as_json)
     with exit_on_interrupt(), counting_progress("signals", screen) as count:
         table = record_table(records, names, threshold=threshold, dead_time=silence, progress=lambda done: count(done, None))
@@ -90,7 +91,9 @@ def features(
         say(f"wrote {output}: {len(table.records)} signals, {len(table.names)} features", err=as_json)
 
 
-def _records(paths: list[Path], threshold: float | None, dead_time: float, window: float | None, *, packets: bool) -> Iterator[Record]:
+def _records(
+    paths: list[Path], columns: str | None, threshold: float | None, dead_time: float, window: float | None, *, packets: bool
+) -> Iterator[Record]:
     """Yield the records of files and folders, or their windows from the onset, or their packets."""
     from vibroimpact.files.reading import with_path
     from vibroimpact.signals.baseline import without_baseline
@@ -100,7 +103,7 @@ def _records(paths: list[Path], threshold: float | None, dead_time: float, windo
 
     told: set[str] = set()
     for path in paths:
-        for record in map(without_baseline, read_records(path)):
+        for record in map(without_baseline, read_records(path, columns)):
             for doubt in record.named_doubts:
                 if doubt not in told and len(told) < _TOLD:
                     note(f"doubt: {doubt}")

@@ -10,6 +10,7 @@ import typer
 from vibroimpact.cli.shared import (
     CaseArgument,
     Changes,
+    Columns,
     Figures,
     Force,
     Json,
@@ -48,6 +49,7 @@ def identify(
             help="Uncertainty of the plate's frequencies, in addition to the error of the mesh: 0.01 for 1 %.",
         ),
     ] = 0.0,
+    columns: Columns = None,
     changes: Changes = None,
     figures: Figures = False,
     force: Force = False,
@@ -71,7 +73,7 @@ def identify(
     check_free(target, force=force)
     where = None if place is None else pair_in("--place", place, "m", "x and y", "60 mm, 40 mm")
     length = quantity_in("--window", window, "s")
-    heard = [record for path in records for record in read_records(path)]
+    heard = [record for path in records for record in read_records(path, columns)]
     with exit_on_interrupt():
         with patient_progress("identifying", console(err=as_json)) as progress:
             told = identified(found, heard, place=where, window=length, frequency_error=frequency_error, progress=progress)

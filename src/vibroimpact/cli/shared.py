@@ -46,6 +46,17 @@ Changes = Annotated[
         help='Change the value of a key, such as plate.size.thickness="10 mm"; may be repeated.',
     ),
 ]
+Columns = Annotated[
+    str | None,
+    typer.Option(
+        "--columns",
+        metavar="NAME=UNIT,...",
+        help=(
+            'Columns of the tables in place of their headers, such as "time=s,-,force=N", with - for one that is left out; '
+            'without times with the rate of the rows, "rate=10 kHz,force=N".'
+        ),
+    ),
+]
 Force = Annotated[bool, typer.Option("--force", help="Replace an existing result folder.")]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON document instead of tables, in SI units and full precision.")]
 Figures = Annotated[bool, typer.Option("--figures", help="Write the charts of the report as files too, as PNG.")]

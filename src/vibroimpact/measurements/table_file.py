@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
-import re
 from array import array
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass
-from math import isfinite
+from math import isinf, isnan, nan
 from os import PathLike
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.files.reading import FileKind, text_lines, with_path
-from vibroimpact.measurements.table_layout import fields_of, table_layout
+from vibroimpact.measurements.cell_numbers import SCPI, is_either, number_in
+from vibroimpact.measurements.header_cells import name_and_unit
+from vibroimpact.measurements.table_layout import Layout, table_layout
+from vibroimpact.measurements.table_lines import fields_of, filled
 from vibroimpact.shown import shortened, shown
 from vibroimpact.units.reading import to_si
 from vibroimpact.units.spelling import plain_factor
@@ -31,44 +34,32 @@ _LARGEST_NUMBER = 1e30  # so that powers of the values do not overflow
 _LONGEST = 100_000  # characters of a line
 _MOST_NAMED = 12  # columns that a message names
 _LONG_NAME = 40  # characters of a name in a message
-_ENDINGS = {
-    "_m_s2": "m/s^2",
-    "_m_s": "m/s",
-    "_rad_s": "rad/s",
-    "_deg": "deg",
-    "_s": "s",
-    "_ms": "ms",
-    "_us": "us",
-    "_m": "m",
-    "_mm": "mm",
-    "_um": "um",
-    "_N": "N",
-    "_kN": "kN",
-    "_V": "V",
-    "_mV": "mV",
-    "_Pa": "Pa",
-}
-
-_LANGUAGES = {
-    "time": "t zeit temps tiempo tempo tijd tid aika czas čas idő zaman время 时间 時間",
-    "force": "kraft fuerza forza força kracht voima siła síla erő kuvvet сила 力",
-}
-"""Names of a column in other languages, which instruments write by the language that they are set to."""
-
-_ENGLISH = {word: name for name, words in _LANGUAGES.items() for word in words.split()}
+_LONGEST_PATH = 200  # characters of a path in a message
 
 
 @dataclass(frozen=True)
 class TableFile:
-    """Content of a file: columns (rows,) in SI units by name, the line number of each row, and empty lines before the last row."""
+    """Content of a file: columns (rows,) in SI units by name, the line number of each row, empty lines before the last row, and doubts."""
 
     path: Path
     columns: Mapping[str, Floats]
     lines: Sequence[int]
     empty: Sequence[int] = ()
+    doubts: tuple[str, ...] = ()
 
 
-def read_table_file(path: str | PathLike[str], units: Mapping[str, str], doubts: list[str] | None = None) -> TableFile:
+class Cells(NamedTuple):
+    """Columns of a table in SI units by their place (rows,), the number of the line of each row, empty lines, and the layout."""
+
+    layout: Layout
+    columns: Mapping[int, Floats]
+    lines: Sequence[int]
+    empty: Sequence[int]
+
+
+def read_table_file(
+    path: str | PathLike[str], units: Mapping[str, str], doubts: list[str] | None = None, columns: str | None = None
+) -> TableFile:
     """Read the known columns of a CSV file.
 
     The first line that is not a comment (#) is the header, with column names and units: `time_s`, `time [ms]`, `force (kN)`; how other
@@ -83,6 +74,8 @@ def read_table_file(path: str | PathLike[str], units: Mapping[str, str], doubts:
         The SI unit of each known column; "" for a plain number.
     doubts : list of str, optional
         Where sentences are told that are added to it; without it a file that is read only with a doubt is refused.
+    columns : str, optional
+        The columns as a user states them in place of a header, "time=s,force=N".
 
     Raises
     ------
@@ -98,35 +91,85 @@ def read_table_file(path: str | PathLike[str], units: Mapping[str, str], doubts:
     ...     read_table_file(file, {"time": "s", "force": "N"}).columns["time"].tolist()
     [0.0, 0.001]
     """
+    names: dict[int, str] = {}
+
+    def known(layout: Layout) -> dict[int, float]:
+        places, factors = _places(layout, units)
+        names.update({place: name for name, place in places.items()})
+        return dict(zip(places.values(), factors, strict=True))
+
+    found = read_cells(path, known, _refused, doubts, columns)
+    last = found.lines[-1]
+    values = {names[place]: column for place, column in found.columns.items()}
+    return TableFile(Path(path), values, found.lines, [number for number in found.empty if number < last], tuple(doubts or ()))
+
+
+def read_cells(
+    path: str | PathLike[str],
+    wanted: Callable[[Layout], Mapping[int, float]],
+    without_number: Callable[[float, str], float],
+    doubts: list[str] | None = None,
+    columns: str | None = None,
+) -> Cells:
+    """Read columns of a table.
+
+    Parameters
+    ----------
+    path : path
+        The file.
+    wanted : callable
+        Returns the places of the columns to read, with the factors that convert them to SI.
+    without_number : callable
+        Returns the value of a cell that has none (nan), or an infinite one, from this and a sentence on the cell; or raises.
+    doubts, columns
+        As those of `read_table_file`.
+
+    Raises
+    ------
+    InputError
+        If the file can't be read, a line has more fields than the header, or a cell is not a number.
+    """
     file = Path(path)
     try:
-        number, header, mark, rows = table_layout(_numbered(text_lines(file, TABLE, _LONGEST, doubts)))
-        places, factors = _places(number, header, units)
+        layout = table_layout(_numbered(text_lines(file, TABLE, _LONGEST, doubts)), columns)
+        header, mark = layout.header, layout.mark
+        places = wanted(layout)
         found: list[array[float]] = [array("d") for _ in places]
-        lines, empty, last = array("q"), array("q"), number
-        for number, line in rows:
+        appended = list(zip([values.append for values in found], places, places.values(), strict=True))
+        lines, empty, decimal = array("q"), array("q"), _DecimalPoint(mark)
+        for number, line in layout.rows:
             if not line:
                 empty.append(number)
                 continue
             cells = fields_of(line, mark)
-            if len(cells) > len(header):
-                hint = "; where a comma is the decimal point, semicolons separate the fields" if mark == "," else ""
-                raise InputError(f"line {number}: there are {len(cells)} fields, and the header has {len(header)}{hint}")
-            for values, place, factor in zip(found, places.values(), factors, strict=True):
-                values.append(_number(number, header[place], cells, place, mark) * factor)
+            if len(cells) > len(header) and filled(cells) > len(header):
+                raise InputError(_too_many(number, filled(cells), layout))
+            if mark != ",":
+                decimal.check(number, line, cells)
+            for append, place, factor in appended:
+                append(_number(number, header[place], cells, place, mark, without_number) * factor)
             lines.append(number)
-            last = number
     except InputError as error:
-        where = shortened(str(file), 200)
-        raise InputError(f"{where}{', ' if error.message.startswith('line ') else ': '}{error.message}") from None
+        raise in_table(file, error) from None
     if not lines:
-        raise InputError(f"{file}: there are no rows under the header")
-    columns = {name: np.array(values) for name, values in zip(places, found, strict=True)}
-    return TableFile(file, columns, lines, [number for number in empty if number < last])
+        raise InputError(f"{shortened(str(file), _LONGEST_PATH)}: there are no rows under the header; {layout.understood}")
+    return Cells(layout, {place: np.array(values) for place, values in zip(places, found, strict=True)}, lines, empty)
 
 
-def header_of(path: str | PathLike[str]) -> list[str]:
-    """Return the cells of the header of a CSV file.
+def in_table(path: str | PathLike[str], error: InputError) -> InputError:
+    """Return an error with the path of the table before the line that it names.
+
+    Examples
+    --------
+    >>> in_table("drop.csv", InputError("line 3: the cell is empty")).message
+    'drop.csv, line 3: the cell is empty'
+    """
+    where = shortened(str(path), _LONGEST_PATH)
+    return InputError(f"{where}{', ' if error.message.startswith('line ') else ': '}{error.message}")
+
+
+def header_of(path: str | PathLike[str], columns: str | None = None) -> list[str]:
+    """Return the cells of the header of a CSV file, or those that the user states.
 
     Raises
     ------
@@ -136,30 +179,9 @@ def header_of(path: str | PathLike[str]) -> list[str]:
     file = Path(path)
     try:
         with closing(text_lines(file, TABLE, _LONGEST, [])) as lines:
-            return table_layout(_numbered(lines)).header
+            return table_layout(_numbered(lines), columns).header
     except InputError as error:
         raise with_path(file, error) from None
-
-
-def strictly_increasing(table: TableFile, column: str) -> TableFile:
-    """Return a table without the rows at which a column does not increase; raise if it decreases or is constant.
-
-    Raises
-    ------
-    InputError
-        If the column decreases, with the line, or is constant throughout.
-    """
-    steps = np.diff(table.columns[column])
-    back = np.flatnonzero(steps < 0.0)
-    if back.size:
-        at = int(back[0])
-        one, other = table.columns[column][at : at + 2]
-        raise InputError(f"{table.path}, line {table.lines[at + 1]}: {column} goes backwards, from {one:.9g} to {other:.9g}")
-    if not (steps > 0.0).any():
-        raise InputError(f"{table.path}: {column} stands still; a record has more than one moment")
-    kept = np.append(True, steps > 0.0)
-    lines = [line for line, keep in zip(table.lines, kept, strict=True) if keep]
-    return TableFile(table.path, {name: values[kept] for name, values in table.columns.items()}, lines)
 
 
 def _numbered(text: Iterable[str]) -> Iterator[tuple[int, str]]:
@@ -172,55 +194,58 @@ def _numbered(text: Iterable[str]) -> Iterator[tuple[int, str]]:
         yield number, whole
 
 
-def _places(number: int, header: Sequence[str], units: Mapping[str, str]) -> tuple[dict[str, int], list[float]]:
+class _DecimalPoint:
+    """Watches whether a table with decimal commas also has points, which may group digits: 1.234 is 1234 or 1.234 then."""
+
+    def __init__(self, mark: str | None) -> None:
+        self.comma, self.either = 0, (0, "")
+
+    def check(self, number: int, line: str, cells: Sequence[str]) -> None:
+        """Raise if a line leaves open what a point in the table means."""
+        if not self.comma and "," in line and any("," in cell for cell in cells if cell[:1].strip('"+- ').isdigit() or cell[:1] == "-"):
+            self.comma = number
+        if not self.either[0] and "." in line:
+            self.either = next(((number, cell) for cell in cells if "." in cell and is_either(cell)), self.either)
+        if self.comma and self.either[0]:
+            at, cell = self.either
+            words = f"{shown(cell.strip())} has a point, and line {self.comma} a decimal comma: the point may group digits"
+            raise InputError(f"line {at}: {words}; write all numbers with one of both")
+
+
+def _too_many(number: int, fields: int, layout: Layout) -> str:
+    hint = "; where a comma is the decimal point, semicolons separate the fields" if layout.mark == "," else ""
+    return f"line {number}: there are {fields} fields, and the header has {len(layout.header)}{hint}; {layout.understood}"
+
+
+def _places(layout: Layout, units: Mapping[str, str]) -> tuple[dict[str, int], list[float]]:
     """Return the positions of the known columns, and their conversion factors to SI."""
     places: dict[str, int] = {}
     factors = []
-    for place, cell in enumerate(header):
+    for place, cell in enumerate(layout.header):
         name, unit = name_and_unit(cell)
         if name not in units:
             continue
         if name in places:
-            raise InputError(f'line {number}: there are two columns "{name}"')
+            raise InputError(f'{layout.where}: there are two columns "{name}"; rename one, {layout.remedy}')
         places[name] = place
-        factors.append(_factor(number, cell, unit, units[name]))
+        factors.append(factor_to_si(layout, cell, unit, units[name]))
     if not places:
-        names = [name_and_unit(cell)[0] for cell in header[:_MOST_NAMED]]
+        names = [name_and_unit(cell)[0] for cell in layout.header[:_MOST_NAMED]]
         hint = next((words for name in names if len(name) < _LONG_NAME and (words := did_you_mean(name, units))), "")
-        listed = ", ".join(shortened(name, _LONG_NAME) for name in names) + (", ..." if len(header) > _MOST_NAMED else "")
-        raise InputError(f"line {number}: no column is known among {listed}; {_allowed(units)}.{hint}")
+        listed = ", ".join(shortened(name, _LONG_NAME) for name in names) + (", ..." if len(layout.header) > _MOST_NAMED else "")
+        raise InputError(f"{layout.where}: no column is known among {listed}; {_allowed(units)}.{hint}")
     return places, factors
 
 
-def name_and_unit(cell: str) -> tuple[str, str | None]:
-    """Return name and unit of a header cell; None if it has no unit. The words of other languages for time and force are translated.
+def factor_to_si(layout: Layout, cell: str, unit: str | None, wanted: str) -> float:
+    """Return the factor that converts a column to an SI unit; "" for a plain number.
 
-    Examples
-    --------
-    >>> name_and_unit("Rebound height [mm]"), name_and_unit("time_s"), name_and_unit("count"), name_and_unit("Zeit [ms]")
-    (('rebound_height', 'mm'), ('time', 's'), ('count', None), ('time', 'ms'))
+    Raises
+    ------
+    InputError
+        If it has no unit, or one of another quantity.
     """
-    whole = cell.strip()
-    if whole.endswith(("]", ")")):
-        # the unit is between the last two brackets; a regular expression for that takes minutes on a long line of brackets
-        inside = whole[:-1]
-        start = max(inside.rfind("]"), inside.rfind(")")) + 1
-        opening = min((at for at in (inside.find("[", start), inside.find("(", start)) if at >= 0), default=-1)
-        if opening >= 0:
-            return _plain(inside[:opening]), inside[opening + 1 :].strip()
-    for ending, unit in sorted(_ENDINGS.items(), key=lambda item: -len(item[0])):
-        if cell.endswith(ending):
-            return _plain(cell.removesuffix(ending)), unit
-    return _plain(cell), None
-
-
-def _plain(name: str) -> str:
-    plain = re.sub(r"[\s-]+", "_", name.strip().lower())
-    return _ENGLISH.get(plain, plain)
-
-
-def _factor(line: int, cell: str, unit: str | None, wanted: str) -> float:
-    where = f"line {line}, column {shown(cell)}"
+    where = f"{layout.where}, column {shown(cell)}"
     if not wanted:
         factor = plain_factor(unit or "")
         if factor is None:
@@ -228,28 +253,37 @@ def _factor(line: int, cell: str, unit: str | None, wanted: str) -> float:
         return factor
     if unit is None or not unit:
         name = shortened(cell.split("[")[0].strip(), _LONG_NAME)
-        raise InputError(f"{where}: the unit is missing; write it in brackets, such as {name} [{wanted}]")
+        raise InputError(f"{where}: the unit is missing; {layout.with_unit(name, wanted)}")
     try:
         return to_si(f"1 {unit}", wanted)
     except InputError as error:
         raise InputError(f"{where}: {error.message}") from None
 
 
-def _number(line: int, column: str, row: list[str], place: int, mark: str | None) -> float:
-    if place >= len(row):
-        raise InputError(f"line {line}, column {shown(column)}: the cell is missing; the line has {len(row)}")
-    text = row[place]
+def _number(line: int, column: str, row: list[str], place: int, mark: str | None, without: Callable[[float, str], float]) -> float:
+    text = row[place] if place < len(row) else ""
     try:
-        if "_" in text:  # allowed in numbers by Python
-            raise ValueError(text)
-        value = float(text.replace(",", ".") if mark != "," else text)
+        value = number_in(text, mark)
     except ValueError:
-        what = f"{shown(text.strip())} is not a number" if text.strip() else "the cell is empty"
-    else:
-        if -_LARGEST_NUMBER < value < _LARGEST_NUMBER:
-            return value
-        what = f"{shown(text.strip())} is not {'finite' if not isfinite(value) else 'a measurement; it must be less than 1e30 in size'}"
-    raise InputError(f"line {line}, column {shown(column)}: {what}")
+        hint = f"; {_EITHER}" if is_either(text) else ""
+        raise InputError(f"line {line}, column {shown(column)}: {shown(text.strip())} is not a number{hint}") from None
+    if -_LARGEST_NUMBER < value < _LARGEST_NUMBER:
+        return value
+    where = f"line {line}, column {shown(column)}"
+    if place >= len(row):
+        return without(nan, f"{where}: the cell is missing; the line has {len(row)}")
+    value = SCPI.get(value, value)
+    if isnan(value) or isinf(value):
+        text = text.strip()
+        return without(value, f"{where}: {f'{shown(text)} is not finite' if text else 'the cell is empty'}")
+    raise InputError(f"{where}: {shown(text.strip())} is not a measurement; it must be less than 1e30 in size")
+
+
+_EITHER = "a comma is the decimal point or groups digits there: save the table with semicolons between the fields, or without groups"
+
+
+def _refused(_: float, fault: str) -> float:
+    raise InputError(f"{fault}; fill it in, or leave out the line")
 
 
 def _allowed(units: Mapping[str, str]) -> str:

@@ -7,7 +7,7 @@ from os import PathLike
 
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.files.reading import with_path
-from vibroimpact.measurements.table_file import name_and_unit
+from vibroimpact.measurements.header_cells import name_and_unit
 from vibroimpact.shown import shown
 from vibroimpact.signals.read_records import read_records
 from vibroimpact.signals.record import Record
@@ -16,7 +16,7 @@ _TOLD = 10
 """Channels that a message names at most."""
 
 
-def one_record(path: str | PathLike[str], channel: str | None = None) -> Record:
+def one_record(path: str | PathLike[str], channel: str | None = None, columns: str | None = None) -> Record:
     """Return the record of a channel of a file, or of a folder; of its only one without a name.
 
     Parameters
@@ -25,6 +25,8 @@ def one_record(path: str | PathLike[str], channel: str | None = None) -> Record:
         The file, as `read_records` reads it.
     channel : str, optional
         Name of the channel, or the cell of a table's header that has it with its unit.
+    columns : str, optional
+        The columns of a table, as `read_records` takes them.
 
     Raises
     ------
@@ -42,7 +44,7 @@ def one_record(path: str | PathLike[str], channel: str | None = None) -> Record:
     [1000.0, 2000.0]
     """
     names, found = [], []
-    for record in read_records(path):
+    for record in read_records(path, columns):
         names.append(record.name)
         if channel is None or is_named(record, channel):
             found.append(record)
@@ -53,7 +55,7 @@ def one_record(path: str | PathLike[str], channel: str | None = None) -> Record:
         there = f"it has {_listed(every)}.{did_you_mean(channel or '', every)}" if every else "it has no record"
         raise with_path(path, InputError(f"there is no channel {shown(channel)}; {there}" if channel is not None else there))
     if len(found) > 1:
-        alike = (record.name for record in islice(read_records(path), _TOLD + 1) if channel is None or is_named(record, channel))
+        alike = (record.name for record in islice(read_records(path, columns), _TOLD + 1) if channel is None or is_named(record, channel))
         every = list(dict.fromkeys(alike))
         several = f"it has several channels, {_listed(every)}; name one by channel"
         one = f"several signals have the name {shown(every[0])}; take a file with one of them"

@@ -13,14 +13,14 @@ from vibroimpact.measurements.universal_file import is_universal
 from vibroimpact.signals.reading.coded_sound import FORMATS as CODED_SOUND
 from vibroimpact.signals.reading.coded_sound import coded_records
 from vibroimpact.signals.reading.netcdf import netcdf_records
+from vibroimpact.signals.reading.table import ENDINGS as TABLES
 from vibroimpact.signals.reading.table import table_records
 from vibroimpact.signals.reading.universal import universal_records
 from vibroimpact.signals.reading.wave import wave_records
 from vibroimpact.signals.record import Record
 
 _READERS = {
-    ".csv": table_records,
-    ".txt": table_records,
+    **dict.fromkeys(TABLES, table_records),
     ".wav": wave_records,
     ".uff": universal_records,
     ".unv": universal_records,
@@ -33,11 +33,11 @@ _WHOLE = ("result.nc", "dataset.nc", "study.nc")
 """Files that hold all signals of a folder of this program."""
 
 
-def read_records(path: str | PathLike[str]) -> Iterator[Record]:
+def read_records(path: str | PathLike[str], columns: str | None = None) -> Iterator[Record]:
     """Yield the records of a file, or of a folder.
 
-    Read are CSV tables with a column `time [s]` and a column with its unit for each channel, WAV files (8 to 64 bits, floating point),
-    with the extra `audio` M4A, MP3, Ogg and FLAC files,
+    Read are tables with a column `time [s]` and a column with its unit for each channel (CSV, LabVIEW), WAV files (8 to 64 bits,
+    floating point), with the extra `audio` M4A, MP3, Ogg and FLAC files,
     functions of time in universal files (dataset 58) and NetCDF-4 files with a dimension of time; of a folder the signals of its
     `result.nc`, `dataset.nc` or `study.nc`, else of all files of these formats in it. Values are in SI; those of sound are parts
     of full scale, unless an export of this program says what full scale is.
@@ -46,6 +46,9 @@ def read_records(path: str | PathLike[str]) -> Iterator[Record]:
     ----------
     path : path
         The file or the folder.
+    columns : str, optional
+        The columns of a table in place of its header, in order: "time=s,-,force=N", with - for one that is left out; without a column of
+        times with the rate of the rows, "rate=10 kHz,force=N".
 
     Yields
     ------
@@ -55,7 +58,7 @@ def read_records(path: str | PathLike[str]) -> Iterator[Record]:
     Raises
     ------
     InputError
-        If a file can't be read, or there is none.
+        If a file can't be read, or there is none; or columns are given and no file is a table.
 
     Examples
     --------
@@ -66,9 +69,20 @@ def read_records(path: str | PathLike[str]) -> Iterator[Record]:
     ...     [(one.name, one.value.tolist(), one.rate, one.unit) for one in read_records(file)]
     [('force', [1000.0, 2000.0], 1000.0, 'N')]
     """
-    for file in record_files(path):
-        reader = universal_records if is_universal(file) else _READERS[file.suffix.lower()]
-        yield from (replace(record, source=str(file)) for record in reader(file))
+    files = record_files(path)
+    if columns is not None and not any(_is_table(file) for file in files):
+        raise with_path(path, InputError(f"it is no table ({', '.join(TABLES)}), whose columns --columns states; leave it out"))
+    for file in files:
+        if columns is not None and _is_table(file):
+            found = table_records(file, columns)
+        else:
+            reader = universal_records if is_universal(file) else _READERS[file.suffix.lower()]
+            found = reader(file)
+        yield from (replace(record, source=str(file)) for record in found)
+
+
+def _is_table(file: Path) -> bool:
+    return file.suffix.lower() in TABLES and not is_universal(file)
 
 
 def record_files(path: str | PathLike[str]) -> list[Path]:

@@ -12,7 +12,8 @@ from vibroimpact.cases.fields.quantities import Quantity, read_quantity
 from vibroimpact.cases.fields.section import Section, read_table
 from vibroimpact.cases.fields.size_limits import FileName, Name
 from vibroimpact.errors import InputError, did_you_mean
-from vibroimpact.measurements.table_file import TableFile, name_and_unit, read_table_file
+from vibroimpact.measurements.header_cells import name_and_unit
+from vibroimpact.measurements.table_file import TableFile, read_table_file
 from vibroimpact.ranges import Range
 from vibroimpact.shown import shown
 from vibroimpact.studies.axes import Axis, Listed, Normal, Spaced
@@ -105,6 +106,9 @@ class ColumnTable(Section):
     file: FileName
     column: str
     weights: str | None = None
+    columns: str | None = Field(
+        None, description='columns of the file in place of its header, in order, such as "radius=mm,-,share", with - for one left out'
+    )
 
 
 class ScaledTable(Section):
@@ -119,7 +123,7 @@ class ScaledTable(Section):
 
 
 _DISTRIBUTIONS: dict[str, type[Section]] = {"normal": NormalTable, "lognormal": NormalTable, "uniform": UniformTable}
-_ASKED = "a list of values, a range { from, to, number, scale }, a distribution or a column { file, column, weights }"
+_ASKED = "a list of values, a range { from, to, number, scale }, a distribution or a column { file, column, weights, columns }"
 
 
 def read_axis(value: Any, quantity: Quantity | None) -> Axis:
@@ -238,7 +242,7 @@ def _columns(table: ColumnTable, quantity: Quantity) -> Listed:
     name, weights = (None if column is None else name_and_unit(column)[0] for column in (table.column, table.weights))
     assert name is not None
     try:
-        read = read_table_file(table.file, {name: quantity.unit, **({weights: ""} if weights else {})})
+        read = read_table_file(table.file, {name: quantity.unit, **({weights: ""} if weights else {})}, columns=table.columns)
     except InputError as error:
         raise InputError(error.message, "file") from None
     for key, column in (("column", name), ("weights", weights)):

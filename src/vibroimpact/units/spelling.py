@@ -28,6 +28,16 @@ _POWER = re.compile(r"(?<=[A-Za-z])\+?(-?[1-9]\d*(?:\.\d+)?)(?![A-Za-z0-9])")
 
 _GRAVITY = re.compile(r"(?<![A-Za-z])([mu]?)[gG](?![A-Za-z0-9])")
 
+_WORDS = {
+    **dict.fromkeys(("volt", "volts"), "V"),
+    **dict.fromkeys(("second", "seconds", "secs"), "s"),
+    **dict.fromkeys(("newton", "newtons"), "N"),
+    **dict.fromkeys(("amp", "amps", "ampere", "amperes"), "A"),
+    **dict.fromkeys(("meter", "meters", "metre", "metres"), "m"),
+    **dict.fromkeys(("pascal", "pascals"), "Pa"),
+}
+"""Names of units, which oscilloscopes and LabVIEW write with and without a capital letter, and in the plural."""
+
 _PLAIN = {
     **dict.fromkeys(("", "1", "-", "none"), 1.0),
     **dict.fromkeys(("a.u.", "a.u", "arb. u.", "arb. unit", "arb. units", "arb.units", "arbitrary units", "count", "counts"), 1.0),
@@ -46,7 +56,11 @@ def spelled(text: str) -> str:
     --------
     >>> [spelled(text) for text in ("m/s2", "m·s⁻²", "m.s-2", "kg/m³", "N/m¹·⁵", "µm", "mV/gn", "Ns/m")]
     ['m/s^2', 'm·s^-2', 'm·s^-2', 'kg/m^3', 'N/m^1.5', 'um', 'mV/g0', 'N s/m']
+    >>> spelled("Volts")
+    'V'
     """
+    if (word := _WORDS.get(text.strip().lower())) is not None:
+        return word
     raised = _RAISED.sub(lambda power: "^" + power[0].translate(_LOWERED).removeprefix("+"), text.strip())
     plain = _JOINED.sub(r"\1 s", " ".join(raised.translate(_SIGNS).split()))
     return _POWER.sub(r"^\1", _POINT.sub("·", _STANDARD_GRAVITY.sub(r"\1g0", plain)))

@@ -96,7 +96,7 @@ def oblique_impacts_in_file(case: Case, target: FileTarget, match: Iterable[str]
     if is_universal(target.file) or target.function is not None:
         raise InputError(f"oblique impacts are rows of a table, with {_APPROACH}, and what was measured after", "target")
     try:
-        table = read_table_file(target.file, _COLUMNS)
+        table = read_table_file(target.file, _COLUMNS, columns=target.columns)
     except InputError as error:
         raise InputError(error.message, "target") from None
     speeds, velocity = _approach(table)

@@ -83,7 +83,7 @@ class Restitutions:
         return np.stack([self.restitution - half, self.restitution + half], axis=1)
 
 
-def read_restitutions(path: str | PathLike[str], *, confidence: float = 0.95) -> Restitutions:
+def read_restitutions(path: str | PathLike[str], *, confidence: float = 0.95, columns: str | None = None) -> Restitutions:
     r"""Return the restitutions of a table with a row for each approach speed, and their fits.
 
     A row has `approach_speed` [m/s] and `restitution`, or `separation_speed` [m/s]; the standard deviation of that column,
@@ -97,6 +97,8 @@ def read_restitutions(path: str | PathLike[str], *, confidence: float = 0.95) ->
         The file.
     confidence : float, default 0.95
         Confidence level of intervals.
+    columns : str, optional
+        The columns in place of a header, in order, such as "speed=m/s,restitution", with - for one that is left out.
 
     Raises
     ------
@@ -115,23 +117,23 @@ def read_restitutions(path: str | PathLike[str], *, confidence: float = 0.95) ->
     >>> [(law.name, law.coefficients.round(3).tolist()) for law in found.laws]
     [('constant', [0.771]), ('linear', [0.83, -0.023]), ('power', [0.812, -0.066])]
     """
-    table = read_impact_table(path)
+    table = read_impact_table(path, columns=columns)
     if not is_impact_table(table.columns):
         raise InputError(f"{path}: it has no approach_speed [m/s] with a restitution or a separation_speed [m/s]")
-    columns = table.columns
-    for name in columns:
+    given = table.columns
+    for name in given:
         if name != "count":
             check_positive(table, name)
     check_counts(table)
-    speed, count = columns["approach_speed"], columns.get("count", np.ones(len(table.lines)))
-    by_speeds = "restitution" not in columns
-    restitution = columns["separation_speed"] / speed if by_speeds else columns["restitution"]
+    speed, count = given["approach_speed"], given.get("count", np.ones(len(table.lines)))
+    by_speeds = "restitution" not in given
+    restitution = given["separation_speed"] / speed if by_speeds else given["restitution"]
     _check_height(table, restitution)
     measured, other = ("separation_speed", "restitution") if by_speeds else ("restitution", "separation_speed")
-    if f"{other}{DEVIATION}" in columns:
+    if f"{other}{DEVIATION}" in given:
         raise InputError(f"{path}: it has {other}{DEVIATION}, but restitutions are those of {measured}; give {measured}{DEVIATION}")
-    known = columns.get(f"{measured}{DEVIATION}")
-    rounding = rounding_step(columns["separation_speed"] if by_speeds else restitution)
+    known = given.get(f"{measured}{DEVIATION}")
+    rounding = rounding_step(given["separation_speed"] if by_speeds else restitution)
     scale = 1.0 / speed if by_speeds else np.ones(len(speed))
     deviation = np.full(len(speed), np.nan) if known is None else scale * known / np.sqrt(count)
     variance = np.nan_to_num(deviation) ** 2 + (scale * rounding) ** 2 / 12.0
@@ -165,7 +167,7 @@ def _check_height(table: TableFile, restitution: Floats) -> None:
 
 
 def _doubts(table: TableFile, restitution: Floats, laws: list[SpeedLaw]) -> tuple[str, ...]:
-    found = []
+    found = list(table.doubts)
     above = np.flatnonzero(restitution > 1.0)
     if above.size:
         worst = int(np.argmax(restitution))

@@ -22,6 +22,10 @@ class MotionTable(Section):
     file: FileName | None = Field(
         None, description="CSV file of the motion over time: time, and displacement or acceleration, with their units"
     )
+    columns: str | None = Field(
+        None,
+        description='columns of the file in place of its header, in order, such as "time=s,-,displacement=mm", with - for one left out',
+    )
     repeat: StrictBool = Field(False, description="whether the file has one period of the motion, which repeats")
     direction: tuple[Annotated[float, Quantity("", "x")], Annotated[float, Quantity("", "y")], Annotated[float, Quantity("", "z")]] = Field(
         (0.0, 0.0, 1.0), description="direction of the motion along x, y and the normal z, of any length but 0"
@@ -37,6 +41,8 @@ class MotionTable(Section):
         if self.file is None and len(given) < 2:
             missing = "amplitude" if given == ["frequency"] else "frequency" if given else "amplitude and frequency"
             raise InputError(f"this key needs {missing}, or file in place of both")
+        if self.file is None and self.columns is not None:
+            raise InputError("only a file has columns; leave this out", "columns")
         if not any(self.direction):
             raise InputError("a direction of length 0 is none; give one along x, y and z, such as [0, 0, 1]", "direction")
         return self

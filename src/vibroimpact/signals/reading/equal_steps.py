@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Bools, Floats
 from vibroimpact.errors import InputError
 
 _LARGEST_SHIFT = 0.1
@@ -18,6 +18,8 @@ _ROUNDED = 0.75
 """Largest distance of rounded times from equal steps, in units of their last digit: a half, and what is uncertain of the steps."""
 _WHOLE = 1e-3
 """Distance from a multiple of the last digit, as a part of it, that is none."""
+_MOST_DIGITS = 9
+"""Largest number of significant digits of times that are sought."""
 _FEWEST = 16
 """Least number of times whose rounding or jitter is told."""
 
@@ -43,8 +45,15 @@ class Sampled(NamedTuple):
     doubts: tuple[str, ...]
 
 
-def rate_of(time: Floats) -> float:
+def rate_of(time: Floats, lines: Sequence[int] | None = None) -> float:
     """Return the rate of samples at equal steps [Hz].
+
+    Parameters
+    ----------
+    time : array, shape (samples,)
+        Times of the samples [s].
+    lines : sequence of int, optional
+        Their lines in a file, for messages.
 
     Raises
     ------
@@ -59,19 +68,44 @@ def rate_of(time: Floats) -> float:
     if len(time) < 2:
         raise InputError("a record has two samples or more; the rate follows from their times")
     step = (time[-1] - time[0]) / (len(time) - 1)
+    back = np.flatnonzero(np.diff(time) < 0.0)
+    if back.size:
+        at = int(back[0])
+        words = f"{_sample(at + 1, lines)} is at {time[at + 1]:.9g} s, after {time[at]:.9g} s"
+        raise InputError(f"the times do not rise: {words}; if the file has several records, one below the other, keep one of them")
     if not (step > 0.0 and np.isfinite(step)):
-        raise InputError("the times do not rise")
+        raise InputError(f"the times do not rise: all are {time[0]:.9g} s; write them with more digits")
     shift = np.abs(time - (time[0] + step * np.arange(len(time)))) / step
     worst = int(np.argmax(shift))
     if not shift[worst] <= _LARGEST_SHIFT:
+        longest = int(np.argmax(np.diff(time))) + 1
+        words = f"{_sample(worst, lines)} is {shift[worst]:.2g} steps off its place"
+        gap = f"the longest step, {time[longest] - time[longest - 1]:.4g} s, leads to {_sample(longest, lines)}"
         raise InputError(
-            f"the times do not rise by equal steps: sample {worst + 1} is {shift[worst]:.2g} steps off its place; resample the record"
+            f"the times do not rise by equal steps: {words}, and {gap}; keep the part before or after it, or resample the record"
         )
     return float(f"{1.0 / step:.12g}")  # the digits that times have
 
 
-def at_equal_steps(time: Floats, values: Sequence[Floats]) -> Sampled:
+def is_regular(time: Floats) -> bool:
+    """Return whether times rise by equal steps.
+
+    Examples
+    --------
+    >>> is_regular(np.array([0.0, 1.0, 2.0])), is_regular(np.array([0.0, 1.0, 3.0]))
+    (True, False)
+    """
+    try:
+        rate_of(time)
+    except InputError:
+        return False
+    return True
+
+
+def at_equal_steps(time: Floats, values: Sequence[Floats], lines: Sequence[int] | None = None) -> Sampled:
     """Return channels at equal steps: as they are, if their times are or are only rounded; resampled, if they jitter.
+
+    Samples that have the time of the one before and all its values are left out, where others have neither: a logger wrote them twice.
 
     Parameters
     ----------
@@ -79,6 +113,8 @@ def at_equal_steps(time: Floats, values: Sequence[Floats]) -> Sampled:
         Times of the samples [s].
     values : sequence of array
         The channels.
+    lines : sequence of int, optional
+        The lines of the samples in a file, for messages.
 
     Raises
     ------
@@ -93,10 +129,18 @@ def at_equal_steps(time: Floats, values: Sequence[Floats]) -> Sampled:
     (399.8, 'its times are rounded to 0.01 s, 4 steps;')
     """
     try:
-        return Sampled(rate_of(time), float(time[0]), list(values), ("",) * len(values))
+        return Sampled(rate_of(time, lines), float(time[0]), list(values), ("",) * len(values))
     except InputError:
         step = np.diff(time)
-        if len(time) < _FEWEST or not (step >= 0.0).all():
+        if not (step >= 0.0).all() or not (step > 0.0).any():
+            raise
+        twice, words = written_twice(time, values, lines)
+        if words:
+            kept = at_equal_steps(
+                time[~twice], [one[~twice] for one in values], None if lines is None else np.asarray(lines)[~twice].tolist()
+            )
+            return kept._replace(doubts=tuple(f"{words}; {doubt}" if doubt else words for doubt in kept.doubts))
+        if len(time) < _FEWEST:
             raise
         place = np.arange(len(time))
         slope, begin = np.polyfit(place, time, 1).tolist()
@@ -107,10 +151,49 @@ def at_equal_steps(time: Floats, values: Sequence[Floats]) -> Sampled:
             words = f"its times are rounded to {last_digit:.3g} s, {last_digit / slope:.3g} steps; the equal steps behind them are taken"
             unsure = 100.0 * last_digit / (time[-1] - time[0])
             return Sampled(1.0 / slope, begin, list(values), (f"{words}, which are known to {unsure:.2g} %",) * len(values))
+        if (rounded := _to_significant_digits(time, begin + slope * place)) is not None:
+            digits, last_digit = rounded
+            words = f"its times are rounded to {digits} digits, up to {last_digit:.3g} s, {last_digit / slope:.3g} steps"
+            unsure = 100.0 * last_digit / (time[-1] - time[0])
+            words += f"; the equal steps behind them are taken, which are known to {unsure:.2g} %"
+            return Sampled(1.0 / slope, begin, list(values), (words,) * len(values))
         middle = float(np.median(step))
         if not ((step > 0.0).all() and step.max() <= _LONGEST_STEP * middle and step.std() <= _LARGEST_JITTER * middle):
             raise
     return _resampled(time, values)
+
+
+def _to_significant_digits(time: Floats, regular: Floats) -> tuple[int, float] | None:
+    """Return to how many digits times are rounded, as programs do that write %.6g, and the largest step of this; None if they are not."""
+    power = np.floor(np.log10(np.where(time == 0.0, 1.0, np.abs(time))))
+    for digits in range(2, _MOST_DIGITS + 1):
+        last = 10.0 ** (power - digits + 1)
+        if np.all(np.abs(time / last - np.round(time / last)) < _WHOLE):
+            is_rounded = np.abs(time - regular) <= np.maximum(_ROUNDED * last, _LARGEST_SHIFT * (regular[1] - regular[0]))
+            return (digits, float(last.max())) if np.all(is_rounded | (time == 0.0)) else None
+    return None
+
+
+def _sample(place: int, lines: Sequence[int] | None) -> str:
+    """Return the name of a sample in messages."""
+    return f"sample {place + 1}" if lines is None else f"sample {place + 1} (line {lines[place]})"
+
+
+def written_twice(time: Floats, values: Sequence[Floats], lines: Sequence[int] | None = None) -> tuple[Bools, str]:
+    """Return which samples repeat the one before, and a sentence on them; "" if none does.
+
+    All samples that have the time of the one before must have its values, which are not all one; else their times are rounded.
+    """
+    same_time = np.append(False, np.diff(time) == 0.0)
+    same = np.append(False, np.logical_and.reduce([np.diff(one) == 0.0 for one in values])) & same_time
+    changes = any(np.any(np.diff(one)[~same_time[1:]] != 0.0) for one in values)
+    if not (same.any() and changes and np.array_equal(same, same_time)):
+        return np.zeros(len(time), dtype=bool), ""
+    count = int(same.sum())
+    have = "samples have" if count > 1 else "sample has"
+    are = "they are" if count > 1 else "it is"
+    first = _sample(int(np.argmax(same)), lines)
+    return same, f"{count} {have} time and value of the one before, the first is {first}: {are} left out"
 
 
 def _resampled(time: Floats, values: Sequence[Floats]) -> Sampled:

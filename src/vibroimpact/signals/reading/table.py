@@ -1,52 +1,89 @@
-"""Records from CSV files: a column of times, and a column with its unit for each channel."""
+"""Records from tables: columns of times, and a column with its unit for each channel."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+import numpy as np
+
+from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError
-from vibroimpact.files.reading import with_path
-from vibroimpact.measurements.table_file import header_of, name_and_unit, read_table_file
+from vibroimpact.measurements.header_cells import name_and_unit
+from vibroimpact.measurements.recorded_table import RecordedChannel, filled_in, recorded_channels
+from vibroimpact.measurements.table_file import in_table
+from vibroimpact.measurements.table_layout import Layout
 from vibroimpact.shown import shown
-from vibroimpact.signals.reading.equal_steps import at_equal_steps
+from vibroimpact.signals.reading.equal_steps import Sampled, at_equal_steps, is_regular, written_twice
 from vibroimpact.signals.reading.si_units import in_si
 from vibroimpact.signals.record import Record
 
-_TIME = "time"
+ENDINGS = (".csv", ".txt", ".tsv", ".asc", ".lvm")
+"""Endings of the names of tables."""
 
 
-def table_records(path: Path) -> Iterator[Record]:
-    """Yield the channels of a table: all columns but that of the time.
+def table_records(path: Path, columns: str | None = None) -> Iterator[Record]:
+    """Yield the channels of a table: all columns but those of times.
+
+    Parameters
+    ----------
+    path : path
+        The file.
+    columns : str, optional
+        The columns as a user states them in place of a header, "time=s,force=N".
 
     Raises
     ------
     InputError
-        If the file can't be read, there is no time, no other column, a unit is missing or unknown, or the times do not rise by equal steps.
+        If the file can't be read, there is no time, no other column, a unit is missing or unknown, samples are missing, or the times do not
+        rise by equal steps.
     """
-    names = {}
-    for cell in header_of(path):
-        name, unit = name_and_unit(cell)
-        if name == _TIME:
-            names[name] = "s"
-            continue
-        if unit is None:
-            raise InputError(f"{path}, column {shown(cell)}: the unit is missing; write it in brackets, such as {name} [V], or [1]")
-        try:
-            names[name] = in_si(unit)[1]
-        except InputError as error:
-            raise InputError(f"{path}, column {shown(cell)}: {error.message}") from None
-    if _TIME not in names:
-        raise InputError(f"{path}: there is no column time [s] in the header; the rate follows from the times of the samples")
-    if len(names) < 2:
-        raise InputError(f"{path}: there is no column beside the time; each other one is a channel, such as geophone [V]")
     doubts: list[str] = []
-    table = read_table_file(path, {name: "" if unit == "1" else unit for name, unit in names.items()}, doubts)
-    channels = [name for name in names if name != _TIME]
+    for channel in recorded_channels(path, _unit_of, doubts, columns):
+        try:
+            sampled, told = _sampled(channel)
+        except InputError as error:
+            raise in_table(path, error) from None
+        own = (f"{shown(channel.name)}: {doubt}" for doubt in (*channel.doubts, *told, *filter(None, sampled.doubts)))
+        yield Record(channel.name, sampled.values[0], sampled.rate, channel.unit, sampled.start, doubts=(*doubts, *own))
+
+
+def _unit_of(layout: Layout, cell: str) -> tuple[float, str]:
+    """Return the factor to SI and the SI unit of a channel."""
+    name, unit = name_and_unit(cell)
+    where = f"{layout.where}, column {shown(cell)}"
+    if unit is None:
+        raise InputError(f"{where}: the unit is missing; {layout.with_unit(name, 'V')}, or 1 for a plain number; {layout.understood}")
     try:
-        sampled = at_equal_steps(table.columns[_TIME], [table.columns[name] for name in channels])
+        return in_si(unit)
     except InputError as error:
-        raise with_path(path, error) from None
-    for name, value, doubt in zip(channels, sampled.values, sampled.doubts, strict=True):
-        of_times = (f"{shown(name)}: {doubt}",) if doubt else ()
-        yield Record(name, value, sampled.rate, names[name], sampled.start, doubts=(*doubts, *of_times))
+        raise InputError(f"{where}: {error.message}; correct the unit, or state it by --columns (in a case the key columns)") from None
+
+
+def _sampled(channel: RecordedChannel) -> tuple[Sampled, tuple[str, ...]]:
+    """Return the samples of a channel at equal steps, and what was done where some are missing.
+
+    A channel that has a number in every tenth row is one of a tenth of the rate.
+    """
+    if not channel.missing or is_regular(channel.time):
+        return _at_equal_steps(channel, channel.time, channel.value, channel.lines), ()
+    twice, words = written_twice(channel.time, [channel.value], channel.lines)
+    lines = np.asarray(channel.lines)[~twice].tolist()
+    channel = channel._replace(time=channel.time[~twice], value=channel.value[~twice], lines=lines)
+    told = (words,) if words else ()
+    try:
+        time, value, doubt = filled_in(channel)
+    except InputError as many:
+        try:
+            return _at_equal_steps(channel, channel.time, channel.value), told  # of another rate, with times that jitter
+        except InputError:
+            raise many from None
+    return _at_equal_steps(channel, time, value), (*told, doubt)
+
+
+def _at_equal_steps(channel: RecordedChannel, time: Floats, value: Floats, lines: Sequence[int] | None = None) -> Sampled:
+    """Return samples at equal steps; errors name the column of the times."""
+    try:
+        return at_equal_steps(time, [value], lines)
+    except InputError as error:
+        raise InputError(f"{channel.times_from}{error}") from None

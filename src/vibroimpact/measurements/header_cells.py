@@ -1,0 +1,126 @@
+"""Cells of a table's header: names of columns and their units, as people, languages and programs write them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from functools import lru_cache
+
+from vibroimpact.errors import InputError
+from vibroimpact.units.reading import to_si
+from vibroimpact.units.spelling import plain_factor
+
+_ENDINGS = {
+    "_m_s2": "m/s^2",
+    "_m_s_2": "m/s^2",
+    "_m_s": "m/s",
+    "_rad_s": "rad/s",
+    "_deg": "deg",
+    "_s": "s",
+    "_ms": "ms",
+    "_us": "us",
+    "_m": "m",
+    "_mm": "mm",
+    "_um": "um",
+    "_N": "N",
+    "_kN": "kN",
+    "_V": "V",
+    "_mV": "mV",
+    "_Pa": "Pa",
+}
+"""Units at the end of a name. MATLAB makes names of variables of a header, in which brackets and signs become underscores."""
+
+_LONGEST_FIRST = sorted(_ENDINGS.items(), key=lambda item: -len(item[0]))
+
+_LANGUAGES = {
+    "time": "t zeit temps tiempo tempo tijd tid aika czas čas idő zaman время 时间 時間",
+    "force": "kraft fuerza forza força kracht voima siła síla erő kuvvet сила 力",
+}
+"""Names of a column in other languages, which instruments write by the language that they are set to."""
+
+_ENGLISH = {word: name for name, words in _LANGUAGES.items() for word in words.split()}
+
+_QUANTITIES = ("s", "V", "m/s^2", "m/s", "m", "N", "Pa", "A", "Hz", "rad", "rad/s", "kg")
+"""Quantities of columns whose units may stand in a row of their own."""
+
+
+def name_and_unit(cell: str) -> tuple[str, str | None]:
+    """Return name and unit of a header cell; None if it has no unit. The words of other languages for time and force are translated.
+
+    Examples
+    --------
+    >>> name_and_unit("Rebound height [mm]"), name_and_unit("time_s"), name_and_unit("count"), name_and_unit("Zeit [ms]")
+    (('rebound_height', 'mm'), ('time', 's'), ('count', None), ('time', 'ms'))
+    >>> name_and_unit("acceleration_m_s_2_")  # by MATLAB from "acceleration [m/s^2]"
+    ('acceleration', 'm/s^2')
+    """
+    whole = cell.strip()
+    if whole.endswith(("]", ")")):
+        # the unit is between the last two brackets; a regular expression for that takes minutes on a long line of brackets
+        inside = whole[:-1]
+        start = max(inside.rfind("]"), inside.rfind(")")) + 1
+        opening = min((at for at in (inside.find("[", start), inside.find("(", start)) if at >= 0), default=-1)
+        if opening >= 0:
+            return _plain(inside[:opening]), inside[opening + 1 :].strip()
+    for ending, unit in _LONGEST_FIRST:
+        if whole.endswith((ending, f"{ending}_")):
+            return _plain(whole.removesuffix("_").removesuffix(ending)), unit
+    return _plain(whole), None
+
+
+def is_time(name: str, unit: str | None) -> bool:
+    """Return whether a column has times: by its name, or since its unit is one of time, which no signal has.
+
+    Examples
+    --------
+    >>> is_time("time", None), is_time("x_axis", "second"), is_time("force", "N")
+    (True, True, False)
+    """
+    return name == "time" or (unit is not None and _measures(unit, "s"))
+
+
+def are_units(cells: Sequence[str]) -> bool:
+    """Return whether the cells of a line are units, in brackets or all without; some may be empty.
+
+    Examples
+    --------
+    >>> are_units(["(ms)", "(V)", ""]), are_units(["second", "Volt"]), are_units(["time", "force"]), are_units(["1", "2"])
+    (True, True, False, False)
+    """
+    full = [cell.strip() for cell in cells if cell.strip()]
+    return bool(full) and (all(cell[0] + cell[-1] in ("[]", "()") for cell in full) or all(map(_is_unit, full)))
+
+
+def with_unit(cell: str, unit: str) -> str:
+    """Return a cell of a header with the unit that stands elsewhere; as it is, if there is none.
+
+    Examples
+    --------
+    >>> with_unit("Channel A", "(mV)"), with_unit("CH1", "Volt"), with_unit("count", "")
+    ('Channel A (mV)', 'CH1 [Volt]', 'count')
+    """
+    unit = unit.strip()
+    if not unit:
+        return cell.strip()
+    return f"{cell.strip()} {unit}" if unit[0] in "[(" else f"{cell.strip()} [{unit}]"
+
+
+def _plain(name: str) -> str:
+    plain = re.sub(r"[\s-]+", "_", name.strip().lower())
+    return _ENGLISH.get(plain, plain)
+
+
+@lru_cache(maxsize=1000)
+def _is_unit(text: str) -> bool:
+    """Return whether a text is a unit that a column may have."""
+    if not any(character.isalpha() or character in "%-" for character in text):
+        return False
+    return plain_factor(text) is not None or any(_measures(text, quantity) for quantity in _QUANTITIES)
+
+
+def _measures(unit: str, quantity: str) -> bool:
+    try:
+        to_si(f"1 {unit}", quantity)
+    except InputError:
+        return False
+    return True
