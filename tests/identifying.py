@@ -13,6 +13,7 @@ from vibroimpact.cases.rigid import rigid_problem
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.response import Response
 from vibroimpact.identification.plate import Plate, compliance_error, plate_of, with_compliance
+from vibroimpact.identification.setup import Setup, SetupErrors
 from vibroimpact.signals.record import Record
 
 RATE, WINDOW, DELAY = 25600.0, 5e-3, 4e-3
@@ -70,9 +71,14 @@ class Impact:
 
 def an_impact(radius: float, speed: float, place: tuple[float, float], modes: int = 280, off: np.random.Generator | None = None) -> Impact:
     """A sphere that touches the plate first at `DELAY`; the plate is off its model by what the model states of its own errors, if asked."""
-    case, there = plate(modes).case, plate(modes).at(place)
+    there = plate(modes).at(place)
     if off is not None:
         there = off_by_its_errors(plate(modes), there, off)
+    return _dropped(plate(modes), there, radius, speed, place)
+
+
+def _dropped(on: Plate, there: Problem, radius: float, speed: float, place: tuple[float, float]) -> Impact:
+    case = on.touched
     rigid = rigid_problem(case.model_copy(update={"sphere": case.sphere.model_copy(update={"radius": radius})}))
     gravity = float(there.gravity)
     height = radius + speed * DELAY - 0.5 * gravity * DELAY**2
@@ -98,6 +104,31 @@ def records_of(impact: Impact, decibels: float, seed: int) -> list[Record]:
         noise = 10.0 ** (-decibels / 20.0) * np.sqrt(np.mean(from_touch**2))
         found.append(Record(name, signal.value + noise * random.standard_normal(len(signal.value)), RATE, "m/s2"))
     return found
+
+
+LABORATORY = SetupErrors(sensor_place=5e-3, gain=0.02, thickness=0.01, modulus=0.03, resonance=0.05)
+"""Errors of a laboratory."""
+
+
+@cache
+def mounted(modes: int = 140, errors: SetupErrors | None = None) -> Plate:
+    """The plate with accelerometers that have a mounted resonance."""
+    sensors = [{"name": name, "position": list(at), "rate": RATE, "accelerometer": {"resonance": 30e3}} for name, at in SENSORS.items()]
+    return plate_of(a_case(modes, sensors=sensors), WINDOW, errors=errors)
+
+
+def in_laboratory(
+    radius: float, speed: float, place: tuple[float, float], random: np.random.Generator, errors: SetupErrors = LABORATORY
+) -> tuple[Impact, Setup]:
+    """An impact on a plate and sensors that differ from the case by random errors, and how they do; gains are those of `heard_by`."""
+    setup = Setup.of(errors.deviations(len(SENSORS)) * random.standard_normal(2 + 4 * len(SENSORS)))
+    there = mounted(280).under(setup, list(SENSORS))
+    return _dropped(there, there.at(place), radius, speed, place), setup
+
+
+def heard_by(setup: Setup, records: list[Record]) -> list[Record]:
+    """Records through amplifiers whose gains are those of a set-up."""
+    return [replace(record, value=(1.0 + gain) * record.value) for record, gain in zip(records, setup.gain, strict=True)]
 
 
 def drawn(number: int, seed: int) -> list[tuple[float, float, tuple[float, float]]]:

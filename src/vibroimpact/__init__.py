@@ -117,6 +117,7 @@ if TYPE_CHECKING:
     from vibroimpact.identification.identify import Identification as Identification
     from vibroimpact.identification.identify import identify as identify
     from vibroimpact.identification.identify import identify_force as identify_force
+    from vibroimpact.identification.setup import SetupErrors as SetupErrors
     from vibroimpact.laws.curves import law_chart as law_chart
     from vibroimpact.materials import Material as Material
     from vibroimpact.materials import find_material as find_material
@@ -234,6 +235,7 @@ _HOME = {
     "Result": "results.result",
     "Sensor": "dynamics.sensors.sensor",
     "SensorSignals": "recognition.labelled_signals",
+    "SetupErrors": "identification.setup",
     "Signal": "dynamics.sensors.recording",
     "SpeedFunction": "contact.speed_function",
     "SpeedTable": "contact.speed_function",

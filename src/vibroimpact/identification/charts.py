@@ -63,16 +63,18 @@ def _records_chart(found: Identification) -> Chart:
 def _force_chart(found: Identification) -> Chart:
     force, contact = found.force, found.sphere.force
     touch = float(found.sphere.parameters[4])
-    time, spread = force.time - touch, Estimate(0.0, 1.0).interval[1] * force.found.deviation
-    marks = (
-        Band(time, force.found.force - spread, force.found.force + spread, "95 %", "band"),
-        Line(time, force.found.force, "from the records alone"),
-        Line(contact.time, contact.value, "contact of the sphere that was found", "fit"),
-    )
-    panel = Panel(Axis("Time since first touch", "s"), Axis("Contact force", "N"), marks)
+    marks: tuple[Band | Line, ...] = (Line(contact.time, contact.value, "contact of the sphere that was found", "fit"),)
     caption = (
-        "The force from the records alone, with its 95 % band, and that of the sphere that was found under the contact law of the case."
+        "The force of the sphere that was found under the contact law of the case. That from the records alone contradicts it: withheld."
     )
+    if force is not None:
+        time, spread = force.time - touch, Estimate(0.0, 1.0).interval[1] * force.found.deviation
+        band = Band(time, force.found.force - spread, force.found.force + spread, "95 %", "band")
+        marks = (band, Line(time, force.found.force, "from the records alone"), *marks)
+        caption = (
+            "The force from the records alone, with its 95 % band, and that of the sphere that was found under the contact law of the case."
+        )
+    panel = Panel(Axis("Time since first touch", "s"), Axis("Contact force", "N"), marks)
     return Chart("force", "Contact force", ((panel,),), caption, _HEIGHT)
 
 

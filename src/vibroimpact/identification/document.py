@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from vibroimpact._version import __version__
 from vibroimpact.identification.identify import Identification
 from vibroimpact.signals.estimate import Estimate
@@ -56,10 +58,29 @@ def summary_of_identification(found: Identification) -> dict[str, Any]:
                 "rms": float((value**2).mean() ** 0.5),
                 "offset": removed.offset,
                 "drift": removed.drift,
+                "clipped_samples": int(np.count_nonzero(~heard)),
+                "inverted": bool(polarity < 0.0),
             }
-            for sensor, noise, part, value, removed in zip(
-                measured.sensors, measured.noise, left, measured.value, measured.removed, strict=True
+            for sensor, noise, part, value, removed, heard, polarity in zip(
+                measured.sensors, measured.noise, left, measured.value, measured.removed, measured.heard, measured.polarity, strict=True
             )
         },
+        "differences": _differences(found),
+        "taken_as_certain": list(found.certain),
         "doubts": list(found.doubts),
+    }
+
+
+def _differences(found: Identification) -> dict[str, Any]:
+    """Return how the plate and its sensors differ from the case, of what is not taken as certain: values and standard deviations."""
+    sensors = [sensor.name for sensor in found.measured.sensors]
+    numbers, deviations = found.sphere.setting.numbers, found.sphere.setting.deviations
+    of_plate = zip(("thickness", "modulus"), numbers[:2].tolist(), deviations[:2].tolist(), strict=True)
+    of_sensors = zip(
+        ("x_m", "y_m", "gain", "resonance"), numbers[2:].reshape(4, -1).tolist(), deviations[2:].reshape(4, -1).tolist(), strict=True
+    )
+    return {name: {"value": value, "deviation": deviation} for name, value, deviation in of_plate if deviation} | {
+        name: {sensor: {"value": one, "deviation": its} for sensor, one, its in zip(sensors, values, spreads, strict=True)}
+        for name, values, spreads in of_sensors
+        if any(spreads)
     }

@@ -7,10 +7,13 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from vibroimpact.identification.measured import Measured
-from vibroimpact.identification.plate import Plate
+from vibroimpact.identification.causes import causes, remedy, told
+from vibroimpact.identification.force import Force
+from vibroimpact.identification.measured import Measured, rms_of
+from vibroimpact.identification.plate import Place, Plate
 from vibroimpact.identification.pulses import Search
 from vibroimpact.identification.sphere import SphereFit
+from vibroimpact.shown import shown
 
 _LEFT = 1.3
 """What a fit leaves, over the noise, from which on the model is doubted."""
@@ -18,22 +21,28 @@ _PART = 0.05
 """What a fit leaves, over the rms value of the records, from which on it is doubted where the noise is not known."""
 _WIDE = 0.25
 """Relative standard deviation from which on a number is not told."""
+_CONTRADICTS = 3.0
+"""Standard deviations from which on two estimates contradict each other."""
 _PASSED = 1.2
 """End of what an anti-alias filter passes, over the end of its band."""
 
 
-def doubts_about(plate: Plate, measured: Measured, search: Search, sphere: SphereFit, sought: bool) -> Iterator[str]:
+def doubts_about(plate: Plate, measured: Measured, search: Search, sphere: SphereFit, place: Place | None) -> Iterator[str]:
     """Yield the doubts about an identification, one sentence each without its full stop.
 
     Parameters
     ----------
     plate, measured, search, sphere
         As those of an `Identification`.
-    sought : bool
-        Whether the place was sought.
+    place : tuple of two floats, optional
+        The place, if it was given.
     """
+    yield from _of_records(measured)
+    if not plate.model_error:
+        words = "these are records of a run with the modes of this case"
+        yield f"{words}: the errors of mesh and modes left out, which a plate has, are not in the intervals"
     highest, passed = float(plate.problem.models["plate"].frequencies[-1]), _PASSED * measured.band
-    if highest < passed:
+    if plate.model_error and highest < passed:
         words = f"the modes of the plate end at {highest:,.0f} Hz, and the sensors hear up to {passed:,.0f} Hz"
         more = f'ask for plate.max_frequency = "{math.ceil(passed / 1e3):d} kHz" or so'
         yield f"{words}; the intervals do not contain what the modes above lack; {more}"
@@ -41,19 +50,51 @@ def doubts_about(plate: Plate, measured: Measured, search: Search, sphere: Spher
     if others:
         yield f"a force at {others} explains the records about as well; add a sensor off the axes of symmetry, or give the place"
     at_edge = np.abs(sphere.parameters[:2]) >= 0.999 * np.array(plate.half)
-    if sought and at_edge.any():
+    if place is None and at_edge.any():
         yield "the place lies at the edge of the plate, where none is sought"
     if not sphere.converged:
         yield "the fit of the sphere did not come to an end; its numbers are those of its last step"
-    left = np.sqrt(np.mean(sphere.residual**2, axis=1))
-    if measured.quiet and (ratio := float((left / measured.noise).max())) > _LEFT:
-        words = f"the fit leaves {ratio:.2g} times the noise before first touch: the model differs from the plate"
-        yield f"{words}; the intervals are wider by what it leaves, but do not contain a bias; state --frequency-error"
-    if not measured.quiet:
-        part = float((left / np.sqrt(np.mean(measured.value**2, axis=1))).max())
-        if part > _PART:
-            words = f"the fit leaves {100.0 * part:.2g} % of the records, and no noise before first touch explains it"
-            yield f"{words}: the plate or the contact is not that of the case, or another sphere fits better; do not use these numbers"
+    left = rms_of(sphere.residual, measured.heard)
+    ratio, part = float((left / measured.noise).max()), float((left / measured.rms).max())
+    if measured.quiet and ratio > _LEFT:
+        yield _of_misfit(plate, measured, search, sphere, place, f"the fit leaves {ratio:.2g} times the noise before first touch", ratio)
+    if not measured.quiet and part > _PART:
+        words = f"the fit leaves {100.0 * part:.2g} % of the records, and no noise before first touch explains it"
+        yield _of_misfit(plate, measured, search, sphere, place, words, part / _PART)
     for name, deviation in zip(("radius", "speed"), np.sqrt(np.diag(sphere.covariance))[2:4].tolist(), strict=True):
         if deviation > _WIDE:
             yield f"the {name} is not told: its standard deviation is {100.0 * deviation:.2g} %"
+
+
+def _of_records(measured: Measured) -> Iterator[str]:
+    """Yield what is wrong with the records and was corrected."""
+    for sensor, heard, polarity in zip(measured.sensors, measured.heard, measured.polarity.tolist(), strict=True):
+        if number := int(np.count_nonzero(~heard)):
+            words = f"the record {shown(sensor.name)} is clipped: {number} samples lie at its extremes"
+            yield f"{words}; they are left out, and what lies beside them is taken as right"
+        if polarity < 0.0:
+            words = f"the record {shown(sensor.name)} is inverted: with the opposite sign a force explains the records much better"
+            yield f"{words}; its sign was changed, correct it at the amplifier or in the file"
+
+
+def _of_misfit(plate: Plate, measured: Measured, search: Search, sphere: SphereFit, place: Place | None, words: str, ratio: float) -> str:
+    """Return the doubt about a fit that leaves much of the records: with what explains it, if something of the set-up does."""
+    found, less = causes(plate, measured, sphere, search.candidates[0], place)
+    if found:
+        return f"{words}: {told(found)}; with that it leaves {less * 100.0:.2g} % of it: correct the case, or state {remedy(plate, found)}"
+    return f"{words}: the plate or the contact is not that of the case, or another sphere fits better; do not use these numbers"
+
+
+def contradiction(sphere: SphereFit, force: Force) -> str:
+    """Return the doubt about a force from the records alone that contradicts the contact that was fitted; empty if it does not."""
+    deviations = np.sqrt(np.diag(sphere.force_covariance))
+    for name, unit, (alone, deviation), fitted, its in (
+        ("largest force", "N", force.peak, sphere.force.facts[0], deviations[0]),
+        ("impulse", "N s", force.impulse, sphere.force.facts[1], deviations[1]),
+    ):
+        if abs(alone - fitted) > _CONTRADICTS * math.hypot(deviation, its):
+            words = (
+                f"the {name} from the records alone, {alone:.4g} {unit}, contradicts the {fitted:.4g} {unit} of the contact that was fitted"
+            )
+            return f"{words}; what is from the records alone is withheld, as it depends most on errors of the plate and its sensors"
+    return ""

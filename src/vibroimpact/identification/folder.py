@@ -23,6 +23,8 @@ from vibroimpact.signals.estimate import Estimate
 def save_identification(found: Identification, directory: str | PathLike[str], *, force: bool = False, figures: Sequence[str] = ()) -> Path:
     """Write an identification atomically: `force.csv`, `summary.json`, `case.toml` and a report.
 
+    A force from the records alone that is withheld, since it contradicts the contact, is not written.
+
     Parameters
     ----------
     found : Identification
@@ -56,15 +58,16 @@ def save_identification(found: Identification, directory: str | PathLike[str], *
     0.02
     """
     with new_folder(directory, force=force) as folder:
-        recovered = found.force.found
-        spread = Estimate(0.0, 1.0).interval[1] * recovered.deviation
-        columns = {
-            "time_s": found.measured.start + found.force.time,
-            "force_N": recovered.force,
-            "force_low_N": recovered.force - spread,
-            "force_high_N": recovered.force + spread,
-        }
-        write_columns(columns, folder / "force.csv")
+        if found.force is not None:
+            recovered = found.force.found
+            spread = Estimate(0.0, 1.0).interval[1] * recovered.deviation
+            columns = {
+                "time_s": found.measured.start + found.force.time,
+                "force_N": recovered.force,
+                "force_low_N": recovered.force - spread,
+                "force_high_N": recovered.force + spread,
+            }
+            write_columns(columns, folder / "force.csv")
         write_summary(summary_of_identification(found), folder)
         (folder / "case.toml").write_text(tomli_w.dumps(resolved_case(found.plate.case)), encoding="utf-8")
         charts = identification_charts(found)
@@ -76,6 +79,7 @@ def save_identification(found: Identification, directory: str | PathLike[str], *
             headers=list(HEADERS),
             rows=identification_rows(found),
             doubts=found.doubts,
+            certain=found.certain,
             version=__version__,
         )
         (folder / "report.html").write_text(page, encoding="utf-8")

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.sensors.antialias import FINENESS
 from vibroimpact.dynamics.sensors.place_responses import sampled_responses
 from vibroimpact.identification.measured import Measured
 from vibroimpact.identification.model_errors import model_error_signals
-from vibroimpact.identification.plate import Plate, compliances_of, shapes_of
+from vibroimpact.identification.plate import Place, Plate, compliances_of, shapes_of
+from vibroimpact.identification.setting import Setting, setup_slopes
 from vibroimpact.signals.inverse.deconvolve import Deconvolved, deconvolve
 
 _BEFORE, _AFTER = 0.35, 1.8
@@ -60,7 +60,7 @@ class Force:
         return float(weights @ self.found.force), self.found.deviation_of(weights)
 
 
-def force_behind(plate: Plate, measured: Measured, there: Problem, touch: float, duration: float) -> Force:
+def force_behind(plate: Plate, measured: Measured, place: Place, touch: float, duration: float, setting: Setting | None = None) -> Force:
     """Return the force behind records, at a place that is known.
 
     Parameters
@@ -68,14 +68,18 @@ def force_behind(plate: Plate, measured: Measured, there: Problem, touch: float,
     plate : Plate
         The plate.
     measured : Measured
-        The records.
-    there : Problem
-        The problem with the contact at the place.
+        The records, with the noise about what a force on this plate explains.
+    place : tuple of two floats
+        The place [m].
     touch, duration : float
         About when the force acts [s].
+    setting : Setting, optional
+        The set-up that was found, with its errors, if not all of it is certain.
     """
-    names = [sensor.name for sensor in measured.sensors]
-    answers = plate.heard(names).at(shapes_of(there), compliances_of(there, names))
+    there = plate.at(place)
+    names, samples = [sensor.name for sensor in measured.sensors], measured.value.shape[1]
+    gains = np.ones((len(names), 1)) if setting is None else 1.0 + setting.found.gain[:, None]
+    answers = gains * plate.heard(names).at(shapes_of(there), compliances_of(there, names))
     points = max(1.0, np.ceil((_BEFORE + _AFTER) * duration * measured.rate * FINENESS / _MOST))
     step = float(points) / (measured.rate * FINENESS)
     time = touch - _BEFORE * duration + step * np.arange(int((_BEFORE + _AFTER) * duration / step) + 1)
@@ -83,17 +87,23 @@ def force_behind(plate: Plate, measured: Measured, there: Problem, touch: float,
     nodes, weights = np.polynomial.legendre.leggauss(4)
     half = 0.5 * (1.0 + nodes)
     spread, share = step * np.concatenate([half - 1.0, 1.0 - half]), 0.5 * step * np.concatenate([weights * half, weights * half])
-    samples = measured.value.shape[1]
     columns = [sampled_responses(answers, measured.rate, one + spread, share, samples) for one in time]
-    matrix = np.stack([(column / measured.noise[:, None]).ravel() for column in columns], axis=1)
-    record = (measured.value / measured.noise[:, None]).ravel()
+    matrix = np.stack([(column * measured.weights).ravel() for column in columns], axis=1)
+    record = (measured.value * measured.weights).ravel()
     # third differences lie between the nodes; those of a kink are large
     beside = time[0] + step * (np.arange(len(time) + 3) - 1.5)
     kinks = sum(np.exp(-(((beside - one) / (_KINK * duration)) ** 2)) for one in (touch, touch + duration))
     first = _smooth(matrix, record, kinks)
     times, impulses = (time[:, None] + spread).ravel(), (first.force[:, None] * share).ravel()
-    of_model = model_error_signals(plate, there, names, measured.rate, times, impulses, samples) / measured.noise[:, None]
-    white = whitening(of_model.reshape(len(of_model), -1).T)
+    errors = gains * model_error_signals(plate, there, names, measured.rate, times, impulses, samples)
+    if setting is not None:
+
+        def signals(of: Floats) -> Floats:
+            return sampled_responses(of, measured.rate, times, impulses, samples)
+
+        by_setup = setup_slopes(setting.plate, plate, setting.numbers, names, place, signals)
+        errors = np.concatenate([errors, np.tensordot(setting.errors.T, by_setup, 1)])
+    white = whitening((errors * measured.weights).reshape(len(errors), -1).T)
     found = _smooth(white(matrix), white(record), kinks)
     left = (record - matrix @ found.force).reshape(measured.value.shape)
     return Force(np.asarray(time), found, measured.noise[:, None] * left)

@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from vibroimpact.cases.pair import ball_of, resized
 from vibroimpact.cases.schema import CaseTable
 from vibroimpact.errors import InputError
-from vibroimpact.identification.doubts import doubts_about
+from vibroimpact.identification.doubts import contradiction, doubts_about
 from vibroimpact.identification.force import Force, force_behind
 from vibroimpact.identification.measured import Measured, measured_of
+from vibroimpact.identification.own_run import is_own_run
 from vibroimpact.identification.plate import Place, Plate, plate_of
-from vibroimpact.identification.pulses import Search, search_place
+from vibroimpact.identification.polarity import upright
+from vibroimpact.identification.pulses import Search
+from vibroimpact.identification.setup import SetupErrors
 from vibroimpact.identification.sphere import SphereFit, fit_sphere
 from vibroimpact.signals.baseline import without_baseline
 from vibroimpact.signals.estimate import Estimate
@@ -23,6 +26,8 @@ from vibroimpact.signals.record import Record
 
 WINDOW = 5e-3
 """Time from first touch on that is used unless another is given [s]."""
+_ALWAYS_CERTAIN = ("damping", "supports", "density of the plate", "material of the sphere", "contact law")
+"""What is always taken as certain."""
 _TOLD = 0.5
 """Least product of band and duration for which a force has a shape that is heard."""
 _VAGUE = 0.5
@@ -43,14 +48,18 @@ class Identification:
         The search for the place.
     sphere : SphereFit
         The sphere whose contact explains the records.
-    force : Force
-        The force from the records alone, without a contact law.
+    force : Force, optional
+        The force from the records alone, without a contact law; None where it contradicts the contact that was fitted.
     estimates : dict of str to Estimate
         What was found, by names that end in their units: `place_x_m`, `place_y_m`, `first_touch_s`, `radius_m`, `mass_kg`, `speed_m_s`,
         `duration_s`, `max_force_N` and `impulse_N_s` from the contact that was fitted; `recovered_max_force_N` and
-        `recovered_impulse_N_s` from the records alone. A place that was given has no deviation.
+        `recovered_impulse_N_s` from the records alone, unless they contradict the contact. A place that was given has no deviation.
     doubts : tuple of str
         What could not be told, and why.
+
+    Notes
+    -----
+    `certain` lists what is taken as certain: errors of it are in no interval.
 
     Examples
     --------
@@ -71,9 +80,14 @@ class Identification:
     measured: Measured
     search: Search
     sphere: SphereFit
-    force: Force
+    force: Force | None
     estimates: dict[str, Estimate]
     doubts: tuple[str, ...]
+
+    @property
+    def certain(self) -> tuple[str, ...]:
+        """What is taken as certain."""
+        return (*self.plate.errors.certain, *_ALWAYS_CERTAIN)
 
 
 def identify(
@@ -83,6 +97,7 @@ def identify(
     place: Place | None = None,
     window: float = WINDOW,
     frequency_error: float = 0.0,
+    errors: SetupErrors | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Identification:
     """Return force, place, size and speed of an impact on an elastic plate, identified from records of its sensors.
@@ -100,6 +115,8 @@ def identify(
         Time from first touch on that is used [s]; it must end before the next impact.
     frequency_error : float, default 0
         Standard deviation of the relative error of the plate's frequencies, beside the estimated error of the mesh [-].
+    errors : SetupErrors, optional
+        Standard deviations of what the case states about the plate and its sensors; by default all of it is taken as certain.
     progress : callable, optional
         Called with the fraction done while modes are computed.
 
@@ -112,7 +129,8 @@ def identify(
     -----
     First a Hertzian pulse is sought over the plate, its impulse, duration and instant being eliminated at each place. From there the case's
     contact, computed on the elastic plate, is fitted to the records by least squares: place, radius, speed and first touch. Intervals
-    follow from what the fit leaves, with the errors of the plate's frequencies and of the modes left out as unknowns with a prior.
+    follow from what the fit leaves, with the errors of the plate's frequencies and of the modes left out as unknowns with a prior, and with
+    those of the set-up that are given. Records read from the folder of a run of the same plate have no errors of mesh and modes.
 
     Examples
     --------
@@ -128,19 +146,28 @@ def identify(
     >>> [round(found.estimates[name].value, 3) for name in ("radius_m", "speed_m_s", "place_x_m", "place_y_m")]
     [0.02, 2.0, 0.02, 0.01]
     """
-    plate = prepared_plate(case, window, frequency_error, progress)
+    model_error = 0.0 if is_own_run(case, records) else 1.0
+    plate = prepared_plate(case, window, frequency_error, progress, errors=errors, model_error=model_error)
     return identify_on(plate, records, place)
 
 
 def prepared_plate(
-    case: CaseTable, window: float = WINDOW, frequency_error: float = 0.0, progress: Callable[[float], None] | None = None
+    case: CaseTable,
+    window: float = WINDOW,
+    frequency_error: float = 0.0,
+    progress: Callable[[float], None] | None = None,
+    *,
+    errors: SetupErrors | None = None,
+    model_error: float = 1.0,
 ) -> Plate:
     """Return the plate of a case for `identify_on`, which identifies many impacts on it.
 
     Parameters
     ----------
-    case, window, frequency_error, progress
+    case, window, frequency_error, progress, errors
         As those of `identify`.
+    model_error : float, default 1
+        Part of the estimated errors of the mesh and of the modes left out that the records have: 0 for those of a run of this model.
 
     Raises
     ------
@@ -151,7 +178,7 @@ def prepared_plate(
         raise InputError(f"a window of {window:g} s is not allowed; it is above 0 and at most 1 s")
     if not 0.0 <= frequency_error < 0.5:
         raise InputError(f"an error of frequencies of {frequency_error:g} is not allowed; 0.01 is 1 %, and it is below 0.5")
-    return plate_of(case, window, frequency_error, progress)
+    return plate_of(case, window, frequency_error, progress, errors=errors, model_error=model_error)
 
 
 def identify_on(plate: Plate, records: Sequence[Record], place: Place | None = None) -> Identification:
@@ -172,11 +199,14 @@ def identify_on(plate: Plate, records: Sequence[Record], place: Place | None = N
     records = [without_baseline(record) for record in records]
     measured, search = _started(plate, records, place)
     sphere = fit_sphere(plate, measured, search.candidates[0], place)
-    force = force_behind(plate, measured, sphere.problem, float(sphere.parameters[4]), float(sphere.force.facts[2]))
-    estimates = _estimates(plate.case, measured, sphere, force)
-    doubts = doubts_about(plate, measured, search, sphere, place is None)
+    at, duration = (float(sphere.parameters[0]), float(sphere.parameters[1])), float(sphere.force.facts[2])
+    about = replace(measured, noise=np.maximum(measured.noise, sphere.noise))
+    force = force_behind(sphere.plate, about, at, float(sphere.parameters[4]), duration, None if plate.errors.is_none else sphere.setting)
+    withheld = contradiction(sphere, force)
+    estimates = _estimates(plate.case, measured, sphere, None if withheld else force)
+    doubts = [*doubts_about(plate, measured, search, sphere, place), *([withheld] if withheld else [])]
     of_files = dict.fromkeys(doubt for record in records for doubt in record.named_doubts)
-    return Identification(plate, measured, search, sphere, force, estimates, (*of_files, *doubts))
+    return Identification(plate, measured, search, sphere, None if withheld else force, estimates, (*of_files, *doubts))
 
 
 def identify_force(case: CaseTable, records: Sequence[Record], place: Place, *, window: float = WINDOW) -> Force:
@@ -209,7 +239,7 @@ def identify_force(case: CaseTable, records: Sequence[Record], place: Place, *, 
     plate = prepared_plate(case, window)
     measured, search = _started(plate, records, place)
     pulse = search.candidates[0]
-    return force_behind(plate, measured, plate.at(place), pulse.touch, pulse.duration)
+    return force_behind(plate, measured, place, pulse.touch, pulse.duration)
 
 
 def _started(plate: Plate, records: Sequence[Record], place: Place | None) -> tuple[Measured, Search]:
@@ -224,8 +254,7 @@ def _started(plate: Plate, records: Sequence[Record], place: Place | None) -> tu
         x, y = plate.half
         words = f"the place ({place[0]:g}, {place[1]:g}) m is off the plate, or too near its edge"
         raise InputError(f"{words}; from the plate's centre it may be up to {x:g} m along x and {y:g} m along y")
-    measured = measured_of(plate.problem.sensors, records, plate.window)
-    search = search_place(plate, measured, place)
+    measured, search = upright(plate, measured_of(plate.problem.sensors, records, plate.window), place)
     pulse = search.candidates[0]
     if pulse.duration * measured.band < _TOLD or pulse.spread > _VAGUE:
         words = f"the sensors hear up to {measured.band:.4g} Hz, which tells contacts of {1e6 * _TOLD / measured.band:.3g} us or longer"
@@ -233,14 +262,14 @@ def _started(plate: Plate, records: Sequence[Record], place: Place | None) -> tu
     return measured, search
 
 
-def _estimates(case: CaseTable, measured: Measured, sphere: SphereFit, force: Force) -> dict[str, Estimate]:
+def _estimates(case: CaseTable, measured: Measured, sphere: SphereFit, force: Force | None) -> dict[str, Estimate]:
     """Return what was found, by names that end in their units."""
     at_x, at_y, radius, speed, touch = sphere.parameters.tolist()
     deviations = np.sqrt(np.diag(sphere.covariance)).tolist()
     of_force = np.sqrt(np.diag(sphere.force_covariance)).tolist()
     peak, impulse, duration = (Estimate(*pair) for pair in zip(sphere.force.facts.tolist(), of_force, strict=True))
     mass = float(ball_of(resized(case.sphere, math.exp(radius))).mass)
-    return {
+    found = {
         "place_x_m": Estimate(at_x, deviations[0]),
         "place_y_m": Estimate(at_y, deviations[1]),
         "first_touch_s": Estimate(measured.start + touch, deviations[4]),
@@ -250,6 +279,7 @@ def _estimates(case: CaseTable, measured: Measured, sphere: SphereFit, force: Fo
         "duration_s": duration,
         "max_force_N": peak,
         "impulse_N_s": impulse,
-        "recovered_max_force_N": Estimate(*force.peak),
-        "recovered_impulse_N_s": Estimate(*force.impulse),
     }
+    if force is None:
+        return found
+    return {**found, "recovered_max_force_N": Estimate(*force.peak), "recovered_impulse_N_s": Estimate(*force.impulse)}

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Bools, Floats
 from vibroimpact.dynamics.sensors.antialias import HALF_LENGTH
 from vibroimpact.dynamics.sensors.sensor import Sensor
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.shown import shown
 from vibroimpact.signals.baseline import without_baseline
+from vibroimpact.signals.clipped import clipped_samples
 from vibroimpact.signals.one_record import is_named
 from vibroimpact.signals.onset import onset_time
 from vibroimpact.signals.record import Record, Removed
@@ -39,6 +40,8 @@ class Measured:
         The sensors.
     value : array, shape (S, samples)
         Their samples.
+    heard : array of bool, shape (S, samples)
+        Whether a sample is used: one that is clipped is not.
     rate : float
         Samples per second [Hz].
     start : float
@@ -51,16 +54,34 @@ class Measured:
         Whether the noise is that before first touch; else it is a guess.
     removed : tuple of Removed
         The baselines that were removed from the records.
+    polarity : array, shape (S,)
+        1, or -1 for a record whose sign was changed.
     """
 
     sensors: tuple[Sensor, ...]
     value: Floats
+    heard: Bools
     rate: float
     start: float
     onset: float
     noise: Floats
     quiet: bool
     removed: tuple[Removed, ...]
+    polarity: Floats
+
+    def inverted(self, which: Floats) -> Measured:
+        """Return the records times 1 or -1 each, (S,)."""
+        return replace(self, value=which[:, None] * self.value, polarity=which * self.polarity)
+
+    @property
+    def weights(self) -> Floats:
+        """One over the noise, (S, samples); zero where a sample is not used."""
+        return self.heard / self.noise[:, None]
+
+    @property
+    def rms(self) -> Floats:
+        """Root mean square of the samples of each that are used."""
+        return rms_of(self.value, self.heard)
 
     @property
     def band(self) -> float:
@@ -90,6 +111,8 @@ def measured_of(sensors: Sequence[Sensor], records: Sequence[Record], window: fl
     rate = used[0].rate
     records = [without_baseline(record) for record in records]
     whole, start = on_common_time(records)
+    of_samples = [replace(record, value=clipped_samples(record).astype(float)) for record in records]
+    clipped = on_common_time(of_samples)[0] > 0.0
     end = start + whole.shape[1] / rate
     onset = min(onset_time(record) for record in records)
     first = max(0, round((onset - start) * rate) - HALF_LENGTH - 1)
@@ -97,14 +120,21 @@ def measured_of(sensors: Sequence[Sensor], records: Sequence[Record], window: fl
     if last - round((onset - start) * rate) < _LEAST:
         words = f"the records have {max(0, last - round((onset - start) * rate))} samples in common from first touch on, to at most"
         raise InputError(f"{words} {1e3 * window:g} ms; {_LEAST} are needed, which are {1e3 * _LEAST / rate:.3g} ms at {rate:g} Hz")
-    value = whole[:, first:last]
+    value, heard = whole[:, first:last], ~clipped[:, first:last]
     quiet = first >= _QUIET
     noise = np.std(whole[:, :first], axis=1) if quiet else np.zeros(len(whole))
-    rms = np.sqrt(np.mean(value**2, axis=1))
+    rms = rms_of(value, heard)
     quiet = bool(quiet and np.all(noise > 1e-9 * rms))
     removed = tuple(record.removed or Removed(0.0, 0.0) for record in records)
     deviation = noise if quiet else _UNKNOWN * rms
-    return Measured(used, value, rate, start + first / rate, onset - start - first / rate, deviation, quiet, removed)
+    return Measured(
+        used, value, heard, rate, start + first / rate, onset - start - first / rate, deviation, quiet, removed, np.ones(len(used))
+    )
+
+
+def rms_of(value: Floats, heard: Bools) -> Floats:
+    """Return the root mean square of each row (S, samples) over the samples that are used."""
+    return np.asarray(np.sqrt((value**2 * heard).sum(axis=1) / np.maximum(heard.sum(axis=1), 1)))
 
 
 def sensors_of(sensors: Sequence[Sensor], records: Sequence[Record]) -> tuple[Sensor, ...]:

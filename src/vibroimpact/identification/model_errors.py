@@ -40,6 +40,6 @@ def model_error_signals(
     def signals(at: Floats) -> Floats:
         return sampled_responses(at, rate, times, impulses, samples)
 
-    static = np.eye(len(names))[:, :, None] * signals(compliances_of(there, names)[:, None] * residual)
+    static = plate.model_error * np.eye(len(names))[:, :, None] * signals(compliances_of(there, names)[:, None] * residual)
     scaled = (plate.frequency_errors * shapes)[:, None, None] * plate.detuned(names)
     return np.concatenate([static, signals(scaled.reshape(len(shapes) * len(names), -1)).reshape(len(shapes), len(names), samples)])

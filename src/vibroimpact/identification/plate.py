@@ -18,12 +18,15 @@ from vibroimpact.cases.fields.elastic_body import BroughtMeshTable
 from vibroimpact.cases.oblique import oblique_keys
 from vibroimpact.cases.schema import CaseTable
 from vibroimpact.dynamics.problem import Problem
-from vibroimpact.dynamics.sensors.place_responses import PlaceResponses, place_responses
+from vibroimpact.dynamics.sensors.place_responses import PlaceResponses, sensor_shapes, unit_responses
+from vibroimpact.dynamics.sensors.sensor import Sensor
 from vibroimpact.dynamics.vibrating.bodies import bases_of_plate
 from vibroimpact.errors import InputError
-from vibroimpact.structures.modal_model import rigid_basis
+from vibroimpact.identification.setup import Setup, SetupErrors, stretched, with_resonance
+from vibroimpact.structures.modal_model import ModalBasis, rigid_basis
 from vibroimpact.structures.recipe import PlateOfPlates, PlateOfSolids
 from vibroimpact.structures.static_compliance import computed_compliances
+from vibroimpact.structures.surface import Side, place_of
 
 Place = tuple[float, float]
 """x and y on the plate [m]."""
@@ -32,12 +35,16 @@ _PER_WAVE = 6.0
 """Places of the grid per shortest wavelength of the modes."""
 _DETUNED = 1e-5
 """Relative step of a frequency in derivatives."""
+_ALIKE = 1e-4
+"""Largest relative difference of frequencies between plates that share these derivatives."""
 _LEFT_OUT = 16
 """Number of modes that stand for those left out: so dense that they do not swing back during a contact."""
 _FINER, _PLACES, _MIDDLE = 1.5, 32, 0.6
 """How much finer a mesh is whose static compliance is compared, at how many places, over what part of the length and width of the plate."""
 _MARGIN = 1.5
 """Least distance of a place from the edge, in thicknesses."""
+_SHEAR = 5.0 / 6.0
+"""Part of the section of a plate that carries shear."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,15 +61,28 @@ class Plate:
         Length of the responses [s].
     frequency_errors : array, shape (modes,)
         Standard deviation of the relative error of the frequency of each rigid motion and mode [-].
+    errors : SetupErrors
+        What is not certain of the case.
+    model_error : float
+        Part of the estimated errors of the mesh and of the modes left out that records have: 1 of those of a plate, 0 of those of a run of
+        this same model.
+    setup : Setup, optional
+        How the plate and its sensors differ from the case.
     responses : dict
         Responses that were computed, by the names of sensors.
+    detunings : dict
+        Their derivatives in the frequencies, with these frequencies, which plates in similar set-ups share.
     """
 
     case: CaseTable
     problem: Problem
     window: float
     frequency_errors: Floats
+    errors: SetupErrors = field(default_factory=SetupErrors)
+    model_error: float = 1.0
+    setup: Setup | None = None
     responses: dict[tuple[str, ...], PlaceResponses] = field(default_factory=dict)
+    detunings: dict[tuple[str, ...], tuple[Floats, Floats]] = field(default_factory=dict)
 
     @property
     def half(self) -> tuple[float, float]:
@@ -70,6 +90,13 @@ class Plate:
         extent, thickness = self.problem.models["plate"].mesh.extent, self.problem.models["plate"].thickness
         margin = _MARGIN * (thickness or float(extent[2]))
         return 0.5 * float(extent[0]) - margin, 0.5 * float(extent[1]) - margin
+
+    @property
+    def modes(self) -> ModalBasis:
+        """Its modes, with the contact at the place of the drop."""
+        modes = self.problem.plate.modes
+        assert modes is not None  # `plate_of` has seen to it
+        return modes
 
     @cached_property
     def grid(self) -> tuple[Floats, Floats, Floats]:
@@ -95,38 +122,113 @@ class Plate:
         added = computed_compliances(finer, places) / computed_compliances(recipe, places) - 1.0
         return float(added.mean()), float(added.std())
 
+    @cached_property
+    def thickness_exponents(self) -> Floats:
+        r"""Exponent n of each mode, by which its frequency is proportional to :math:`h^n` with the thickness h, (modes,).
+
+        That of a plane bending wave of the wavenumber k in Mindlin's theory, :math:`\omega \propto k^2 h\,(1 + c (k h)^2)^{-1/2}`: one in
+        thin plates, and less where shear and rotary inertia count.
+        """
+        material, model = self.case.plate.material, self.problem.models["plate"]
+        thickness, ratio = model.thickness or float(model.mesh.extent[2]), material.poissons_ratio
+        share = (1.0 + 2.0 / (_SHEAR * (1.0 - ratio))) / 12.0
+        speed = np.sqrt(material.youngs_modulus / (12.0 * material.density * (1.0 - ratio**2)))
+        square = (self.modes.angular_frequencies * thickness / speed) ** 2  # (kh)^4 / (1 + c (kh)^2)
+        shear = 0.5 * share * (share * square + np.sqrt((share * square) ** 2 + 4.0 * square))
+        return np.asarray(1.0 / (1.0 + shear))
+
+    @property
+    def touched(self) -> CaseTable:
+        """The case with the modulus of the plate as the set-up has it, for its contact."""
+        if self.setup is None or not self.setup.modulus:
+            return self.case
+        material = self.case.plate.material
+        stiffer = replace(material, youngs_modulus=(1.0 + self.setup.modulus) * material.youngs_modulus)
+        return self.case.model_copy(update={"plate": self.case.plate.model_copy(update={"material": stiffer})})
+
+    def under(self, setup: Setup, names: Sequence[str]) -> Plate:
+        """Return the plate of a set-up that differs from the case, whose sensors are these."""
+        moved = {name: self._at_sensor(name, (float(x), float(y))) for name, (x, y) in zip(names, setup.moved, strict=True) if x or y}
+        resonances = dict(zip(names, setup.resonance.tolist(), strict=True))
+        sensors = tuple(with_resonance(sensor, resonances.get(sensor.name, 0.0)) for sensor in self.problem.sensors)
+        modes = replace(self.modes, points={**self.modes.points, **moved})
+        problem = replace(self.problem, plate=replace(self.problem.plate, modes=modes), sensors=sensors)
+        found = replace(self, problem=stretched(problem, setup, self.thickness_exponents), setup=setup, responses={})
+        x, y, shapes = self.grid
+        # both are relative to what changes, and take seconds
+        vars(found).update(lacking=self.lacking, grid=(x, y, (1.0 + setup.thickness) ** -0.5 * shapes))
+        return found
+
+    def _at_sensor(self, name: str, by: Place) -> Floats:
+        """Return the mode shapes at a sensor that is moved along x and y [m], (modes, 3); those of supports are not moved."""
+        model, body = self.problem.models["plate"], elastic_bodies(self.case)["plate"]
+        if name in body.pressed:
+            return self.modes.points[name]
+        spot, side = body.sensors[name]
+        x, y = place_of(model.mesh, spot, side)
+        low, high = model.mesh.nodes[:, :2].min(axis=0), model.mesh.nodes[:, :2].max(axis=0)
+
+        def seen(place: Floats, side: Side) -> Floats:
+            if name in body.strained:
+                return model.strains((float(place[0]), float(place[1])), side)
+            return model.at(place[None], side)[0][:, 0]
+
+        there, here = np.clip([x + by[0], y + by[1]], low, high), np.array([x, y])
+        # the difference, since the shapes at the sensor include what the theory of plates adds at a face
+        return np.asarray(self.modes.points[name] + seen(there, side) - seen(here, side))
+
     def deflections(self, places: Floats) -> Floats:
         """Return the upward deflection at places (P, 2) in each rigid motion and mode, (P, modes) [kg^-1/2]."""
-        model = self.problem.models["plate"]
-        of_modes = model.at(places, "upper")[0][:, :, 2].T
+        model, lighter = self.problem.models["plate"], 1.0 if self.setup is None else (1.0 + self.setup.thickness) ** -0.5
+        of_modes = lighter * model.at(places, "upper")[0][:, :, 2].T
         if self.problem.plate.rigid is None:
             return np.asarray(of_modes)
         rigid = [rigid_basis(model, ((float(x), float(y)), "upper"), {}) for x, y in places]
-        return np.concatenate([[one.contact for one in rigid if one is not None], of_modes], axis=1)
+        return np.concatenate([[lighter * one.contact for one in rigid if one is not None], of_modes], axis=1)
 
     def at(self, place: Place) -> Problem:
         """Return the problem with the contact at a place."""
-        return at_place(self.case, self.problem, place)
+        there = at_place(self.case, self.problem, place)
+        if self.setup is None:
+            return there
+        there = stretched(there, self.setup, self.thickness_exponents)
+        assert there.plate.modes is not None  # as those of the plate
+        modes = replace(there.plate.modes, points=self.modes.points)
+        return there.on_plate(replace(there.plate, modes=modes), there.quasi_static)
+
+    def sensors(self, names: Sequence[str]) -> list[Sensor]:
+        """Return the sensors of some names."""
+        by_name = {sensor.name: sensor for sensor in self.problem.sensors}
+        return [by_name[name] for name in names]
 
     def heard(self, names: Sequence[str]) -> PlaceResponses:
         """Return the responses of some sensors."""
-        return self._responses(tuple(names), self.problem, "")
+        found = self.unit(names)
+        return replace(found, values=self.seen(names)[:, :, None] * found.values)
+
+    def seen(self, names: Sequence[str]) -> Floats:
+        """Return what each rigid motion and mode does at some sensors, (modes, S)."""
+        return sensor_shapes(self.problem, self.sensors(names))
+
+    def unit(self, names: Sequence[str]) -> PlaceResponses:
+        """Return the responses of some sensors at which each mode is one."""
+        if (key := tuple(names)) not in self.responses:
+            self.responses[key] = unit_responses(self.problem, self.sensors(names), self.window)
+        return self.responses[key]
 
     def detuned(self, names: Sequence[str]) -> Floats:
         """Return the derivatives of the responses in the logarithm of the frequency of each mode, (modes, S, points)."""
-        modes = self.problem.plate.modes
-        assert modes is not None  # `plate_of` has seen to it
-        higher = replace(modes, frequencies=(1.0 + _DETUNED) * modes.frequencies)
-        problem = replace(self.problem, plate=replace(self.problem.plate, modes=higher))
-        return (self._responses(tuple(names), problem, "detuned").values - self.heard(names).values) / _DETUNED
+        return np.asarray(self.seen(names)[:, :, None] * self.unit_detuned(names))
 
-    def _responses(self, names: tuple[str, ...], problem: Problem, what: str) -> PlaceResponses:
-        """Return responses, from those that were computed if they are there."""
-        key = (*names, what)
-        if key not in self.responses:
-            by_name = {sensor.name: sensor for sensor in problem.sensors}
-            self.responses[key] = place_responses(problem, [by_name[name] for name in names], self.window)
-        return self.responses[key]
+    def unit_detuned(self, names: Sequence[str]) -> Floats:
+        """Return those of `unit`; those of a set-up that differs little in frequency are taken from there."""
+        key, frequencies = tuple(names), self.modes.frequencies
+        if key not in self.detunings or np.abs(frequencies / self.detunings[key][0] - 1.0).max() > _ALIKE:
+            modes = replace(self.modes, frequencies=(1.0 + _DETUNED) * frequencies)
+            problem = replace(self.problem, plate=replace(self.problem.plate, modes=modes))
+            higher = unit_responses(problem, self.sensors(names), self.window)
+            self.detunings[key] = frequencies, (higher.values - self.unit(names).values) / _DETUNED
+        return self.detunings[key][1]
 
 
 def shapes_of(problem: Problem) -> Floats:
@@ -198,7 +300,15 @@ def compliance_error(plate: Plate, problem: Problem) -> tuple[float, float]:
     return mean, math.hypot(spread, 2.0 * float(plate.frequency_errors[-len(of_modes) :] @ of_modes))
 
 
-def plate_of(case: CaseTable, window: float, frequency_error: float = 0.0, progress: Callable[[float], None] | None = None) -> Plate:
+def plate_of(
+    case: CaseTable,
+    window: float,
+    frequency_error: float = 0.0,
+    progress: Callable[[float], None] | None = None,
+    *,
+    errors: SetupErrors | None = None,
+    model_error: float = 1.0,
+) -> Plate:
     """Return the plate of a case.
 
     Parameters
@@ -211,6 +321,10 @@ def plate_of(case: CaseTable, window: float, frequency_error: float = 0.0, progr
         Standard deviation of the relative error of the frequencies of the plate, beside what the mesh makes [-].
     progress : callable, optional
         Called with the fraction done while modes are computed.
+    errors : SetupErrors, optional
+        What is not certain of the case; nothing by default.
+    model_error : float, default 1
+        Part of the estimated errors of the mesh and of the modes left out that records have.
 
     Raises
     ------
@@ -237,5 +351,7 @@ def plate_of(case: CaseTable, window: float, frequency_error: float = 0.0, progr
     rigid, modes = problem.plate.rigid, problem.plate.modes
     assert modes is not None  # the plate is elastic
     of_mesh = np.zeros(len(modes.frequencies)) if modes.frequency_errors is None else np.nan_to_num(modes.frequency_errors)
-    errors = np.concatenate([np.zeros(0 if rigid is None else len(rigid.frequencies)), np.hypot(of_mesh, frequency_error)])
-    return Plate(case, problem, window, errors)
+    of_frequencies = np.concatenate(
+        [np.zeros(0 if rigid is None else len(rigid.frequencies)), np.hypot(model_error * of_mesh, frequency_error)]
+    )
+    return Plate(case, problem, window, of_frequencies, errors or SetupErrors(), model_error)

@@ -35,7 +35,7 @@ _RATIO = 1e-3  # of derivatives in the duration
 class Candidate:
     """A place [m] with the Hertzian pulse that fits the records best there: impulse [N s], duration and first touch [s].
 
-    `spread`: standard deviation of the logarithm of the duration.
+    `spread`: standard deviation of the logarithm of the duration. `stretch`: by what part all frequencies of the plate are higher.
     """
 
     place: Place
@@ -43,6 +43,7 @@ class Candidate:
     duration: float
     touch: float
     spread: float
+    stretch: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -91,7 +92,7 @@ def search_place(plate: Plate, measured: Measured, place: Place | None = None) -
             start = [*places[best], np.log(matched.impulse[best]), np.log(matched.duration[best]), matched.touch[best]]
             fits.append(_refined(plate, measured, np.array(start), known=place is not None))
     energies = np.array([float(fit.residual @ fit.residual) for fit in fits])
-    scale = energies.min() / (measured.value.size - 5)
+    scale = energies.min() / (np.count_nonzero(measured.heard) - 5)
     step = 0.0 if place is not None else float(np.hypot(x[1] - x[0], y[1] - y[0]))
     found: list[Candidate] = []
     for one in np.argsort(energies):
@@ -109,20 +110,21 @@ def _over_the_plate(plate: Plate, measured: Measured, shapes: Floats) -> Matched
     heard = plate.heard([sensor.name for sensor in measured.sensors])
     modes, number, _ = heard.values.shape
     samples, rate = measured.value.shape[1], measured.rate
-    flat, weights = heard.values.reshape(modes * number, -1), np.tile(1.0 / measured.noise, modes)[:, None]
+    flat, weights = heard.values.reshape(modes * number, -1), measured.weights
     earliest, tried = math.floor(measured.onset * rate - _EARLIER), _EARLIER + _LATER
 
     @lru_cache(maxsize=_PHASES)
     def sampled(duration: float, phase: int) -> Floats:
         time, impulse = hertz_impulses(duration)
-        return weights * sampled_responses(flat, rate, (earliest + tried + phase / _PHASES) / rate + time, impulse, samples + tried)
+        return sampled_responses(flat, rate, (earliest + tried + phase / _PHASES) / rate + time, impulse, samples + tried)
 
     def responses(duration: float, touch: int) -> Floats:
         later, phase = divmod(touch, _PHASES)
         first = tried - later  # a pulse that is a sample later is the same samples, from one earlier on
-        return sampled(duration, phase)[:, first : first + samples].reshape(modes, -1)
+        part = sampled(duration, phase)[:, first : first + samples].reshape(modes, number, samples)
+        return np.asarray((part * weights).reshape(modes, -1))
 
-    records = (measured.value / measured.noise[:, None]).ravel()
+    records = (measured.value * weights).ravel()
     durations = np.geomspace(_SHORTEST, _LONGEST, _DURATIONS) / measured.band
     matched = match_pulses(shapes, records, responses, durations.tolist(), range(_PHASES * tried))
     return matched._replace(misfit=matched.misfit / float(records @ records), touch=(earliest + matched.touch / _PHASES) / rate)
@@ -142,7 +144,7 @@ def _refined(plate: Plate, measured: Measured, start: Floats, *, known: bool) ->
         def record(at: Floats, longer: float = 1.0, later: float = 0.0) -> Floats:
             time, impulses = hertz_impulses(duration * longer)
             found = sampled_responses(at, measured.rate, touch + later + time, impulse * impulses, samples)
-            return np.asarray((found / measured.noise[:, None]).ravel())
+            return np.asarray((found * measured.weights).ravel())
 
         here, later = record(answers[0]), _LEAP / measured.rate
         slopes = [
@@ -153,7 +155,7 @@ def _refined(plate: Plate, measured: Measured, start: Floats, *, known: bool) ->
         ]
         if known:
             slopes[:2] = [np.zeros_like(here)] * 2
-        return here - (measured.value / measured.noise[:, None]).ravel(), np.stack(slopes, axis=1)
+        return here - (measured.value * measured.weights).ravel(), np.stack(slopes, axis=1)
 
     most = np.array([*(0.25 * (2.0 * bound) / 8.0), 0.5, 0.3, 1.0 / measured.rate])
     return gauss_newton(model, start, most)

@@ -9,7 +9,9 @@ contain them:
   frequencies as its deviation;
 * the static response of the modes left out to each sensor is multiplied by :math:`1 + d_s`, of zero mean and deviation one, as it grows
   towards their frequencies;
-* each frequency is multiplied by :math:`1 + \epsilon_i`, of zero mean and of its own estimated error.
+* each frequency is multiplied by :math:`1 + \epsilon_i`, of zero mean and of its own estimated error;
+* what is stated as uncertain of the plate and its sensors: thickness, modulus, positions, sensitivities, resonances. The records are not
+  linear in these, and are computed again for each step of the fit.
 """
 
 from __future__ import annotations
@@ -29,8 +31,11 @@ from vibroimpact.identification.measured import Measured
 from vibroimpact.identification.model_errors import model_error_signals
 from vibroimpact.identification.plate import Place, Plate, compliance_error, compliances_of, shapes_of, with_compliance, with_modes_left_out
 from vibroimpact.identification.pulses import Candidate
+from vibroimpact.identification.setting import OF_PLATE, STEPS, Setting, numbers_of, setup_slopes
+from vibroimpact.identification.setup import Setup
 from vibroimpact.signals.inverse.gauss_newton import Fit, gauss_newton
 from vibroimpact.signals.inverse.hertz_pulse import sphere_of_pulse
+from vibroimpact.signals.inverse.noise_left import noise_left
 
 _NUDGE, _LEAP, _RATIO = 1e-4, 0.02, 2e-3
 """Steps of derivatives: along the plate [m], in time [samples], in radius and speed [-]."""
@@ -44,8 +49,10 @@ _NEXT_OCTAVE = 0.3
 """Standard deviation of the effect of the modes of the next octave, over its estimate: twice that over 60 places of a plate."""
 _FITTED = 5
 """Number of parameters that are asked for; unknowns with a prior follow them."""
-_OF_FORCE = [2, 3, 5, 6, 7]
-"""Those that the contact force depends on: radius, speed, both c and the error of the compliance."""
+_OF_CONTACT = 3
+"""Number of unknowns of the contact, which are the first: both c and the error of the compliance."""
+_FARTHEST = np.array([3e-3, 6e-3, 3e-3, 3e-3, 0.3, 0.1])
+"""Largest change in a step of the fit of thickness, modulus [-], x, y of a sensor [m], its sensitivity and resonance [-]."""
 
 
 @dataclass(frozen=True)
@@ -64,8 +71,14 @@ class SphereFit:
         Covariance of the facts of the force.
     residual : array, shape (S, samples)
         What the fit leaves of the records, in their units.
+    noise : array, shape (S,)
+        Standard deviation of each record about the fit, as it tells it.
     problem : Problem
         The problem with its contact at the place.
+    plate : Plate
+        The plate in the set-up that was found.
+    setting : Setting
+        That set-up, with its errors; as the case states it, where it is taken as certain.
     converged : bool
         Whether the fit came to an end.
     """
@@ -75,7 +88,10 @@ class SphereFit:
     force: ContactForce
     force_covariance: Floats
     residual: Floats
+    noise: Floats
     problem: Problem
+    plate: Plate
+    setting: Setting
     converged: bool
 
 
@@ -83,8 +99,8 @@ class _Explained(NamedTuple):
     """What a sphere makes of the records.
 
     `left`: its signals less the records, (S, samples). `slopes`: derivatives of `left` in all parameters and unknowns (S, samples, p).
-    `force`: its contact force. `force_slopes`: derivatives of the facts of the force in radius, speed and its three unknowns, (3, 5).
-    `problem`: with the contact at its place.
+    `force`: its contact force. `force_slopes`: derivatives of the facts of the force in all parameters and unknowns, (3, p).
+    `problem`: with the contact at its place. `plate`: in its set-up.
     """
 
     left: Floats
@@ -92,6 +108,7 @@ class _Explained(NamedTuple):
     force: ContactForce
     force_slopes: Floats
     problem: Problem
+    plate: Plate
 
 
 def fit_sphere(plate: Plate, measured: Measured, start: Candidate, place: Place | None = None) -> SphereFit:
@@ -108,14 +125,20 @@ def fit_sphere(plate: Plate, measured: Measured, start: Candidate, place: Place 
     place : tuple of two floats, optional
         The place [m], if it is known.
     """
-    case = plate.case
+    case, sensors = plate.case, len(measured.sensors)
     pulse = (start.impulse, start.duration, float(sphere_density(case.sphere)), contact_pair(case).effective_modulus)
     radius, speed = sphere_of_pulse(*pulse, _RESTITUTION)
     parameters = np.array([*(start.place if place is None else place), np.log(radius), np.log(speed), start.touch])
     lacking, deviation = compliance_error(plate, plate.problem)
-    unknowns = 3 + len(measured.sensors) + len(plate.frequency_errors)  # in their deviations
-    expected = np.append([1.0 / _NEXT_OCTAVE, 1.0, lacking / deviation if deviation else 0.0], np.zeros(unknowns - 3))
-    most = np.array([*(0.06 * np.array(plate.half)), 0.3, 0.3, 1.0 / measured.rate, *np.full(unknowns, np.inf)])
+    deviations = plate.errors.deviations(sensors)
+    unknowns = _OF_CONTACT + sensors + len(plate.frequency_errors) + len(deviations)  # in their deviations
+    expected = np.append([1.0 / _NEXT_OCTAVE, 1.0, lacking / deviation if deviation else 0.0], np.zeros(unknowns - _OF_CONTACT))
+    begin = expected.copy()
+    begin[-len(deviations) :][:2] = plate.errors.split(start.stretch)
+    farthest = np.concatenate([_FARTHEST[:2], np.repeat(_FARTHEST[2:], sensors)])
+    in_deviations = np.divide(farthest, deviations, out=np.full(len(deviations), np.inf), where=deviations > 0.0)
+    of_model = np.full(unknowns - len(deviations), np.inf)
+    most = np.array([*(0.06 * np.array(plate.half)), 0.3, 0.3, 1.0 / measured.rate, *of_model, *in_deviations])
     by_prior = np.concatenate([np.zeros((unknowns, _FITTED)), np.eye(unknowns)], axis=1)
     free = np.concatenate([np.full(2, place is None), np.ones(3 + unknowns)])
 
@@ -124,79 +147,89 @@ def fit_sphere(plate: Plate, measured: Measured, start: Candidate, place: Place 
         return _explained(plate, measured, np.frombuffer(given))
 
     def weighted(given: Floats, noise: Floats) -> tuple[Floats, Floats]:
-        found = explained(given.tobytes())
-        slopes = found.slopes * free / noise[:, None, None]
-        residual = np.append(found.left / noise[:, None], given[_FITTED:] - expected)
+        found, weights = explained(given.tobytes()), measured.heard / noise[:, None]
+        slopes = found.slopes * free * weights[:, :, None]
+        residual = np.append(found.left * weights, given[_FITTED:] - expected)
         return residual, np.concatenate([slopes.reshape(-1, len(free)), by_prior])
 
-    def noise_left(fit: Fit, noise: Floats) -> Floats:
-        return _noise_of(explained(fit.parameters.tobytes()).left, weighted(fit.parameters, noise)[1], fit.covariance)
+    def left_by(fit: Fit, noise: Floats) -> Floats:
+        slopes = weighted(fit.parameters, noise)[1][: measured.value.size]
+        return noise_left(explained(fit.parameters.tobytes()).left, measured.heard, slopes, fit.covariance)
 
-    fit = gauss_newton(partial(weighted, noise=measured.noise), np.append(parameters, expected), most)
-    exact = _EXACT * np.sqrt((measured.value**2).mean(axis=1))
-    noise = np.maximum(noise_left(fit, measured.noise), exact)
+    fit = gauss_newton(partial(weighted, noise=measured.noise), np.append(parameters, begin), most)
+    exact = _EXACT * measured.rms
+    noise = np.maximum(left_by(fit, measured.noise), exact)
     for _ in range(_ROUNDS):
         fit = gauss_newton(partial(weighted, noise=noise), fit.parameters, most)
-        less = np.maximum(noise_left(fit, noise), exact)
+        less = np.maximum(left_by(fit, noise), exact)
         if np.all(less > _SETTLED * noise):
             break
         noise = less  # the fit came from afar, and ended with what was left there as noise
     found, half = explained(fit.parameters.tobytes()), np.array(plate.half)
+    vectors, values, _ = np.linalg.svd(fit.covariance[-len(deviations) :, -len(deviations) :], hermitian=True)
     return SphereFit(
         np.append(np.clip(fit.parameters[:2], -half, half), fit.parameters[2:_FITTED]),
         fit.covariance[:_FITTED, :_FITTED],
         found.force,
-        found.force_slopes @ fit.covariance[np.ix_(_OF_FORCE, _OF_FORCE)] @ found.force_slopes.T,
+        found.force_slopes @ fit.covariance @ found.force_slopes.T,
         -found.left,
+        noise,
         found.problem,
+        found.plate,
+        Setting(plate, fit.parameters[-len(deviations) :] * deviations, deviations[:, None] * vectors * np.sqrt(values)),
         fit.converged,
     )
 
 
-def _noise_of(left: Floats, slopes: Floats, covariance: Floats) -> Floats:
-    """Return the noise of each record from what a fit leaves of it (S, samples), which tells it better than a short quiet part does.
-
-    What is left has less energy than the noise by what the fit follows of it: as many samples as unknowns that the record tells, which is
-    the trace of its part of the projection (MacKay, as for the force).
-    """
-    sensors, samples = left.shape
-    of_records = slopes[: left.size].reshape(sensors, samples, -1)
-    followed = ((of_records @ covariance) * of_records).sum(axis=(1, 2))
-    return np.asarray(np.sqrt((left**2).sum(axis=1) / (samples - followed)))
-
-
 def _explained(plate: Plate, measured: Measured, parameters: Floats) -> _Explained:
     """Return what a sphere makes of the records, from its parameters and the unknowns, in their deviations."""
-    case, names = plate.case, [sensor.name for sensor in measured.sensors]
-    heard, bound, samples = plate.heard(names), np.array(plate.half), measured.value.shape[1]
-    place, (radius, speed, touch), unknown = np.clip(parameters[:2], -bound, bound), parameters[2:_FITTED], parameters[_FITTED:]
-    there = plate.at((float(place[0]), float(place[1])))
+    names, sensors = [sensor.name for sensor in measured.sensors], len(measured.sensors)
+    deviations, bound, samples = plate.errors.deviations(sensors), np.array(plate.half), measured.value.shape[1]
+    place, (radius, speed, touch) = np.clip(parameters[:2], -bound, bound), parameters[2:_FITTED]
+    unknown, numbers = parameters[_FITTED : -len(deviations)], parameters[-len(deviations) :] * deviations
+    setup, at = Setup.of(numbers), (float(place[0]), float(place[1]))
+    here = plate if plate.errors.is_none else plate.under(setup, names)
+    heard, there = here.heard(names), here.at(at)
     answers = heard.at(shapes_of(there), compliances_of(there, names))
-    nudged = plate.deflections(place + _NUDGE * np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]))
+    nudged = here.deflections(place + _NUDGE * np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]))
     radii, speeds = np.exp(radius + _RATIO * np.array([0, 1, 0])), np.exp(speed + _RATIO * np.array([0, 0, 1]))
-    force, *others = contact_forces(case, there, radii, speeds)
-    softer = with_compliance(there, compliance_error(plate, there)[1])
-    changed = [contact_forces(case, one, radii[:1], speeds[:1])[0] for one in (*with_modes_left_out(there), softer)]
+    force, *others = contact_forces(here.touched, there, radii, speeds)
+    softer = with_compliance(there, compliance_error(here, there)[1])
+    changed = [contact_forces(here.touched, one, radii[:1], speeds[:1])[0] for one in (*with_modes_left_out(there), softer)]
+    gains = 1.0 + setup.gain[:, None]
 
-    def signals(at: Floats, of: ContactForce = force, later: float = 0.0) -> Floats:
-        return sampled_responses(at, measured.rate, touch + later + of.time, of.impulse, samples)
+    def signals(of_sensors: Floats, of: ContactForce = force, later: float = 0.0) -> Floats:
+        return gains * sampled_responses(of_sensors, measured.rate, touch + later + of.time, of.impulse, samples)
 
     bare, later = signals(answers), _LEAP / measured.rate
-    of_model = model_error_signals(plate, there, names, measured.rate, touch + force.time, force.impulse, samples)
-    deviations = np.array([_NEXT_OCTAVE, 1.0, 1.0])
-    errors = np.concatenate([deviations[:, None, None] * [signals(answers, one) - bare for one in changed], of_model])
+
+    of_setup, facts_of_setup = np.zeros((len(deviations), *bare.shape)), np.zeros((len(force.facts), len(deviations)))
+    if not plate.errors.is_none:
+        of_setup = setup_slopes(plate, here, numbers, names, at, lambda of: signals(of) / gains)
+    for number in np.flatnonzero(deviations[:OF_PLATE]):
+        step = STEPS[number]
+        other = plate.under(Setup.of(numbers + step * numbers_of(int(number), sensors)), names)
+        (of,) = contact_forces(other.touched, other.at(at), radii[:1], speeds[:1])
+        of_setup[number] += (signals(answers, of) - bare) / step
+        facts_of_setup[:, number] = (of.facts - force.facts) / step
+    of_model = model_error_signals(here, there, names, measured.rate, touch + force.time, force.impulse, samples)
+    of_contact = here.model_error * np.array([_NEXT_OCTAVE, 1.0, 1.0])
+    errors = np.concatenate([of_contact[:, None, None] * [signals(answers, one) - bare for one in changed], gains * of_model])
     none = np.zeros(len(names))
     slopes = [
         *(signals(heard.at((one - nudged[0]) / _NUDGE, none)) for one in nudged[1:]),
         *((signals(answers, one) - bare) / _RATIO for one in others),
         (signals(answers, later=later) - bare) / later,
     ]
-    of_unknowns = deviations * np.stack([one.facts - force.facts for one in changed], axis=1)
-    of_radius_and_speed = np.stack([(one.facts - force.facts) / _RATIO for one in others], axis=1)
+    facts_of_contact = of_contact * np.stack([one.facts - force.facts for one in changed], axis=1)
+    facts_of_radius_and_speed = np.stack([(one.facts - force.facts) / _RATIO for one in others], axis=1)
+    nothing = np.zeros((len(force.facts), len(errors) - _OF_CONTACT))
+    facts = [np.zeros((3, 2)), facts_of_radius_and_speed, np.zeros((3, 1)), facts_of_contact, nothing, facts_of_setup * deviations]
     return _Explained(
         bare + np.tensordot(unknown, errors, 1) - measured.value,
-        np.moveaxis(np.concatenate([np.stack(slopes), errors]), 0, -1),
-        replace(force, facts=force.facts + of_unknowns @ unknown[: len(changed)]),
-        np.concatenate([of_radius_and_speed, of_unknowns], axis=1),
+        np.moveaxis(np.concatenate([np.stack(slopes), errors, deviations[:, None, None] * of_setup]), 0, -1),
+        replace(force, facts=force.facts + facts_of_contact @ unknown[:_OF_CONTACT]),
+        np.concatenate(facts, axis=1),
         there,
+        here,
     )

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -77,6 +77,12 @@ def sampled_responses(answers: Floats, rate: float, times: Floats, impulses: Flo
     return values
 
 
+def sensor_shapes(problem: Problem, sensors: Sequence[Sensor]) -> Floats:
+    """Return what each rigid motion and mode of the plate of a problem does at sensors, (modes, S)."""
+    bases = bases_of_plate(problem)
+    return np.stack([np.concatenate([one.points[of.name] for one in bases]) @ np.asarray(of.components) for of in sensors], axis=1)
+
+
 def place_responses(problem: Problem, sensors: Sequence[Sensor], duration: float) -> PlaceResponses:
     """Return the responses of sensors to a force at any place of the plate of a problem.
 
@@ -94,10 +100,27 @@ def place_responses(problem: Problem, sensors: Sequence[Sensor], duration: float
     InputError
         If the rates differ, or a sensor is a microphone or has no anti-alias filter.
     """
+    found = unit_responses(problem, sensors, duration)
+    return replace(found, values=sensor_shapes(problem, sensors)[:, :, None] * found.values)
+
+
+def unit_responses(problem: Problem, sensors: Sequence[Sensor], duration: float) -> PlaceResponses:
+    """Return the responses of sensors at which each mode of the plate of a problem is one: those of `sensor_shapes` are their multiples.
+
+    Parameters
+    ----------
+    problem, sensors, duration
+        As those of `place_responses`.
+
+    Raises
+    ------
+    InputError
+        As `place_responses`.
+    """
     _check(sensors)
     # a port for each number that the response is linear in: it alone is one
-    ports = np.eye(len(np.concatenate([basis.frequencies for basis in bases_of_plate(problem)])) + 1)
-    each = [_responses(problem, sensor, duration, ports) for sensor in sensors]
+    modes = len(np.concatenate([basis.frequencies for basis in bases_of_plate(problem)]))
+    each = [_responses(problem, sensor, duration, np.eye(modes + 1), np.ones(modes)) for sensor in sensors]
     points = min(one.shape[1] for one in each)  # those of a converter's filter are a few longer
     found = np.stack([one[:, :points] for one in each], axis=1)
     return PlaceResponses(sensors[0].rate, found[:-1], found[-1])
@@ -119,7 +142,9 @@ def responses_at(problem: Problem, sensors: Sequence[Sensor], duration: float, s
         As `place_responses`.
     """
     _check(sensors)
-    each = [_responses(problem, one, duration, np.append(shapes, c)[None])[0] for one, c in zip(sensors, compliance, strict=True)]
+    seen = sensor_shapes(problem, sensors).T
+    ports = [np.append(shapes, c)[None] for c in compliance]
+    each = [_responses(problem, one, duration, port, at)[0] for one, port, at in zip(sensors, ports, seen, strict=True)]
     points = min(len(one) for one in each)
     return np.stack([one[:points] for one in each])
 
@@ -136,15 +161,17 @@ def _check(sensors: Sequence[Sensor]) -> None:
             raise InputError(f'sensor "{sensor.name}": {words}; state its filter', "sensors")
 
 
-def _responses(problem: Problem, sensor: Sensor, duration: float, ports: Floats) -> Floats:
-    """Return the responses of a sensor to unit impulses, (P, points); a port has a weight for each mode, and one of the compliance."""
+def _responses(problem: Problem, sensor: Sensor, duration: float, ports: Floats, shapes: Floats) -> Floats:
+    """Return the responses of a sensor, at which the modes are `shapes`, to unit impulses, (P, points).
+
+    A port has a weight for each mode, and one of the compliance.
+    """
     bases = bases_of_plate(problem)
     frequencies, ratios = (
         np.concatenate(part) for part in zip(*((basis.angular_frequencies, basis.damping_ratios) for basis in bases), strict=True)
     )
     number = len(frequencies)
     plate = Oscillators(frequencies, ratios, ports[:, :number])
-    shapes = np.concatenate([basis.points[sensor.name] for basis in bases]) @ np.asarray(sensor.components)
     antialias = antialias_of(sensor)
     chain = measuring_chain(plate, shapes[None], ports[:, number:], [sensor.order], (*sensor.sections, *antialias.sections))
     gain = (sensor.instrument.gain if sensor.instrument else 1.0) * (sensor.amplifier.gain if sensor.amplifier else 1.0)

@@ -1,0 +1,190 @@
+"""What a laboratory does not know exactly of a plate and its sensors: errors that are stated, and values that a fit finds."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer
+from vibroimpact.dynamics.sensors.instruments.force_sensor import ForceSensor
+from vibroimpact.dynamics.sensors.sensor import Sensor
+from vibroimpact.errors import InputError
+from vibroimpact.structures.modal_model import ModalBasis
+
+_MEANINGS = {
+    "sensor_place": "positions of the sensors",
+    "gain": "sensitivities of the sensors",
+    "thickness": "thickness of the plate",
+    "modulus": "modulus of the plate",
+    "resonance": "mounted resonances of accelerometers",
+}
+_OPTIONS = {
+    "sensor_place": "--sensor-error",
+    "gain": "--gain-error",
+    "thickness": "--thickness-error",
+    "modulus": "--modulus-error",
+    "resonance": "--resonance-error",
+}
+_MOST_PLACE, _MOST_PART = 0.1, 0.3
+"""Largest standard deviations that are allowed: of the place of a sensor [m], and of parts [-]."""
+
+
+@dataclass(frozen=True)
+class SetupErrors:
+    """Standard deviations of what a case states about the plate and its sensors; what is not given here is taken as certain.
+
+    Parameters
+    ----------
+    sensor_place : float, default 0
+        Of x and of y of each sensor [m], at most 0.1.
+    gain : float, default 0
+        Of the relative error of the sensitivity of each sensor [-], at most 0.3.
+    thickness : float, default 0
+        Of the relative error of the thickness of the plate [-], at most 0.3.
+    modulus : float, default 0
+        Of the relative error of Young's modulus of the plate [-], at most 0.3.
+    resonance : float, default 0
+        Of the relative error of the mounted resonance of each accelerometer that has one [-], at most 0.3.
+
+    Raises
+    ------
+    InputError
+        If one is negative or too large.
+
+    Examples
+    --------
+    >>> SetupErrors(sensor_place=5e-3, gain=0.02).options
+    '--sensor-error "5 mm" --gain-error 0.02'
+    >>> SetupErrors(sensor_place=5e-3, gain=0.02).certain
+    ('thickness of the plate', 'modulus of the plate', 'mounted resonances of accelerometers')
+    """
+
+    sensor_place: float = 0.0
+    gain: float = 0.0
+    thickness: float = 0.0
+    modulus: float = 0.0
+    resonance: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name, meaning in _MEANINGS.items():
+            of_place = name == "sensor_place"
+            most, given = _MOST_PLACE if of_place else _MOST_PART, getattr(self, name)
+            if not 0.0 <= given <= most:
+                allowed = "5 mm is 0.005, and it is at most 0.1 m" if of_place else "2 % is 0.02, and it is at most 0.3"
+                raise InputError(f"an error of {given:g} of the {meaning} is not allowed; {allowed}")
+
+    @property
+    def options(self) -> str:
+        """The options of the command that state them."""
+        stated = {name: getattr(self, name) for name in _OPTIONS if getattr(self, name)}
+        texts = {name: f'"{1e3 * value:g} mm"' if name == "sensor_place" else f"{value:g}" for name, value in stated.items()}
+        return " ".join(f"{_OPTIONS[name]} {text}" for name, text in texts.items())
+
+    @property
+    def certain(self) -> tuple[str, ...]:
+        """What of the plate and its sensors is taken as certain."""
+        return tuple(meaning for name, meaning in _MEANINGS.items() if not getattr(self, name))
+
+    @cached_property
+    def is_none(self) -> bool:
+        """Whether all is taken as certain."""
+        return len(self.certain) == len(_MEANINGS)
+
+    @property
+    def stretch(self) -> float:
+        """Standard deviation of the common relative error of the frequencies of a thin plate [-]."""
+        return math.hypot(self.thickness, 0.5 * self.modulus)
+
+    def split(self, stretch: float) -> tuple[float, float]:
+        """Return the likeliest errors of thickness and modulus, in their deviations, that make all frequencies higher by a part."""
+        if not self.stretch:
+            return 0.0, 0.0
+        share = stretch / self.stretch**2
+        return share * self.thickness, share * 0.5 * self.modulus
+
+    def deviations(self, sensors: int) -> Floats:
+        """Return the standard deviations of the numbers of a `Setup` of S sensors, (2 + 4 S,)."""
+        of_sensors = (self.sensor_place, self.sensor_place, self.gain, self.resonance)
+        return np.array([self.thickness, self.modulus, *np.repeat(of_sensors, sensors)])
+
+
+@dataclass(frozen=True)
+class Setup:
+    """A plate and its sensors as they differ from the case.
+
+    Parameters
+    ----------
+    thickness, modulus : float
+        Relative differences [-].
+    moved : array, shape (S, 2)
+        Differences of x and y of the sensors [m].
+    gain, resonance : array, shape (S,)
+        Relative differences [-].
+    """
+
+    thickness: float
+    modulus: float
+    moved: Floats
+    gain: Floats
+    resonance: Floats
+
+    @classmethod
+    def of(cls, numbers: Floats) -> Setup:
+        """Return a set-up from its numbers: thickness, modulus, then x, y, gain and resonance, each of all sensors, (2 + 4 S,)."""
+        x, y, gain, resonance = numbers[2:].reshape(4, -1)
+        return cls(float(numbers[0]), float(numbers[1]), np.stack([x, y], axis=1), gain, resonance)
+
+
+def stretched(problem: Problem, setup: Setup, exponents: Floats) -> Problem:
+    r"""Return a problem whose plate has the thickness and the modulus of a set-up.
+
+    With the thickness h, the modulus E and modes of unit modal mass, deflections are proportional to :math:`h^{-1/2}`, frequencies to
+    :math:`E^{1/2} h^n` with the exponent n of each mode, static compliances to :math:`1/(E h^3)`; strains of a face to h times the
+    deflections, forces of supports to :math:`E h^3` times these.
+    """
+    modes, thicker, stiffer = problem.plate.modes, 1.0 + setup.thickness, 1.0 + setup.modulus
+    assert modes is not None  # `plate_of` has seen to it
+    softer, moved = 1.0 / (stiffer * thicker**3), thicker**-0.5
+    seen = dict.fromkeys(modes.points, 1.0)
+    for sensor in problem.sensors:
+        if sensor.sees_strain:
+            seen[sensor.name] = thicker
+        elif isinstance(sensor.instrument, ForceSensor):
+            seen[sensor.name] = 1.0 / softer
+    changed = replace(
+        modes,
+        frequencies=modes.frequencies * stiffer**0.5 * thicker**exponents,
+        contact=moved * modes.contact,
+        along=None if modes.along is None else moved * modes.along,
+        participation=modes.participation / moved,
+        points={name: moved * seen[name] * at for name, at in modes.points.items()},
+        residuals={name: softer * seen[name] * at for name, at in modes.residuals.items()},
+    )
+    rigid = None if problem.plate.rigid is None else _lighter(problem.plate.rigid, moved)
+    plate = replace(problem.plate, modes=changed, rigid=rigid)
+    return problem.on_plate(plate, replace(problem.quasi_static, linear=softer * problem.quasi_static.linear))
+
+
+def _lighter(rigid: ModalBasis, moved: float) -> ModalBasis:
+    """Return rigid motions of unit modal mass of a body whose mass changes, by the change of their shapes."""
+    return replace(
+        rigid,
+        contact=moved * rigid.contact,
+        along=None if rigid.along is None else moved * rigid.along,
+        turning=None if rigid.turning is None else moved * rigid.turning,
+        participation=rigid.participation / moved,
+        points={name: moved * at for name, at in rigid.points.items()},
+    )
+
+
+def with_resonance(sensor: Sensor, difference: float) -> Sensor:
+    """Return a sensor whose accelerometer has another mounted resonance, by a relative difference, if it has one."""
+    instrument = sensor.instrument
+    if not isinstance(instrument, Accelerometer) or instrument.resonance is None:
+        return sensor
+    return replace(sensor, instrument=replace(instrument, resonance=(1.0 + difference) * instrument.resonance))
