@@ -77,6 +77,11 @@ if TYPE_CHECKING:
     from vibroimpact.correlation.correlate import correlate as correlate
     from vibroimpact.correlation.folder import save_correlation as save_correlation
     from vibroimpact.correlation.mode_pairs import ModePair as ModePair
+    from vibroimpact.correlation.responses.charts import response_charts as response_charts
+    from vibroimpact.correlation.responses.compare import correlate_responses as correlate_responses
+    from vibroimpact.correlation.responses.compare import responses_of_case as responses_of_case
+    from vibroimpact.correlation.responses.folder import save_response_correlation as save_response_correlation
+    from vibroimpact.correlation.responses.result import ResponseCorrelation as ResponseCorrelation
     from vibroimpact.dynamics.air import Air as Air
     from vibroimpact.dynamics.liquid import Liquid as Liquid
     from vibroimpact.dynamics.local_element import identify_local_element as identify_local_element
@@ -153,9 +158,12 @@ if TYPE_CHECKING:
     from vibroimpact.signals.bounces.find import find_bounces as find_bounces
     from vibroimpact.signals.decay.find import DecayMode as DecayMode
     from vibroimpact.signals.decay.find import modes_in_decay as modes_in_decay
+    from vibroimpact.signals.decay.responses import modes_in_responses as modes_in_responses
     from vibroimpact.signals.feature_table import FeatureTable as FeatureTable
     from vibroimpact.signals.feature_table import feature_table as feature_table
     from vibroimpact.signals.frac import frac as frac
+    from vibroimpact.signals.frequency_response import DegreeOfFreedom as DegreeOfFreedom
+    from vibroimpact.signals.frequency_response import FrequencyResponse as FrequencyResponse
     from vibroimpact.signals.one_record import one_record as one_record
     from vibroimpact.signals.onset import from_onset as from_onset
     from vibroimpact.signals.onset import onset_time as onset_time
@@ -163,6 +171,7 @@ if TYPE_CHECKING:
     from vibroimpact.signals.packets import find_packets as find_packets
     from vibroimpact.signals.packets import packet_records as packet_records
     from vibroimpact.signals.read_records import read_records as read_records
+    from vibroimpact.signals.reading.universal_responses import read_responses as read_responses
     from vibroimpact.signals.record import Record as Record
     from vibroimpact.signals.record_table import RecordTable as RecordTable
     from vibroimpact.signals.record_table import record_table as record_table
@@ -200,16 +209,18 @@ _HOME = {
     "Converter": "dynamics.sensors.electronics",
     "Correlation": "correlation.correlate",
     "DecayMode": "signals.decay.find",
+    "DegreeOfFreedom": "signals.frequency_response",
     "FeatureTable": "signals.feature_table",
     "ForceSensor": "dynamics.sensors.instruments.force_sensor",
+    "FrequencyResponse": "signals.frequency_response",
     "FrictionCalibration": "calibration.friction.calibrate",
     "FrictionLaw": "contact.friction.law",
     "Geophone": "dynamics.sensors.instruments.geophone",
     "Identification": "identification.identify",
     "InputError": "errors",
+    "LabelledSignals": "recognition.labelled_signals",
     "Liquid": "dynamics.liquid",
     "Material": "materials",
-    "LabelledSignals": "recognition.labelled_signals",
     "Mesh": "structures.mesh",
     "Microphone": "dynamics.sensors.instruments.microphone",
     "ModalBasis": "structures.modal_model",
@@ -225,13 +236,14 @@ _HOME = {
     "Problem": "dynamics.problem",
     "QuasiStatic": "contact.quasi_static",
     "Rebounds": "calibration.bounces.rebounds",
-    "Restitutions": "calibration.restitutions.restitutions",
-    "Record": "signals.record",
-    "Recogniser": "recognition.recogniser",
     "Recognised": "recognition.apply",
+    "Recogniser": "recognition.recogniser",
     "Recognition": "recognition.recognise",
+    "Record": "signals.record",
     "RecordTable": "signals.record_table",
     "Response": "dynamics.response",
+    "ResponseCorrelation": "correlation.responses.result",
+    "Restitutions": "calibration.restitutions.restitutions",
     "Result": "results.result",
     "Sensor": "dynamics.sensors.sensor",
     "SensorSignals": "recognition.labelled_signals",
@@ -263,6 +275,7 @@ _HOME = {
     "contact_laws": "contact.registry",
     "convert_units": "units.reading",
     "correlate": "correlation.correlate",
+    "correlate_responses": "correlation.responses.compare",
     "correlation_charts": "correlation.charts",
     "export_formats": "exporting.export_format",
     "export_result": "exporting.export_result",
@@ -298,6 +311,7 @@ _HOME = {
     "modal_damping": "calibration.tunables",
     "mode_charts": "modes.charts",
     "modes_in_decay": "signals.decay.find",
+    "modes_in_responses": "signals.decay.responses",
     "one_record": "signals.one_record",
     "onset_time": "signals.onset",
     "packet_records": "signals.packets",
@@ -309,6 +323,7 @@ _HOME = {
     "read_labelled_signals": "recognition.read_dataset",
     "read_mesh": "meshes.mesh_file",
     "read_records": "signals.read_records",
+    "read_responses": "signals.reading.universal_responses",
     "read_restitutions": "calibration.restitutions.restitutions",
     "read_result": "results.folder",
     "read_study": "studies.study",
@@ -319,6 +334,8 @@ _HOME = {
     "record_table": "signals.record_table",
     "remake_report": "remake",
     "reproduce_paper": "paper.report.folder",
+    "response_charts": "correlation.responses.charts",
+    "responses_of_case": "correlation.responses.compare",
     "result_html": "runs.notebook",
     "result_of": "results.result",
     "rigid_plate": "bodies.rigid",
@@ -334,9 +351,10 @@ _HOME = {
     "save_identification": "identification.folder",
     "save_modes": "modes.folder",
     "save_rebounds": "calibration.bounces.folder",
-    "save_restitutions": "calibration.restitutions.folder",
     "save_recognised": "recognition.apply",
     "save_recognition": "recognition.folder",
+    "save_response_correlation": "correlation.responses.folder",
+    "save_restitutions": "calibration.restitutions.folder",
     "save_result": "runs.save",
     "shipped_cases": "cases.reader",
     "simulate": "dynamics.simulate",

@@ -25,6 +25,7 @@ import vibroimpact as vi
 from heard import heard
 from identifying import a_case as an_impact_case
 from identifying import an_impact, records_of
+from responding import by_pyuff
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.cli import main
 from vibroimpact.dynamics.columns import IMPACT_COLUMNS
@@ -50,6 +51,9 @@ SMALLER = {
     "vibroimpact recognise grains -o recognised --group rock": "--seeds 1 --folds 2 --force",
     "vibroimpact identify coal.toml records.csv -o found": "",
     "vibroimpact correlate plate.toml taps.csv --hammer force -o compared": "",
+    "vibroimpact correlate plate.toml responses.uff -o responses": "",
+    "vibroimpact modes responses.uff -o measured": "",
+    "vibroimpact modes plate.toml --measured responses.uff -o beside": "",
 }
 """Commands of the pages that take minutes, or files of the reader, and what makes them small here."""
 
@@ -200,6 +204,12 @@ def write_recorded_impacts(folder: Path) -> None:
     force, value = hammered.hammered()
     taps = {f"{record.name} [m/s^2]": record.value for record in hammered.records(value)}
     write_table(folder / "taps.csv", {"time [s]": np.arange(len(force)) / hammered.RATE, "force [N]": force, **taps})
+    frequency = np.arange(200.0, 3000.0)
+    of_case = vi.responses_of_case(hammered.a_case(), frequency)
+    by_pyuff(
+        folder / "responses.uff",
+        *({"rsp_node": 1, "rsp_ent_name": one.name, "x": frequency, "data": -one.value} for one in of_case),
+    )
 
 
 @pytest.mark.slow

@@ -1,4 +1,4 @@
-"""The command `correlate`, which compares records of a test with the simulation of the case."""
+"""The command `correlate`, which compares records or frequency responses of a test with the simulation of the case."""
 
 from __future__ import annotations
 
@@ -27,6 +27,7 @@ from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.shown import shown
 
 if TYPE_CHECKING:
+    from vibroimpact.cases.case import Case
     from vibroimpact.signals.record import Record
 
 
@@ -34,13 +35,18 @@ if TYPE_CHECKING:
 def correlate(
     case: CaseArgument,
     records: Annotated[
-        list[Path], typer.Argument(metavar="RECORD...", help="Records of one test: CSV, WAV, UFF, NetCDF-4 or the folder of a run.")
+        list[Path],
+        typer.Argument(
+            metavar="RECORD...",
+            help="Records of one test: CSV, WAV, UFF, NetCDF-4 or the folder of a run; or UFF with responses.",
+        ),
     ],
     output: Annotated[
         Path | None, typer.Option("-o", "--output", metavar="DIR", help="The folder to make; by default CASE-correlated.")
     ] = None,
     hammer: Annotated[
-        str | None, typer.Option("--hammer", metavar="CHANNEL", help="Channel of the records with the force of the hammer.")
+        str | None,
+        typer.Option("--hammer", metavar="CHANNEL", help="Channel with the force of the hammer; of responses its node."),
     ] = None,
     window: Annotated[
         str | None,
@@ -66,6 +72,7 @@ def correlate(
     """Compare records of a test with the simulation. Results are residuals, frequency responses, FRAC, and modal damping from the decay.
 
     The case specifies the plate, the sensors, named as the records, and the impact; for a hammer with a measured force only its position.
+    Measured frequency responses are compared with those of the case, and so are the modes that are fitted to them.
     """
     from vibroimpact.cases.reader import load_case
     from vibroimpact.correlation.correlate import correlate as correlated
@@ -75,12 +82,22 @@ def correlate(
     from vibroimpact.report.progress import patient_progress
     from vibroimpact.results.folder import check_free
     from vibroimpact.signals.read_records import read_records
+    from vibroimpact.signals.reading.universal_responses import holds_responses
 
     found = load_case(case, settings_of(changes))
     target = Path(f"{stem(case)}-correlated") if output is None else output
     check_free(target, force=force)
     length = None if window is None else quantity_in("--window", window, "s")
     ends = None if band is None else pair_in("--band", band, "Hz", "a lower and an upper frequency", "100 Hz, 5 kHz")
+    measured = [path for path in records if holds_responses(path)]
+    if measured:
+        if len(measured) < len(records):
+            other = next(path for path in records if path not in measured)
+            raise InputError(f"{measured[0]} has frequency responses, and {other} records over time; compare them one after the other")
+        if length is not None:
+            raise InputError("frequency responses have no time; leave it out, or take a --band", "--window")
+        _correlate_responses(found, measured, target, hammer, ends, figures=figures, force=force, as_json=as_json)
+        return
     heard = [record for path in records for record in read_records(path, columns)]
     push = None if hammer is None else _force_among(heard, hammer)
     with exit_on_interrupt():
@@ -89,6 +106,33 @@ def correlate(
             told = correlated(found, motions, force=push, window=length, band=ends, progress=progress)
         folder = save_correlation(told, target, force=force, figures=("png",) if figures else ())
     show_folder(folder, lambda: summary_of_correlation(told), lambda: correlation_summary(told), as_json=as_json)
+
+
+def _correlate_responses(
+    case: Case,
+    paths: list[Path],
+    target: Path,
+    reference: str | None,
+    band: tuple[float, float] | None,
+    *,
+    figures: bool,
+    force: bool,
+    as_json: bool,
+) -> None:
+    """Compare measured frequency responses with those of a case."""
+    from vibroimpact.correlation.responses.compare import correlate_responses
+    from vibroimpact.correlation.responses.document import summary_of_responses
+    from vibroimpact.correlation.responses.folder import save_response_correlation
+    from vibroimpact.correlation.responses.text import response_summary
+    from vibroimpact.report.progress import patient_progress
+    from vibroimpact.signals.reading.universal_responses import read_responses
+
+    responses = [response for path in paths for response in read_responses(path)]
+    with exit_on_interrupt():
+        with patient_progress("correlating", console(err=as_json)) as progress:
+            told = correlate_responses(case, responses, reference=reference, band=band, progress=progress)
+        folder = save_response_correlation(told, target, force=force, figures=("png",) if figures else ())
+    show_folder(folder, lambda: summary_of_responses(told), lambda: response_summary(told), as_json=as_json)
 
 
 def _force_among(records: list[Record], name: str) -> Record:

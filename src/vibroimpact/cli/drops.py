@@ -24,6 +24,7 @@ from vibroimpact.cli.shared import (
     show,
     stem,
 )
+from vibroimpact.errors import InputError
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -147,26 +148,39 @@ def _draw(result: Result, folder: Path, screen: Console) -> None:
 def modes(
     case: CaseArgument,
     output: Annotated[Path | None, typer.Option("-o", "--output", metavar="DIR", help="The folder to make; by default CASE-modes.")] = None,
+    measured: Annotated[
+        list[Path] | None,
+        typer.Option("--measured", metavar="FILE", help="A universal file with frequency responses; its modes are compared."),
+    ] = None,
     changes: Changes = None,
     figures: Figures = False,
     force: Force = False,
     as_json: Json = False,
 ) -> None:
-    """Compute the modes of the elastic bodies of a case.
+    """Compute the modes of the elastic bodies of a case, or of the frequency responses of a universal file in place of a case.
 
     The folder contains a table of frequencies, a report with the first mode shapes, and the meshes for ParaView, Nastran and Abaqus.
     """
     from vibroimpact.cases.costs import describe_costs
     from vibroimpact.cases.elastic.modes import compute_modes
     from vibroimpact.cases.reader import load_case, prefix_errors
+    from vibroimpact.cli.measured_modes import measured_modes, modes_beside_table
+    from vibroimpact.correlation.measured.text import compared_summary
+    from vibroimpact.measurements.universal_file import is_universal
     from vibroimpact.modes.document import modes_document
     from vibroimpact.modes.folder import save_modes
     from vibroimpact.modes.text import modes_summary
     from vibroimpact.report.progress import patient_progress
     from vibroimpact.results.folder import check_free
 
-    found = load_case(case, settings_of(changes))
     target = Path(f"{stem(case)}-modes") if output is None else output
+    if Path(case).is_file() and is_universal(case):
+        if changes:
+            raise InputError(f"{case} is a measurement, which has no keys; leave it out", "--set")
+        check_free(target, force=force)
+        measured_modes([Path(case), *(measured or [])], target, figures=figures, force=force, as_json=as_json)
+        return
+    found = load_case(case, settings_of(changes))
     check_free(target, force=force)
     for sentence in describe_costs(found, modes_alone=True):
         note(sentence)
@@ -174,8 +188,11 @@ def modes(
     with exit_on_interrupt():
         with patient_progress("computing modes", screen) as progress:
             bodies = prefix_errors(case, lambda: compute_modes(found, progress, note))
-        folder = save_modes(found, bodies, target, force=force, figures=("png",) if figures else ())
-    show(lambda: {"folder": str(folder), **modes_document(found, bodies)}, lambda: modes_summary(found, bodies), as_json=as_json)
+        beside = modes_beside_table(bodies, measured) if measured else None
+        folder = save_modes(found, bodies, target, force=force, figures=("png",) if figures else (), measured=beside)
+    document = modes_document(found, bodies) | ({} if beside is None else {"measured": list(beside.rows), "doubts": list(beside.doubts)})
+    tables = [lambda: modes_summary(found, bodies), *([] if beside is None else [lambda: compared_summary(beside)])]
+    show(lambda: {"folder": str(folder), **document}, *tables, as_json=as_json)
     say(f"wrote {folder / 'report.html'}, and modes.csv and meshes beside it", err=as_json)
 
 

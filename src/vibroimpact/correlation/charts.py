@@ -11,6 +11,7 @@ from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.made import made_charts
 from vibroimpact.charts.marks import Bars, Line, Mark, Points, Rug
 from vibroimpact.correlation.correlate import Correlation
+from vibroimpact.correlation.criteria import Criteria
 from vibroimpact.correlation.document import what_frac_is_of
 from vibroimpact.shown import shortened, visible
 
@@ -41,13 +42,17 @@ def correlation_charts(found: Correlation) -> list[Chart]:
     >>> [chart.name for chart in vi.correlation_charts(found)]
     ['overlay', 'responses', 'frac', 'damping']
     """
-    makers = {"overlay": _overlay, "responses": _responses, "frac": _frac}
+    makers = {
+        "overlay": partial(_overlay, found),
+        "responses": partial(_responses, found),
+        "frac": partial(frac_chart, found, what_frac_is_of(found)),
+    }
     if any(pair.damping_measured for pair in found.modes):
-        makers["damping"] = _damping
-    return made_charts({name: partial(make, found) for name, make in makers.items()})
+        makers["damping"] = partial(damping_chart, found, "the decay of the records")
+    return made_charts(makers)
 
 
-def _name(found: Correlation, number: int) -> str:
+def _name(found: Criteria, number: int) -> str:
     return shortened(visible(found.sensors[number].name), 40)
 
 
@@ -98,7 +103,8 @@ def _responses(found: Correlation) -> Chart:
     return Chart("responses", "Frequency responses" if found.hits else "Spectra", tuple(rows), caption, _HEIGHT)
 
 
-def _frac(found: Correlation) -> Chart:
+def frac_chart(found: Criteria, of: str) -> Chart:
+    """Return the chart of the criterion over octaves, of what is compared."""
     names = tuple(f"{low:.4g} to {high:.4g} Hz" for low, high in found.octaves)
     shown = found.octave_frac[:MOST]
     width = 0.8 / len(shown)
@@ -114,13 +120,14 @@ def _frac(found: Correlation) -> Chart:
     )
     panel = Panel(Axis("Band", names=names), Axis("FRAC", range=(0.0, 1.0)), marks)
     caption = (
-        f"Frequency response assurance criterion over each octave, of {what_frac_is_of(found)}. 1: equal except "
+        f"Frequency response assurance criterion over each octave, of {of}. 1: equal except "
         "for a factor; 0: uncorrelated. An octave with fewer than four frequencies has no bar."
     )
     return Chart("frac", "Frequency response assurance criterion", ((panel,),), caption, _HEIGHT)
 
 
-def _damping(found: Correlation) -> Chart:
+def damping_chart(found: Criteria, by: str) -> Chart:
+    """Return the chart of damping ratios, measured by something and of the case."""
     measured = [pair.measured for pair in found.modes if pair.measured is not None and not pair.measured.doubt]
     intervals = np.array([mode.damping_ratio.interval for mode in measured])
     places = np.array([mode.frequency.value for mode in measured])
@@ -133,5 +140,5 @@ def _damping(found: Correlation) -> Chart:
     )
     top = 1.1 * float(np.nanmax(np.append(computed, intervals)))  # room for the marks of the largest
     panel = Panel(Axis("Frequency", "Hz", range=found.band), Axis("Damping ratio", range=(0.0, top)), marks)
-    caption = "Damping ratios estimated from the decay of the records, and those of the case."
+    caption = f"Damping ratios estimated from {by}, and those of the case."
     return Chart("damping", "Modal damping", ((panel,),), caption, _HEIGHT)

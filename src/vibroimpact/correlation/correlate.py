@@ -15,6 +15,7 @@ from vibroimpact.correlation.acquired import LEAD, Acquired, acquired_of
 from vibroimpact.correlation.alignment import LEAST, delay_of
 from vibroimpact.correlation.doubts import doubts_about, force_ends
 from vibroimpact.correlation.mode_pairs import ModePair, pairs_of
+from vibroimpact.correlation.octaves import frac_of_octaves, octaves_of
 from vibroimpact.correlation.simulated import Listening, Pushes, listening, plate_problem, pushes_of_impact
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.sensors.antialias import HALF_LENGTH
@@ -26,9 +27,6 @@ from vibroimpact.signals.delay import band_limited
 from vibroimpact.signals.frac import frac
 from vibroimpact.signals.onset import onset_time
 from vibroimpact.signals.record import Record, Removed
-
-_FEW = 4
-"""Frequencies below which an octave has no criterion: of one it is 1 whatever the signals are, of n that are unrelated about 1/n."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -200,9 +198,7 @@ def correlate(
     frequency = np.arange(measured_response.shape[1]) * rate / (pieces[0].stop - pieces[0].start)
     inside = (frequency >= used[0]) & (frequency <= used[1])
     both = measured_response[:, inside], simulated_response[:, inside]
-    octaves = _octaves(used)
-    untold = np.full(len(value), np.nan)
-    parts = [(frequency[inside] >= low) & (frequency[inside] <= high) for low, high in octaves]
+    octaves = octaves_of(used)
     decays = _decays(acquired, value, pieces, acting.over, sought)
     heard = [*records, *([] if force is None else [force])]
     of_files = dict.fromkeys(doubt for record in heard for doubt in record.named_doubts)
@@ -224,7 +220,7 @@ def correlate(
         hits=len(pieces) if acquired.force is not None else 0,
         octaves=octaves,
         frac=frac(*both),
-        octave_frac=np.stack([frac(both[0][:, part], both[1][:, part]) if part.sum() >= _FEW else untold for part in parts], axis=1),
+        octave_frac=frac_of_octaves(octaves, frequency[inside], *both),
         modes=pairs_of(problem, acquired.sensors, decays, sought),
         removed={one.name: part for one, part in zip(heard, acquired.removed, strict=True)},
         skew=skew,
@@ -345,20 +341,6 @@ def _responses(value: Floats, force: Floats | None, pieces: Sequence[slice]) -> 
     if len(pieces) == 1:
         return response, None
     return response, np.abs(cross) ** 2 / np.maximum(power * (np.abs(spectra) ** 2).sum(axis=0), 1e-300)
-
-
-def _octaves(band: tuple[float, float]) -> tuple[tuple[float, float], ...]:
-    """Return the octaves within a band: their centres are 1 kHz times powers of 2 (IEC 61260-1), and the outer ones end with the band.
-
-    Examples
-    --------
-    >>> [(round(low, 1), round(high, 1)) for low, high in _octaves((300.0, 1600.0))]
-    [(300.0, 353.6), (353.6, 707.1), (707.1, 1414.2), (1414.2, 1600.0)]
-    """
-    number = np.arange(-10, 12)
-    edges = 1000.0 * 2.0 ** (number + 0.5)
-    inner = edges[(edges > band[0]) & (edges < band[1])]
-    return tuple(itertools.pairwise([band[0], *inner.tolist(), band[1]]))
 
 
 def _decays(acquired: Acquired, value: Floats, pieces: Sequence[slice], over: float, band: tuple[float, float]) -> Sequence[DecayMode]:

@@ -8,6 +8,7 @@ import numpy as np
 
 from vibroimpact._version import __version__
 from vibroimpact.correlation.correlate import Correlation
+from vibroimpact.correlation.criteria import Criteria
 from vibroimpact.correlation.mode_pairs import ModePair, damping_field
 from vibroimpact.shown import visible
 from vibroimpact.units.display import MISSING, digits
@@ -67,12 +68,12 @@ def record_rows(found: Correlation) -> list[list[str]]:
     ]
 
 
-def octave_headers(found: Correlation) -> list[str]:
+def octave_headers(found: Criteria) -> list[str]:
     """Return the headers of the table of octaves."""
     return ["Band", *(visible(sensor.name) for sensor in found.sensors)]
 
 
-def octave_rows(found: Correlation) -> list[list[str]]:
+def octave_rows(found: Criteria) -> list[list[str]]:
     """Return the cells of the table of octaves: the criterion of each record over each, and over the whole band."""
     whole = [f"{found.band[0]:.5g} to {found.band[1]:.5g} Hz, whole", *(f"{value:.3f}" for value in found.frac)]
     parts = [
@@ -82,26 +83,33 @@ def octave_rows(found: Correlation) -> list[list[str]]:
     return [whole, *parts]
 
 
-def mode_rows(found: Correlation) -> list[list[str]]:
+def mode_rows(found: Criteria) -> list[list[str]]:
     """Return the cells of the table of modes."""
-    return [_mode_row(pair) for pair in found.modes]
+    return [mode_row(pair) for pair in found.modes]
 
 
-def _mode_row(pair: ModePair) -> list[str]:
+def mode_row(pair: ModePair) -> list[str]:
+    """Return the cells of a mode in its table."""
     number = MISSING if pair.number is None else str(pair.number)
     computed, ratio = (MISSING if pair.number is None else digits(value, 5) for value in (pair.frequency, pair.damping_ratio))
     if pair.measured is None:
         return [number, computed, MISSING, MISSING, MISSING, ratio, MISSING, MISSING, MISSING, pair.remark]
     mode = pair.measured
     half = mode.frequency.interval[1] - mode.frequency.value
-    damping = [digits(value, 4) for value in (mode.damping_ratio.value, *mode.damping_ratio.interval)]
+    ratio_and_ends = (mode.damping_ratio.value, *mode.damping_ratio.interval)
+    damping = [MISSING if mode.doubt else digits(value, 4) for value in ratio_and_ends]
     difference = MISSING if pair.number is None else f"{100.0 * pair.frequency_difference:+.2f}"
     return [number, computed, digits(mode.frequency.value, 6), digits(half, 2), difference, ratio, *damping, pair.remark]
 
 
-def mode_table(found: Correlation) -> list[dict[str, Any]]:
+def mode_table(found: Criteria) -> list[dict[str, Any]]:
     """Return the modes as rows of `MODE_COLUMNS`; None where there is no number."""
-    return [dict(zip(MODE_COLUMNS, _mode_values(pair), strict=True)) for pair in found.modes]
+    return [mode_record(pair) for pair in found.modes]
+
+
+def mode_record(pair: ModePair) -> dict[str, Any]:
+    """Return a mode as a row of `MODE_COLUMNS`."""
+    return dict(zip(MODE_COLUMNS, _mode_values(pair), strict=True))
 
 
 def _mode_values(pair: ModePair) -> list[Any]:

@@ -71,11 +71,18 @@ def pairs_of(problem: Problem, sensors: Sequence[Sensor], found: Sequence[DecayM
     """
     modes = problem.plate.modes
     assert modes is not None  # `plate_problem` has seen to it
-    inside = np.flatnonzero((modes.frequencies >= band[0]) & (modes.frequencies <= band[1]))
-    places, response = modes.frequencies[inside], _responses(problem, sensors)[inside]
+    return paired(modes.frequencies, modes.damping_ratios, _responses(problem, sensors), found, band)
+
+
+def paired(
+    frequencies: Floats, ratios: Floats, response: Floats, found: Sequence[DecayMode], band: tuple[float, float]
+) -> tuple[ModePair, ...]:
+    """Return modes within a band beside measured ones, as `pairs_of`, from frequencies, damping ratios and responses of each, (modes,)."""
+    inside = np.flatnonzero((frequencies >= band[0]) & (frequencies <= band[1]))
+    places, response = frequencies[inside], response[inside]
     response = response / max(float(response.max(initial=0.0)), 1e-300)
     partner = _partners(places, response, [mode.frequency.value for mode in found])
-    rows = [*_of_case(modes.damping_ratios[inside], inside, places, response, found, partner)]
+    rows = [*_of_case(ratios[inside], inside, places, response, found, partner)]
     taken = set(partner.values())
     nan = float("nan")
     rows += [ModePair(None, nan, nan, nan, mode, "no mode of the case nearby") for number, mode in enumerate(found) if number not in taken]
@@ -118,7 +125,7 @@ def _missing(place: float, ratio: float, found: Sequence[DecayMode]) -> str:
     """Return why a mode was not found."""
     width = 2.0 * ratio * place
     near = [mode.frequency.value for mode in found if abs(mode.frequency.value - place) < width]
-    return f"not separated from the mode at {near[0]:.5g} Hz" if near else "not found in the decay"
+    return f"not separated from the mode at {near[0]:.5g} Hz" if near else "not found"
 
 
 def damping_field(pairs: Sequence[ModePair]) -> str:

@@ -1,4 +1,4 @@
-"""Reading of universal files (UFF): functions of time in datasets 58, text or binary, and the units of dataset 164."""
+"""Reading of universal files (UFF): functions of time and frequency responses in datasets 58, text or binary, and units of dataset 164."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Complex, Floats
 from vibroimpact.errors import InputError
 from vibroimpact.files.reading import FileKind, beginning, read_bytes, with_path
 
@@ -36,8 +36,14 @@ _MARK = b"-1"
 _HERE = re.compile(rb"[ \t]*-1[ \t\r]*(?:\n|\Z)")  # at the current position: binary data does not end with a line break
 _MARKED = re.compile(rb"^" + _HERE.pattern, re.MULTILINE)
 _HEADER_LINES = 11
-_REAL, _TIME = (2, 4), 17
-_WIDTHS = {2: 13, 4: 20}  # columns of a number in text, single and double precision
+_REAL, _COMPLEX = (2, 4), (5, 6)
+_SINGLE = (2, 5)
+_TIME, _FREQUENCY, _UNSTATED = 17, 18, (0, 1)
+_HERTZ = "hz"
+FREQUENCY_RESPONSE, COHERENCE = 4, 6
+"""Types of functions of frequency that are read."""
+
+_WIDTHS = {2: 13, 4: 20, 5: 13, 6: 20}  # columns of a number in text, single and double precision
 _ENDS = {1: "<", 2: ">"}
 _IEEE = 2
 
@@ -68,13 +74,59 @@ class Function:
     values: Floats
 
 
+class Freedom(NamedTuple):
+    """A degree of freedom: name of its entity, "" if there is none; node, 0 if there is none; and direction, 1 to 3 along x, y, z,
+    negative against the axis, 4 to 6 of rotations, 0 if it is not stated.
+    """
+
+    entity: str
+    node: int
+    direction: int
+
+
+@dataclass(frozen=True)
+class FunctionOfFrequency:
+    """A frequency response, or a coherence.
+
+    Parameters
+    ----------
+    number : int
+        Number of the function in the file, from 1.
+    identification : str
+        First identification line.
+    function_type : int
+        `FREQUENCY_RESPONSE` or `COHERENCE`.
+    kinds : tuple of two ints
+        Data types of numerator and denominator in dataset 58, as those of `Function`.
+    units : tuple of two str
+        Unit labels of numerator and denominator; "" if there is none.
+    response, reference : Freedom
+        What was measured, and where the force acts.
+    frequency : array, shape (n,)
+        Frequencies [Hz].
+    values : array, shape (n,)
+        Values in the units of the file; NaN where the file has no number, as many have at 0 Hz.
+    """
+
+    number: int
+    identification: str
+    function_type: int
+    kinds: tuple[int, int]
+    units: tuple[str, str]
+    response: Freedom
+    reference: Freedom
+    frequency: Floats
+    values: Complex | Floats
+
+
 class UniversalFile(NamedTuple):
-    """Functions of time of a universal file, and the divisors that convert its lengths ("m") and forces ("N") to SI, None if the
-    file does not state them.
+    """Functions of time of a universal file, the divisors that convert its lengths ("m") and forces ("N") to SI, None if the
+    file does not state them, and its frequency responses and coherences.
     """
 
     functions: list[Function]
     factors: dict[str, float] | None
+    of_frequency: list[FunctionOfFrequency]
 
 
 def is_universal(path: str | Path) -> bool:
@@ -86,7 +138,7 @@ def is_universal(path: str | Path) -> bool:
 
 
 def read_universal_file(path: str | Path) -> UniversalFile:
-    """Read the functions of time of a universal file.
+    """Read the functions of time of a universal file, and its frequency responses and coherences.
 
     Parameters
     ----------
@@ -106,6 +158,7 @@ def read_universal_file(path: str | Path) -> UniversalFile:
     except InputError as error:
         raise with_path(file, error) from None
     functions: list[Function] = []
+    of_frequency: list[FunctionOfFrequency] = []
     factors, number = None, 0
     for header, place in _datasets(raw):
         kind = header.split()[0] if header.split() else b""
@@ -115,12 +168,14 @@ def read_universal_file(path: str | Path) -> UniversalFile:
             elif kind in (b"58", b"58b"):
                 number += 1
                 found = _function(raw, header, place, number)
-                if found is not None:
+                if isinstance(found, Function):
                     functions.append(found)
+                elif found is not None:
+                    of_frequency.append(found)
         except (ValueError, IndexError, KeyError, OverflowError):
             what = f"function {number}" if kind != b"164" else "dataset 164, with the units,"
             raise InputError(f"{file}: {what} can't be read; the file is damaged, or not of the format stated in its first lines") from None
-    return UniversalFile(functions, factors)
+    return UniversalFile(functions, factors, of_frequency)
 
 
 def _datasets(raw: bytes) -> Iterator[tuple[bytes, int]]:
@@ -173,12 +228,14 @@ def _factors(raw: bytes, place: int) -> dict[str, float]:
     return {"m": numbers[0], "N": numbers[1]}
 
 
-def _function(raw: bytes, header: bytes, place: int, number: int) -> Function | None:
-    """Return a function of time; None if it is complex, or a function of another variable."""
+def _function(raw: bytes, header: bytes, place: int, number: int) -> Function | FunctionOfFrequency | None:
+    """Return a function of time, a frequency response or a coherence; None of any other function."""
     lines, place = _lines(raw, place, _HEADER_LINES)
     ordinate, count, even = (int(lines[6][at : at + 10]) for at in (0, 10, 20))
     start, step = (float(lines[6][at : at + 13]) for at in (30, 43))
-    if ordinate not in _REAL or int(lines[7][:10]) != _TIME:
+    function_type, variable = _whole(lines[5][:5]), int(lines[7][:10])
+    of_time = ordinate in _REAL and variable == _TIME
+    if not of_time and not _is_of_frequency(function_type, variable, ordinate, lines[7][47:67]):
         return None
     if not 0 < count <= len(raw):
         raise ValueError
@@ -189,36 +246,67 @@ def _function(raw: bytes, header: bytes, place: int, number: int) -> Function | 
             given, values = _binary(raw, header, place, ordinate, count, even == 1)
     else:
         given, values = _text(raw, place, ordinate, count, even == 1)
-    time = start + step * np.arange(count, dtype=float) if given is None else given
-    if not all((np.abs(numbers) < _LARGEST).all() for numbers in (time, values)):  # nor are they NaN
-        raise ValueError
-    unit = lines[8][47:67].strip()
+    variables = start + step * np.arange(count, dtype=float) if given is None else given
     words = "".join(letter for letter in lines[0] if letter.isprintable()).strip()
-    return Function(number, words, int(lines[8][:10]), "" if unit == "NONE" else unit, time, values)
+    if not (np.abs(variables) < _LARGEST).all():  # nor are they NaN
+        raise ValueError
+    if not of_time:
+        if (np.abs(values) >= _LARGEST).any():
+            raise ValueError
+        kinds, units = (_whole(lines[8][:10]), _whole(lines[9][:10])), (_unit_label(lines[8]), _unit_label(lines[9]))
+        ends = _freedom(lines[5], 30), _freedom(lines[5], 55)
+        return FunctionOfFrequency(number, words, function_type, kinds, units, *ends, variables, values)
+    if not (np.abs(values) < _LARGEST).all():
+        raise ValueError
+    return Function(number, words, int(lines[8][:10]), _unit_label(lines[8]), variables, values.real)
 
 
-def _binary(raw: bytes, header: bytes, place: int, ordinate: int, count: int, even: bool) -> tuple[Floats | None, Floats]:
+def _is_of_frequency(function_type: int, variable: int, ordinate: int, unit: str) -> bool:
+    """Return whether a function is a frequency response or a coherence that is read: programs leave the kind of the abscissa out."""
+    if variable != _FREQUENCY and not (variable in _UNSTATED and unit.strip().lower() == _HERTZ):
+        return False
+    return (function_type, ordinate in _COMPLEX, ordinate in _REAL) in ((FREQUENCY_RESPONSE, True, False), (COHERENCE, False, True))
+
+
+def _whole(text: str) -> int:
+    """Return a number of a header that programs leave out, or fill with something else: 0."""
+    return int(text) if text.strip().lstrip("+-").isdigit() else 0
+
+
+def _unit_label(line: str) -> str:
+    unit = line[47:67].strip()
+    return "" if unit == "NONE" else unit
+
+
+def _freedom(line: str, at: int) -> Freedom:
+    """Return the degree of freedom whose fields begin at a column of the sixth line of a header."""
+    entity = line[at + 1 : at + 11].strip()
+    return Freedom("" if entity == "NONE" else entity, _whole(line[at + 11 : at + 21]), _whole(line[at + 21 : at + 25]))
+
+
+def _binary(raw: bytes, header: bytes, place: int, ordinate: int, count: int, even: bool) -> tuple[Floats | None, Floats | Complex]:
     order, form, _, size = (int(word) for word in header.split()[1:5])
-    end, values = _ENDS[order], "f4" if ordinate == 2 else "f8"
+    end, values, parts = _ENDS[order], "f4" if ordinate in _SINGLE else "f8", 2 if ordinate in _COMPLEX else 1
     if form != _IEEE or place + size > len(raw):
         raise ValueError
     if even:
-        return None, np.frombuffer(raw, f"{end}{values}", count, place).astype(float)
+        return None, _joined(np.frombuffer(raw, f"{end}{values}", parts * count, place).astype(float), parts)
     # with double-precision values, times occur in single and in double precision, and the stated size may omit them
-    after = place + (8 + int(values[1])) * count
+    after = place + (8 + parts * int(values[1])) * count
     wide = raw[after : after + 12].lstrip().startswith(_MARK)
     times = "f8" if wide else "f4"
-    pairs = np.frombuffer(raw, [("x", f"{end}{times}"), ("y", f"{end}{values}")], count, place)
-    return pairs["x"].astype(float), pairs["y"].astype(float)
+    pairs = np.frombuffer(raw, [("x", f"{end}{times}"), ("y", f"{end}{values}", (parts,))], count, place)
+    return pairs["x"].astype(float), _joined(pairs["y"].astype(float).ravel(), parts)
 
 
-def _text(raw: bytes, place: int, ordinate: int, count: int, even: bool) -> tuple[Floats | None, Floats]:
-    width = _WIDTHS[ordinate]
+def _text(raw: bytes, place: int, ordinate: int, count: int, even: bool) -> tuple[Floats | None, Floats | Complex]:
+    width, parts = _WIDTHS[ordinate], 2 if ordinate in _COMPLEX else 1
+    single = ordinate in _SINGLE
     # columns of fixed width, not necessarily separated by blanks
-    widths = ([width] * (6 if ordinate == 2 else 4)) if even else [13, width] * (3 if ordinate == 2 else 2)
+    widths = [width] * (6 if single else 4) if even else [13, *[width] * parts] * ((6 if single else 4) // (1 + parts))
     edges = np.concatenate([[0], np.cumsum(widths)])
     found: list[float] = []
-    wanted = count if even else 2 * count
+    wanted = (parts if even else 1 + parts) * count
     while len(found) < wanted:
         if place >= len(raw):
             raise ValueError
@@ -227,4 +315,12 @@ def _text(raw: bytes, place: int, ordinate: int, count: int, even: bool) -> tupl
         cells = [text[begin:stop].strip() for begin, stop in itertools.pairwise(edges)]
         found += [float(cell) for cell in cells if cell]
     numbers = np.array(found[:wanted])
-    return (None, numbers) if even else (numbers[::2], numbers[1::2])
+    if even:
+        return None, _joined(numbers, parts)
+    rows = numbers.reshape(count, 1 + parts)
+    return rows[:, 0], _joined(rows[:, 1:].ravel(), parts)
+
+
+def _joined(numbers: Floats, parts: int) -> Floats | Complex:
+    """Return numbers, or the complex values of which they are real and imaginary parts in turn."""
+    return numbers if parts == 1 else numbers[::2] + 1j * numbers[1::2]

@@ -18,6 +18,7 @@ from vibroimpact.meshes.write_nastran import write_nastran
 from vibroimpact.meshes.write_vtu import write_vtu
 from vibroimpact.modes.charts import mode_charts
 from vibroimpact.modes.document import MODE_COLUMNS, POINT_COLUMNS, mode_rows, point_rows, summary_of_modes
+from vibroimpact.modes.measured_table import MeasuredTable
 from vibroimpact.modes.page import modes_page
 from vibroimpact.results.csv_files import write_csv
 from vibroimpact.results.folder import new_folder, write_summary
@@ -26,7 +27,13 @@ _SHAPES_WRITTEN = 50  # limits the size of the file for ParaView
 
 
 def save_modes(
-    case: Case, modes: Mapping[str, BodyModes], directory: str | PathLike[str], *, force: bool = False, figures: Sequence[str] = ()
+    case: Case,
+    modes: Mapping[str, BodyModes],
+    directory: str | PathLike[str],
+    *,
+    force: bool = False,
+    figures: Sequence[str] = (),
+    measured: MeasuredTable | None = None,
 ) -> Path:
     """Write the modes of a case into a folder, atomically.
 
@@ -42,6 +49,8 @@ def save_modes(
         Replace an existing result folder.
     figures : sequence of str
         Formats in which the charts are also written as files, into a folder `figures`: of "png", "svg" and "pdf".
+    measured : MeasuredTable, optional
+        Measured modes, for the report and `measured.csv`.
 
     Returns
     -------
@@ -73,10 +82,12 @@ def save_modes(
         points = [row for name, body in modes.items() for row in point_rows(name, body)]
         if points:
             write_csv(points, list(POINT_COLUMNS), folder / "points.csv")
+        if measured is not None:
+            write_csv([dict(row) for row in measured.rows], list(measured.columns), folder / "measured.csv")
         summary = summary_of_modes(case, modes)
         write_summary(summary, folder)
         charts = mode_charts(modes)
-        (folder / "report.html").write_text(modes_page(case, modes, charts), encoding="utf-8")
+        (folder / "report.html").write_text(modes_page(case, modes, charts, measured), encoding="utf-8")
         write_figures(charts, folder, figures)
         for name, body in modes.items():
             _write_meshes(folder, name, body, getattr(case, name).material)

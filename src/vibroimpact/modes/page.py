@@ -14,12 +14,13 @@ from vibroimpact.cases.elastic.modes import BodyModes
 from vibroimpact.charts.chart import Chart
 from vibroimpact.charts.made import made_scene
 from vibroimpact.modes.charts import MOST_SHAPES, is_plate
+from vibroimpact.modes.measured_table import MeasuredTable
 from vibroimpact.modes.scene import mode_scene
 from vibroimpact.modes.tables import ROWS, body_facts, mode_table, rows_left_out
 from vibroimpact.report.page import render_page
 
 
-def modes_page(case: Case, modes: Mapping[str, BodyModes], charts: Sequence[Chart]) -> str:
+def modes_page(case: Case, modes: Mapping[str, BodyModes], charts: Sequence[Chart], measured: MeasuredTable | None = None) -> str:
     """Return the page of the modes of a case as one self-contained HTML file.
 
     Parameters
@@ -30,6 +31,8 @@ def modes_page(case: Case, modes: Mapping[str, BodyModes], charts: Sequence[Char
         Modes of its bodies.
     charts : sequence of Chart
         The charts of these, as `mode_charts` returns them.
+    measured : MeasuredTable, optional
+        Measured modes, beside those of the plate.
     """
     plate = next((body for body in modes.values() if is_plate(body.model)), None)
     scene: dict[str, Any] | None = None
@@ -43,6 +46,7 @@ def modes_page(case: Case, modes: Mapping[str, BodyModes], charts: Sequence[Char
         scene,
         name=f"Modes of {name}",
         bodies=[_told(body, found) for body, found in modes.items()],
+        measured=measured,
         lost=lost,
         moving=[] if scene is None else [one["name"] for one in scene["modes"]],
         case=tomli_w.dumps(resolved_case(case)),

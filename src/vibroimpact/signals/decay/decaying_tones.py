@@ -11,14 +11,17 @@ Golub and Pereyra 1973, SIAM J. Numer. Anal. 10:413; its derivatives after Kaufm
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import linalg, signal
 
 from vibroimpact.arrays import Complex, Floats
-from vibroimpact.signals.inverse.gauss_newton import gauss_newton
+from vibroimpact.signals.inverse.gauss_newton import Fit, gauss_newton
 
 _SMOOTH = 4
 """Number of coefficients of the polynomial."""
@@ -60,46 +63,77 @@ class Tones:
 
 
 @dataclass(frozen=True)
-class Bins:
-    """Spectra in a band.
+class Spectra(ABC):
+    r"""Spectra in a band, in which a tone is :math:`c\,g(s) + \bar c\,g(\bar s)`.
 
     Parameters
     ----------
     omega : array, shape (bins,)
-        Radians per sample.
+        Angular frequencies.
     value : array, shape (S, bins)
-        Discrete Fourier transform of each channel.
-    samples : int
-        Number of samples.
+        Spectrum of each channel.
     floor : array, shape (S,)
-        Least standard deviation of the noise of the samples.
+        Least standard deviation of the noise.
     """
 
     omega: Floats
     value: Complex
-    samples: int
     floor: Floats
 
     @property
+    @abstractmethod
     def step(self) -> float:
         """Distance of bins."""
-        return 2.0 * np.pi / self.samples
+
+    @property
+    @abstractmethod
+    def unit(self) -> Floats:
+        """Standard deviation of real and imaginary part of each bin under noise of unit variance, (bins,)."""
+
+    @abstractmethod
+    def transform(self, s: Complex) -> tuple[Complex, Complex]:
+        """Return the spectra g of tones of unit amplitude and their derivatives in s, (bins, n)."""
+
+    @abstractmethod
+    def strongest(self, left: Complex) -> Floats:
+        """Return where a further tone tells most of what is left, (bins, S): the logarithm of its decay and its frequency in bins."""
+
+    def weighed(self, tones: Tones) -> Self:
+        """Return the spectra with the noise of each bin as a fit of tones leaves it: that of white noise is the same for all."""
+        return self
+
+    def telling(self, tones: Floats, left: Complex, penalty: float) -> Floats:
+        """Return the tones, (n, 2), that tell more than a penalty where each channel has noise of its own; all, if all have the same."""
+        return tones
+
+    def covariance(self, fit: Fit, model: Callable[[Floats], tuple[Floats, Floats]]) -> Floats:
+        """Return the covariance of the parameters of a fit: by its curvature, where the noise is as `unit` has it."""
+        return fit.covariance
 
     @property
     def rows(self) -> Floats:
-        """Real and imaginary parts of each channel, (2 bins, S), of unit variance under noise of unit variance of the samples."""
-        return np.asarray(_parts(self.value.T) / np.sqrt(0.5 * self.samples))
+        """Real and imaginary parts of each channel, (2 bins, S), of unit variance under noise of unit variance."""
+        return _parts(self.value.T / self.unit[:, None])
 
-    def without(self, tones: Tones) -> Bins:
+    def without(self, tones: Tones) -> Self:
         """Return the spectra without tones that are known."""
+        return replace(self, value=self.value - self.of(tones))
+
+    def of(self, tones: Tones) -> Complex:
+        """Return the spectra of tones, (S, bins)."""
         s = -tones.decay + 1j * tones.frequency
-        upper, lower = (self._transform(one)[0] for one in (s, s.conj()))
-        return replace(self, value=self.value - (upper @ tones.amplitude + lower @ tones.amplitude.conj()).T)
+        upper, lower = (self.transform(one)[0] for one in (s, s.conj()))
+        return np.asarray((upper @ tones.amplitude + lower @ tones.amplitude.conj()).T)
+
+    @property
+    def powers(self) -> Floats:
+        """Polynomials of what tones outside the band leave, (bins, polynomials)."""
+        place = 2.0 * (self.omega - self.omega[0]) / (self.omega[-1] - self.omega[0]) - 1.0
+        return np.asarray(np.polynomial.legendre.legvander(place, _SMOOTH - 1))
 
     def smooth(self) -> Floats:
-        """Return the columns of what tones outside the band leave, (2 bins, columns)."""
-        place = np.linspace(-1.0, 1.0, len(self.omega))
-        powers = np.polynomial.legendre.legvander(place, _SMOOTH - 1)
+        """Return their columns, (2 bins, columns)."""
+        powers = self.powers / self.unit[:, None]
         return np.block([[powers, np.zeros_like(powers)], [np.zeros_like(powers), powers]])
 
     def columns(self, tones: Floats) -> tuple[Floats, Floats]:
@@ -112,26 +146,65 @@ class Bins:
         """
         decay = np.exp(tones[:, 0])
         s = -decay + 1j * self.step * tones[:, 1]
-        (upper, upper_slope), (lower, lower_slope) = (self._transform(one) for one in (s, s.conj()))
-        scale = 1.0 / np.sqrt(0.5 * self.samples)
+        (upper, upper_slope), (lower, lower_slope) = (self.transform(one) for one in (s, s.conj()))
         columns = np.stack([upper + lower, 1j * (upper - lower)], axis=-1)
         rates = ((-decay, -decay), (1j * self.step, -1j * self.step))
         slopes = [np.stack([a * upper_slope + b * lower_slope, 1j * (a * upper_slope - b * lower_slope)], axis=-1) for a, b in rates]
-        return scale * _parts(columns), scale * _parts(np.stack(slopes, axis=-1))
+        unit = self.unit[:, None, None]
+        return _parts(columns / unit), _parts(np.stack(slopes, axis=-1) / unit[..., None])
 
-    def _transform(self, s: Complex) -> tuple[Complex, Complex]:
-        """Return the transform of tones of unit amplitude and its derivative in s, (bins, n)."""
+
+@dataclass(frozen=True)
+class Bins(Spectra):
+    """Discrete Fourier transforms of records in a band, with angular frequencies in radians per sample.
+
+    Parameters
+    ----------
+    samples : int
+        Number of samples of the records.
+    """
+
+    samples: int
+
+    @property
+    def step(self) -> float:
+        """Distance of bins."""
+        return 2.0 * np.pi / self.samples
+
+    @property
+    def unit(self) -> Floats:
+        """As `Spectra.unit`, of white noise of the samples."""
+        return np.full(len(self.omega), np.sqrt(0.5 * self.samples))
+
+    def transform(self, s: Complex) -> tuple[Complex, Complex]:
+        """As `Spectra.transform`."""
         turn = np.exp(s - 1j * self.omega[:, None])
         end = np.exp(s * self.samples)
         value = (1.0 - end) / (1.0 - turn)
         return np.asarray(value), np.asarray((value * turn - self.samples * end) / (1.0 - turn))
+
+    def strongest(self, left: Complex) -> Floats:
+        """As `Spectra.strongest`."""
+        number = len(self.omega)
+        offset = self.step * np.arange(-number, number + 1)
+        best, found = -1.0, np.zeros(2)
+        for nepers in _DECAYS:
+            decay = nepers / self.samples
+            shape = (1.0 - np.exp(-nepers - 1j * self.samples * offset)) / (1.0 - np.exp(-decay - 1j * offset))
+            energy = np.convolve(np.ones(number), np.abs(shape) ** 2)[number : 2 * number]
+            match = [np.abs(signal.fftconvolve(one, shape[::-1].conj())[number : 2 * number]) ** 2 for one in left.T]
+            power = np.sum(match, axis=0) / energy
+            place = int(np.argmax(power))
+            if power[place] > best:
+                best, found = float(power[place]), np.array([np.log(decay), self.omega[place] / self.step])
+        return found
 
 
 def _parts(value: Complex) -> Floats:
     return np.concatenate([value.real, value.imag])
 
 
-def tones_in(bins: Bins) -> Tones:
+def tones_in(bins: Spectra) -> Tones:
     """Return the tones in a band: one after the other is added where the spectra that are left show it most, as long as it tells.
 
     A tone tells if it lowers the extended Bayesian information criterion, which counts its parameters and the bins where it may lie (Chen
@@ -145,7 +218,9 @@ def tones_in(bins: Bins) -> Tones:
         if best.misfit(len(rows)) - more.misfit(len(rows)) < penalty:
             break
         best = more
-    return best.found(bins)
+    number = len(bins.omega)
+    telling = bins.telling(best.tones, np.asarray(best.left[:number] + 1j * best.left[number:]), penalty)
+    return (best if len(telling) == len(best.tones) else _fit(bins, rows, telling)).found(bins)
 
 
 @dataclass(frozen=True)
@@ -162,7 +237,7 @@ class _Fit:
         """Minus twice the logarithm of the likelihood, apart from what is the same for all."""
         return float(2.0 * number * np.log(self.noise).sum())
 
-    def found(self, bins: Bins) -> Tones:
+    def found(self, bins: Spectra) -> Tones:
         """Return the tones, in the order of their frequencies."""
         order = np.argsort(self.tones[:, 1])
         scale = np.array([1.0, bins.step])
@@ -175,7 +250,7 @@ class _Fit:
         )
 
 
-def _fit(bins: Bins, rows: Floats, start: Floats) -> _Fit:
+def _fit(bins: Spectra, rows: Floats, start: Floats) -> _Fit:
     """Return the fit of so many tones, from where they begin; the noise that weighs channels is that of the round before."""
     number, smooth = len(start), bins.smooth()
 
@@ -204,9 +279,9 @@ def _fit(bins: Bins, rows: Floats, start: Floats) -> _Fit:
             return (left / noise).ravel(), (change / noise[:, None]).reshape(-1, 2 * number)
 
         fit = gauss_newton(model, tones.ravel(), np.tile(_LARGEST_STEPS, number))
-        tones, covariance = fit.parameters.reshape(-1, 2), fit.covariance
+        tones = fit.parameters.reshape(-1, 2)
         before, noise = noise, noise_of(solved(tones)[0])
-        covariance = covariance * float(np.mean(noise**2 / before**2))
+        covariance = bins.covariance(fit, model) * float(np.mean(noise**2 / before**2))
         if np.ptp(noise / before) < _SAME * np.max(noise / before):  # channels weigh as they did
             break
     left, share, *_ = solved(tones)
@@ -214,19 +289,7 @@ def _fit(bins: Bins, rows: Floats, start: Floats) -> _Fit:
     return _Fit(tones, left, noise, share[:, 0] + 1j * share[:, 1], own)
 
 
-def _next(bins: Bins, fit: _Fit) -> Floats:
+def _next(bins: Spectra, fit: _Fit) -> Floats:
     """Return where a further tone tells most: the logarithm of its decay and its frequency in bins."""
     number = len(bins.omega)
-    left = (fit.left[:number] + 1j * fit.left[number:]) / fit.noise
-    offset = bins.step * np.arange(-number, number + 1)
-    best, found = -1.0, np.zeros(2)
-    for nepers in _DECAYS:
-        decay = nepers / bins.samples
-        shape = (1.0 - np.exp(-nepers - 1j * bins.samples * offset)) / (1.0 - np.exp(-decay - 1j * offset))
-        energy = np.convolve(np.ones(number), np.abs(shape) ** 2)[number : 2 * number]
-        match = [np.abs(signal.fftconvolve(one, shape[::-1].conj())[number : 2 * number]) ** 2 for one in left.T]
-        power = np.sum(match, axis=0) / energy
-        place = int(np.argmax(power))
-        if power[place] > best:
-            best, found = float(power[place]), np.array([np.log(decay), bins.omega[place] / bins.step])
-    return found
+    return bins.strongest(np.asarray((fit.left[:number] + 1j * fit.left[number:]) / fit.noise, dtype=complex))

@@ -11,7 +11,7 @@ from scipy import fft
 from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError
 from vibroimpact.shown import shown
-from vibroimpact.signals.decay.decaying_tones import Bins, Tones, tones_in
+from vibroimpact.signals.decay.decaying_tones import Bins, Spectra, Tones, tones_in
 from vibroimpact.signals.estimate import Estimate
 from vibroimpact.signals.record import Record
 
@@ -101,27 +101,46 @@ def modes_in_decay(records: Sequence[Record], band: tuple[float, float]) -> tupl
     (400.0, 0.01)
     """
     value, rate = _checked(records, band)
-    bands = tuple(_bands(band, value.shape[1] / rate))
+    bands = tuple(bands_in(band, value.shape[1] / rate))
+    modes = modes_in_bands(band, bands, [_bins(value, rate, *ends) for ends in bands], rate)
+    return tuple(with_doubts(modes, value.shape[1] / rate))
+
+
+def modes_in_bands(
+    band: tuple[float, float], bands: Sequence[tuple[float, float]], spectra: Sequence[Spectra], rate: float
+) -> list[DecayMode]:
+    """Return the modes in spectra, in the order of their frequencies.
+
+    Parameters
+    ----------
+    band : tuple of two floats
+        The band of frequencies that modes are of [Hz].
+    bands : sequence of tuples of two floats
+        The bands that are fitted at once [Hz].
+    spectra : sequence of Spectra
+        The spectra in each and in its margins.
+    rate : float
+        Frequency of one turn per unit of time of the spectra [Hz]: the rate of samples, or 1 for radians per second.
+    """
     turn = 2.0 * np.pi / rate
-    spectra = [_bins(value, rate, *ends) for ends in bands]
     found = [tones_in(one) for one in spectra]
     # once more, without what the tones of other bands leave in each
     own = [one.part((one.frequency >= turn * low) & (one.frequency < turn * high)) for (low, high), one in zip(bands, found, strict=True)]
-    found = [tones_in(_alone(one, [*own[:number], *own[number + 1 :]])) for number, one in enumerate(spectra)]
+    alone = [_alone(one, [*own[:number], *own[number + 1 :]]) for number, one in enumerate(spectra)]
+    found = [tones_in(one.weighed(tones)) for one, tones in zip(alone, found, strict=True)]
     modes: list[DecayMode] = []
     for (low, high), one, tones in zip(bands, spectra, found, strict=True):
-        resolution, last = rate / one.samples, modes[-1].frequency.value if modes else 0.0
+        resolution, last = one.step / turn, modes[-1].frequency.value if modes else 0.0
         for mode in _modes(tones, rate):
             place = mode.frequency.value
             inside = low - resolution <= place < high + resolution and band[0] <= place <= band[1]
             twice = place < low + 2.0 * resolution and abs(place - last) < resolution  # in the band below too
             if inside and not twice and mode.damping_ratio.value < _WIDEST:
                 modes.append(mode)
-    modes.sort(key=lambda mode: mode.frequency.value)
-    return tuple(_weighed(modes, value.shape[1] / rate))
+    return sorted(modes, key=lambda mode: mode.frequency.value)
 
 
-def _alone(bins: Bins, others: Sequence[Tones]) -> Bins:
+def _alone(bins: Spectra, others: Sequence[Tones]) -> Spectra:
     """Return the spectra in a band without the tones of other bands that lie outside of its margins."""
     low, high = bins.omega[[0, -1]]
     for one in others:
@@ -156,7 +175,7 @@ def _checked(records: Sequence[Record], band: tuple[float, float]) -> tuple[Floa
     return np.stack([one.value for one in records]), rate
 
 
-def _bands(band: tuple[float, float], duration: float) -> Iterator[tuple[float, float]]:
+def bands_in(band: tuple[float, float], duration: float) -> Iterator[tuple[float, float]]:
     """Yield the bands that are fitted at once: half octaves, or wider ones where the record is short."""
     low, end = band
     while low < end:
@@ -175,7 +194,7 @@ def _bins(value: Floats, rate: float, low: float, high: float) -> Bins:
     number = np.arange(max(int(first), 1), min(int(last), (samples - 1) // 2) + 1)
     part = value[:, :samples]
     floor = _LEAST_NOISE * np.sqrt(np.mean(part**2, axis=1))
-    return Bins(2.0 * np.pi / samples * number, fft.rfft(part)[:, number], samples, floor)
+    return Bins(2.0 * np.pi / samples * number, fft.rfft(part)[:, number], floor, samples)
 
 
 def _modes(tones: Tones, rate: float) -> Iterator[DecayMode]:
@@ -194,8 +213,8 @@ def _modes(tones: Tones, rate: float) -> Iterator[DecayMode]:
         )
 
 
-def _weighed(modes: Sequence[DecayMode], duration: float) -> Iterator[DecayMode]:
-    """Yield modes with the doubt about their damping."""
+def with_doubts(modes: Sequence[DecayMode], duration: float) -> Iterator[DecayMode]:
+    """Yield modes with the doubt about their damping, from so much time of decay [s]."""
     places = np.array([mode.frequency.value for mode in modes])
     for number, mode in enumerate(modes):
         if mode.damping_ratio.deviation < _VAGUE:

@@ -26,7 +26,8 @@ def universal_records(path: Path) -> Iterator[Record]:
     """
     file = read_universal_file(path)
     if not file.functions:
-        raise InputError(f"{path}: there is no real function of time in it")
+        others = f"; its {len(file.of_frequency)} functions of frequency are for correlate and modes" if file.of_frequency else ""
+        raise InputError(f"{path}: there is no real function of time in it{others}")
     for one in file.functions:
         try:
             factor, unit = _unit(one, file.factors)

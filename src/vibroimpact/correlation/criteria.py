@@ -1,0 +1,37 @@
+"""What correlations of records and of frequency responses have in common: criteria over octaves, and modes."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from vibroimpact.arrays import Floats
+from vibroimpact.correlation.mode_pairs import ModePair
+from vibroimpact.dynamics.sensors.sensor import Sensor
+
+
+class Criteria(Protocol):
+    """A correlation as its tables and charts of FRAC and of modes have it; see `Correlation`."""
+
+    @property
+    def sensors(self) -> tuple[Sensor, ...]:
+        """The sensors."""
+
+    @property
+    def band(self) -> tuple[float, float]:
+        """The band of frequencies [Hz]."""
+
+    @property
+    def octaves(self) -> tuple[tuple[float, float], ...]:
+        """The octaves of the band [Hz]."""
+
+    @property
+    def frac(self) -> Floats:
+        """Frequency response assurance criterion over the band, (S,)."""
+
+    @property
+    def octave_frac(self) -> Floats:
+        """The criterion over each octave, (S, octaves)."""
+
+    @property
+    def modes(self) -> tuple[ModePair, ...]:
+        """The modes of the case and those that were measured."""

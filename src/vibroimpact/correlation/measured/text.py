@@ -1,0 +1,24 @@
+"""What the modes command prints of measured modes."""
+
+from __future__ import annotations
+
+from rich.console import Group, RenderableType
+from rich.text import Text
+
+from vibroimpact.correlation.measured.document import measured_table
+from vibroimpact.correlation.measured.modes_of_file import MeasuredModes
+from vibroimpact.correlation.text import criteria_table
+from vibroimpact.modes.measured_table import MeasuredTable
+from vibroimpact.runs.text import doubt_lines
+
+
+def measured_summary(found: MeasuredModes, name: str) -> RenderableType:
+    """Return the measured modes and the doubts about them, for the terminal."""
+    return Group(Text(name, style="bold"), criteria_table(*measured_table(found), ("Remark",)), *doubt_lines(found.doubts))
+
+
+def compared_summary(found: MeasuredTable) -> RenderableType:
+    """Return measured modes beside those of a case, and the doubts about them, for the terminal."""
+    return Group(
+        Text("\nmeasured modes", style="bold"), criteria_table(found.headers, found.cells, ("Remark",)), *doubt_lines(found.doubts)
+    )

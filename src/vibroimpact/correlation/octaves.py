@@ -1,0 +1,35 @@
+"""The octaves of a band, and the frequency response assurance criterion over each."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+
+import numpy as np
+
+from vibroimpact.arrays import Complex, Floats
+from vibroimpact.signals.frac import frac
+
+_FEW = 4
+"""Frequencies below which an octave has no criterion: of one it is 1 whatever the signals are, of n that are unrelated about 1/n."""
+
+
+def octaves_of(band: tuple[float, float]) -> tuple[tuple[float, float], ...]:
+    """Return the octaves within a band: their centres are 1 kHz times powers of 2, and the outer ones end with the band.
+
+    Examples
+    --------
+    >>> [(round(low, 1), round(high, 1)) for low, high in octaves_of((300.0, 1600.0))]
+    [(300.0, 353.6), (353.6, 707.1), (707.1, 1414.2), (1414.2, 1600.0)]
+    """
+    number = np.arange(-10, 12)
+    edges = 1000.0 * 2.0 ** (number + 0.5)
+    inner = edges[(edges > band[0]) & (edges < band[1])]
+    return tuple(itertools.pairwise([band[0], *inner.tolist(), band[1]]))
+
+
+def frac_of_octaves(octaves: Sequence[tuple[float, float]], frequency: Floats, measured: Complex, simulated: Complex) -> Floats:
+    """Return the criterion of responses, (S, frequencies), over each octave, (S, octaves); NaN with fewer than four frequencies in it."""
+    untold = np.full(len(measured), np.nan)
+    parts = [(frequency >= low) & (frequency <= high) for low, high in octaves]
+    return np.stack([frac(measured[:, part], simulated[:, part]) if part.sum() >= _FEW else untold for part in parts], axis=1)

@@ -1,0 +1,1 @@
+"""Measured frequency responses beside those of a case, and the modes of both."""

@@ -1,0 +1,70 @@
+"""The charts of a correlation of frequency responses: magnitudes, phases and coherences, criteria and damping."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+
+from vibroimpact.charts.axis import Axis
+from vibroimpact.charts.chart import Chart, Panel
+from vibroimpact.charts.made import made_charts
+from vibroimpact.charts.marks import Line, Rug
+from vibroimpact.correlation.charts import MOST, damping_chart, frac_chart
+from vibroimpact.correlation.responses.document import WHAT_FRAC_IS_OF
+from vibroimpact.correlation.responses.result import ResponseCorrelation
+from vibroimpact.shown import shortened, visible
+
+_LOOKS = (("measured", "main"), ("simulated", "fit"))
+"""Names and roles of the lines."""
+_DECADES = 4.0
+"""Decades below its peak down to which a response is shown."""
+
+
+def response_charts(found: ResponseCorrelation) -> list[Chart]:
+    """Return the charts `responses`, `frac` and, if a damping was measured, `damping`.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import vibroimpact as vi
+    >>> plate = {"size": [0.3, 0.3, 0.02], "material": "steel", "model": "elastic", "modes": 10, "supports": "clamped", "damping": 0.01}
+    >>> case = vi.read_case({
+    ...     "sphere": {"radius": 0.02, "material": "steel"}, "plate": plate, "drop": {"speed": 1.0, "position": [0.02, 0.01]},
+    ...     "contact": {"law": "hertz"}, "sensors": [{"name": "a", "position": [0.1, 0.03]}],
+    ... })
+    >>> found = vi.correlate_responses(case, vi.responses_of_case(case, np.arange(500.0, 4000.0, 2.0)))
+    >>> [chart.name for chart in vi.response_charts(found)]
+    ['responses', 'frac', 'damping']
+    """
+    makers = {"responses": partial(_responses, found), "frac": partial(frac_chart, found, WHAT_FRAC_IS_OF)}
+    if any(pair.damping_measured for pair in found.modes):
+        makers["damping"] = partial(damping_chart, found, "the measured frequency responses")
+    return made_charts(makers)
+
+
+def _responses(found: ResponseCorrelation) -> Chart:
+    axis = Axis("Frequency", "Hz", range=found.band)
+    computed = np.array([pair.frequency for pair in found.modes if pair.number is not None])
+    turns = Axis("Phase", "°", range=(-180.0, 180.0))
+    rows: list[tuple[Panel, ...]] = []
+    for number, sensor in enumerate(found.sensors[:MOST]):
+        both = (found.measured_response[number], found.simulated_response[number])
+        sizes = [np.abs(one) for one in both]
+        most = max(float(size.max(initial=0.0)) for size in sizes)
+        floor = 10.0**-_DECADES * most + 1e-300
+        scale = Axis("Magnitude", found.units[number], log=True, range=(floor, 2.0 * most) if most > 0.0 else None)
+        magnitudes = [
+            Line(found.frequency, np.maximum(size, 1e-3 * floor), name, role) for size, (name, role) in zip(sizes, _LOOKS, strict=True)
+        ]
+        phases = [Line(found.frequency, np.degrees(np.angle(one)), name, role) for one, (name, role) in zip(both, _LOOKS, strict=True)]
+        title = f"{shortened(visible(sensor.name), 40)}: FRAC {found.frac[number]:.3f}"
+        rows.append((Panel(axis, scale, (*magnitudes, Rug(computed, "modes of the case")), title),))
+        rows.append((Panel(axis, turns, tuple(phases), "Phase"),))
+        if found.coherence is not None and not np.isnan(found.coherence[number]).any():
+            level = Axis("Coherence", range=(0.0, 1.02))
+            rows.append((Panel(axis, level, (Line(found.frequency, found.coherence[number], role="detail"),), "Coherence"),))
+    caption = (
+        f"Measured frequency responses to a force at {visible(found.reference)}, and those of the case. Ticks mark the modes of the case."
+    )
+    return Chart("responses", "Frequency responses", tuple(rows), caption)
