@@ -187,8 +187,9 @@ def test_frequencies_at_any_steps(frequency: np.ndarray) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("growing", [0.0, 0.01], ids=["white noise", "noise that grows with the response"])
-def test_intervals_hold_the_truth(growing: float) -> None:
+@pytest.mark.parametrize(("growing", "invented"), [(0.0, 0.02), (0.01, 0.1)], ids=["white noise", "noise that grows with the response"])
+def test_intervals_hold_the_truth(growing: float, invented: float) -> None:
+    """Of frequencies and damping ratios; all modes are found, and few in many files that are not there."""
     draws, held, more = 60, np.zeros(2), 0
     for seed in range(draws):
         responses, natural, ratios = synthetic(np.arange(50.0, 2400.0), seed, growing)
@@ -200,7 +201,7 @@ def test_intervals_hold_the_truth(growing: float) -> None:
             both = ((mode.frequency.interval, truth), (mode.damping_ratio.interval, ratio))
             held += [low <= value <= high for (low, high), value in both]
     assert (held / (7 * draws) > 0.91).all()
-    assert more <= 0.05 * draws
+    assert more <= invented * draws
 
 
 def test_the_cases_own_agree(tmp_path: Path) -> None:
