@@ -1,9 +1,10 @@
-"""Records as people have them: drops whose restitutions are known, with faults of sensors and clocks, in files as instruments write them."""
+"""Records of drops whose restitutions are known, with faults of sensors and clocks, in files as instruments write them."""
 
 from __future__ import annotations
 
 import wave
 from functools import cache
+from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple
 
@@ -62,7 +63,7 @@ def _position(random: np.random.Generator, stem: Path) -> Made:
     fall = float(np.sqrt(2.0 * (height - RADIUS) / GRAVITY))
     speeds = GRAVITY * fall * restitution ** np.arange(number + 1)
     leaves, begin = [], fall
-    for before, after in zip(speeds[:-1], speeds[1:], strict=True):
+    for before, after in pairwise(speeds):
         leaves.append(begin + CONTACT * before**-0.2)
         begin = leaves[-1] + 2.0 * after / GRAVITY
     time = np.arange(random.uniform() / rate, begin - 0.6 * speeds[-1] / GRAVITY, 1.0 / rate)
@@ -76,8 +77,7 @@ def _position(random: np.random.Generator, stem: Path) -> Made:
         shown = np.round(time, 3 if rate <= 500.0 else 4)
         faults.append("rounded times")
     position = height - 0.5 * GRAVITY * np.maximum(time, 0.0) ** 2
-    for touch_speed, after, leave in zip(speeds[:-1], speeds[1:], leaves, strict=True):
-        del touch_speed
+    for after, leave in zip(speeds[1:], leaves, strict=True):
         since = time - leave
         position = np.where(since >= 0.0, RADIUS + after * since - 0.5 * GRAVITY * since**2, position)
     zero, drift, clock = random.uniform(-2e-3, 2e-3), random.uniform(-1e-3, 1e-3), 1.0 + 2e-3 * random.normal()
@@ -117,7 +117,6 @@ def _force(random: np.random.Generator, stem: Path) -> Made:
     if random.uniform() < 0.2:
         value = np.minimum(value, 0.85 * peak)
         faults.append("clipped")
-    # most of the time nothing happens: the parts with the impacts are kept at their rate
     file = _table(random, stem, time, value, ("force", "N"), faults)
     exact = response.impacts["restitution_achieved"][:4]
     return Made(file, "force", np.asarray(exact), 0.5, ("offset, drift, gain, noise", *faults))
@@ -132,9 +131,13 @@ def _sound(random: np.random.Generator, stem: Path) -> Made:
     value = 10.0 ** random.uniform(-4.0, -2.3) * random.normal(size=len(time))
     for bounce, touch in enumerate(touches):
         since = (time - touch).clip(0.0)
-        ringing = sum(np.exp(-since / fade) * np.sin(2.0 * np.pi * pitch * since) for pitch, fade in ((1800, 0.02), (4300, 0.012), (9100, 6e-3)))
+        ringing = sum(
+            np.exp(-since / fade) * np.sin(2.0 * np.pi * pitch * since) for pitch, fade in ((1800, 0.02), (4300, 0.012), (9100, 6e-3))
+        )
         value += np.where(time >= touch, 0.2 * (1.0 + 0.1 * random.normal()) * restitution**bounce * ringing, 0.0)
-    value += random.uniform(-0.05, 0.05) + random.uniform(-0.02, 0.02) * time + random.uniform(0.0, 0.02) * np.sin(2.0 * np.pi * 50.0 * time)
+    value += (
+        random.uniform(-0.05, 0.05) + random.uniform(-0.02, 0.02) * time + random.uniform(0.0, 0.02) * np.sin(2.0 * np.pi * 50.0 * time)
+    )
     faults = []
     if random.uniform() < 0.2:
         value = np.clip(value, -0.12, 0.12)
@@ -155,7 +158,9 @@ def _sound(random: np.random.Generator, stem: Path) -> Made:
 _UNITS = {"m": (("m", 1.0), ("mm", 1e-3), ("cm", 1e-2)), "N": (("N", 1.0), ("kN", 1e3)), "V": (("V", 1.0), ("mV", 1e-3))}
 
 
-def _table(random: np.random.Generator, stem: Path, time: np.ndarray, value: np.ndarray, column: tuple[str, str], faults: list[str]) -> Path:
+def _table(
+    random: np.random.Generator, stem: Path, time: np.ndarray, value: np.ndarray, column: tuple[str, str], faults: list[str]
+) -> Path:
     """Write a table in one of the styles, which joins the faults."""
     style = str(random.choice(STYLES))
     faults.append(style)

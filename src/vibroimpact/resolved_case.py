@@ -18,14 +18,19 @@ class ResolvedBody(TypedDict, total=False):
     material: Any  # a table of numbers, or "rigid"
     model: str
     radius: Array
-    mass: Array
-    inertia: Array | str
     modes: int
     max_frequency: float
     damping: Any
     mesh: Mapping[str, Any]
     reduction: str
     attachment_mode: bool
+
+
+class ResolvedSphere(ResolvedBody, total=False):
+    """The sphere."""
+
+    mass: Array
+    inertia: Array | str
 
 
 class ResolvedPlate(ResolvedBody, total=False):
@@ -90,7 +95,7 @@ class ResolvedCase(TypedDict, total=False):
 
     schema_version: int
     name: str
-    sphere: ResolvedBody
+    sphere: ResolvedSphere
     plate: ResolvedPlate
     drop: ResolvedDrop
     contact: dict[str, Any]

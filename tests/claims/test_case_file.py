@@ -45,7 +45,7 @@ def test_defaults_of_the_drop(tmp_path: Path, blocks: list[str]) -> None:
     problem, newton = case_of(tmp_path, blocks[0].replace("gravity = 9.8\n", "")).to_problem(), vi.find_contact_law("newton")
     says(PAGE, "| {} by default; 0 is allowed", problem.gravity)
     says(PAGE, "at the end of a contact: {} by default", problem.tolerance)
-    says(PAGE, "or all if a `duration` is given; {} at most", MOST_IMPACTS)
+    says(PAGE, "or the motion of the plate is a table that ends; {} at most", MOST_IMPACTS)
     with pytest.raises(vi.InputError, match="impacts"):
         case_of(tmp_path, blocks[0], **{"run.impacts": MOST_IMPACTS + 1})
     bounced = vi.simulate(vi.Problem(sphere=vi.Body(1.0, 0.1), plate=vi.rigid_plate(), laws=(newton(restitution=0.5),), speed=2.0))

@@ -14,7 +14,7 @@ from heard import heard
 from oblique_measured import ALL, ALUMINA, ANGLES, FRICTION, GLASS, MEASURED, SLIPPING, fitted_friction
 from stated import says
 from support import blocks, module_at, plain_case
-from vibroimpact.calibration import force_pulses, force_record, joint_flights, position_record
+from vibroimpact.calibration import bounce_record, force_pulses, force_record, joint_flights, position_record
 from vibroimpact.calibration.calibrated_drops import MOST_IMPACTS
 from vibroimpact.calibration.evaluate_measurement import _MATTERS
 from vibroimpact.calibration.inputs import BRIEF, EARTH
@@ -34,6 +34,10 @@ def paper() -> vi.Calibration:
     found = vi.calibrate_case(vi.load_calibration("paper:calibration"))
     assert isinstance(found, vi.Calibration)
     return found
+
+
+def test_the_first_impact_of_a_record() -> None:
+    says(PAGE, "differs from the second one by a factor of {} at most", bounce_record._UNLIKE)
 
 
 def test_dampings() -> None:

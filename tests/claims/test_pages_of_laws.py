@@ -62,7 +62,7 @@ def fully_plastic_restitution(squared_radius: float) -> float:
 
 
 def test_the_contact_radius_of_the_source_of_storakers() -> None:
-    assert "c^2 = 1.43 without hardening, for which" in page_text("docs/laws/storakers.md")
+    assert "c^2 is 0.5 for m = 1, and 1.43 without hardening" in page_text("docs/laws/storakers.md")
     ratio = fully_plastic_restitution(1.43) / fully_plastic_restitution(0.5)
     says("docs/laws/storakers.md", "the restitution far above yield would be {} times as high", ratio)
 

@@ -96,7 +96,9 @@ def test_changes_are_those_of_the_file(tmp_path: Path) -> None:
 
 def test_files_in_changes_are_found_from_where_the_command_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "ball.bdf").write_text("")
+    corners = ("0.,0.,0.", "1.,0.,0.", "0.,1.,0.", "0.,0.,1.")
+    grids = "".join(f"GRID,{number},,{corner}\n" for number, corner in enumerate(corners, 1))
+    (tmp_path / "ball.bdf").write_text(f"BEGIN BULK\n{grids}CTETRA,1,1,1,2,3,4\nPSOLID,1,1\nENDDATA\n")
     section = vi.load_case("paper:type2", {"sphere.mesh": "ball.bdf"}).sphere
     assert section.mesh.file == str(tmp_path / "ball.bdf")
 

@@ -13,7 +13,7 @@ from vibroimpact.cases.pair import contact_pair
 from vibroimpact.cases.rigid import contact_laws_of
 from vibroimpact.cases.schema import SECTIONS, SensorSection
 from vibroimpact.contact.law import ContactLaw
-from vibroimpact.resolved_case import ResolvedBody, ResolvedCase, ResolvedDrop, ResolvedPlate, ResolvedRun, ResolvedSensor
+from vibroimpact.resolved_case import ResolvedCase, ResolvedDrop, ResolvedPlate, ResolvedRun, ResolvedSensor, ResolvedSphere
 
 
 def test_a_run_makes_the_laws_of_a_case_once(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -48,7 +48,7 @@ def test_they_are_no_part_of_the_case() -> None:
 
 
 def test_the_types_of_a_resolved_case_have_the_keys_of_its_sections() -> None:
-    tables = {"sphere": ResolvedBody, "plate": ResolvedPlate, "drop": ResolvedDrop, "run": ResolvedRun}
+    tables = {"sphere": ResolvedSphere, "plate": ResolvedPlate, "drop": ResolvedDrop, "run": ResolvedRun}
     assert tables.keys() == SECTIONS.keys()
     for name, table in tables.items():
         assert get_type_hints(table).keys() == SECTIONS[name].model_fields.keys(), name

@@ -157,7 +157,9 @@ def modes(
     force: Force = False,
     as_json: Json = False,
 ) -> None:
-    """Compute the modes of the elastic bodies of a case, or of the frequency responses of a universal file in place of a case.
+    """Compute the modes of elastic bodies, or fit measured ones.
+
+    In place of a case a universal file with frequency responses may be given.
 
     The folder contains a table of frequencies, a report with the first mode shapes, and the meshes for ParaView, Nastran and Abaqus.
     """

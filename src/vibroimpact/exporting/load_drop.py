@@ -71,7 +71,7 @@ def drop_of_result(result: Result, case: Case, function: tuple[str, SpeedFunctio
         surface["sphere_position"] = found.sphere_position
     return Drop(
         name=result.name,
-        radius=case.sphere.radius,
+        radius=float(case.sphere.radius),
         mass=mass_of_sphere(case),
         inertia_ratio=float(rigid_problem(case).inertia_ratio),
         sphere_material=case.sphere.material,
