@@ -48,10 +48,11 @@ def evaluated(record: Made) -> Calibration:
         target |= {"contact_duration": f"{CONTACT} s"}
         if record.file.suffix != ".wav":
             target |= {"channel": "microphone"}
+    # what is typed is exact here: it would widen the intervals of the first impact
     case = plain_case(
-        sphere={"radius": RADIUS, "material": STEEL},
+        sphere={"radius": f"{RADIUS} m +- 0", "material": STEEL},
         plate={"material": STEEL},
-        drop={"height": record.height, "gravity": GRAVITY},
+        drop={"height": f"{record.height!r} m +- 0", "gravity": f"{GRAVITY} m/s^2 +- 0"},
         contact={"law": "newton", "restitution": 0.5},
     )
     return calibrate_case(read_calibration({**case, "calibrate": {"target": target, "degree": 0}}))

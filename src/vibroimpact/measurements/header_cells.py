@@ -14,19 +14,26 @@ _ENDINGS = {
     "_m_s2": "m/s^2",
     "_m_s_2": "m/s^2",
     "_m_s": "m/s",
+    "_mm_s": "mm/s",
+    "_cm_s": "cm/s",
     "_rad_s": "rad/s",
     "_deg": "deg",
     "_s": "s",
     "_ms": "ms",
     "_us": "us",
     "_m": "m",
+    "_cm": "cm",
     "_mm": "mm",
     "_um": "um",
+    "_nm": "nm",
     "_N": "N",
     "_kN": "kN",
     "_V": "V",
     "_mV": "mV",
+    "_uV": "uV",
     "_Pa": "Pa",
+    "_kPa": "kPa",
+    "_MPa": "MPa",
 }
 """Units at the end of a name. MATLAB makes names of variables of a header, in which brackets and signs become underscores."""
 
@@ -51,6 +58,8 @@ def name_and_unit(cell: str) -> tuple[str, str | None]:
     --------
     >>> name_and_unit("Rebound height [mm]"), name_and_unit("time_s"), name_and_unit("count"), name_and_unit("Zeit [ms]")
     (('rebound_height', 'mm'), ('time', 's'), ('count', None), ('time', 'ms'))
+    >>> name_and_unit("position_cm")
+    ('position', 'cm')
     >>> name_and_unit("acceleration_m_s_2_")  # by MATLAB from "acceleration [m/s^2]"
     ('acceleration', 'm/s^2')
     """
