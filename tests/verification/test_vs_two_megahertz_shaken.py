@@ -93,10 +93,10 @@ def heard(response: vi.Response, sensor: Sensor, exact: Floats) -> tuple[Floats,
 @pytest.mark.parametrize("quantity", ["acceleration", "velocity", "displacement"])
 @pytest.mark.parametrize("filtered", ["sigma-delta", "butterworth", "none"])
 def test_points(agrees: Agrees, response: vi.Response, motion: dict[str, Floats], quantity: Any, filtered: str) -> None:
-    """Without a filter the modes left out matter for an acceleration, as much as is said."""
+    """Without a filter the modes left out matter for an acceleration, within half as much again of what is estimated."""
     sensor = Sensor("one", quantity, rate=SAMPLES, filter=filtered)
     doubt = response.signals(sensor)["one"].uncertainty if filtered == "none" else 0.0
-    within = 0.005 if doubt < 0.005 else doubt
+    within = 0.005 if doubt < 0.005 else 1.5 * doubt
     agrees(
         f"ideal sensors, filter {filtered}",
         f"{quantity} signal",
