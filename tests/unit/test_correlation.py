@@ -19,7 +19,7 @@ import vibroimpact as vi
 from hammered import RATE, TABLE, a_case, hammered, records
 from vibroimpact.correlation.acquired import acquired_of
 from vibroimpact.correlation.correlate import Correlation
-from vibroimpact.signals.flat_tops import clipped_samples
+from vibroimpact.signals.flat_tops import clipped_count
 from vibroimpact.signals.record import Record
 
 DROP = {"drop": {"height": 0.03, "position": TABLE["drop"]["position"]}}
@@ -250,7 +250,7 @@ def test_clipping_of_every_kind_is_found(kind: str) -> None:
         found = np.round(200.0 * found) / 200.0
     for one in found:
         level = 0.2 if kind == "offset" else 0.0
-        assert clipped_samples(one - level, one, one[:200] - level) > 0
+        assert clipped_count(one - level, one, one[:200] - level) > 0
 
 
 def test_what_is_not_clipped_is_not_said_to_be() -> None:
@@ -265,7 +265,7 @@ def test_what_is_not_clipped_is_not_said_to_be() -> None:
                 for bits in (0, 12, 16):
                     steps = 2.0 ** (bits - 1) * random.uniform(0.2, 1.0) / np.abs(noisy).max()
                     record = np.round(noisy * steps) if bits else noisy
-                    alarms += clipped_samples(record, record, record[:200]) > 0
+                    alarms += clipped_count(record, record, record[:200]) > 0
     assert alarms == 0
 
 

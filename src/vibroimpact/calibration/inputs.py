@@ -9,14 +9,13 @@ from vibroimpact.dynamics.problem import STANDARD_GRAVITY
 from vibroimpact.units.display import multiple
 from vibroimpact.units.written import Written, read_written
 
-EARTH = Written(STANDARD_GRAVITY, 0.015, "9.80665 m/s^2", stated=False)
+EARTH = Written(STANDARD_GRAVITY, 0.015, "9.80665 m/s^2", stated=False, why="as it varies over the Earth")
 """Gravity where none is given: at sea level it lies anywhere from 9.780 to 9.832 m/s^2, from the equator to the poles."""
 
-BRIEF = Written(0.0, 1e-4, "0 ms", stated=False)
+BRIEF = Written(0.0, 1e-4, "0 ms", stated=False, why="as of hard balls")
 """Contact time where none is given: that of balls of steel, glass or rock is some tenths of a millisecond at most."""
 
 _DIGITS = "since its last digit leaves open"
-_WHY = {id(EARTH): "as it varies over the Earth", id(BRIEF): "as of hard balls"}
 
 
 class Input(NamedTuple):
@@ -41,7 +40,7 @@ def as_input(name: str, value: float | str, unit: str) -> Input:
     if value.stated:
         return Input(name, value, unit)
     half = _short(value.deviation * 3.0**0.5, unit)
-    return Input(name, value, unit, _WHY.get(id(value), f"{_DIGITS} \u00b1 {half}"))
+    return Input(name, value, unit, value.why or f"{_DIGITS} \u00b1 {half}")
 
 
 def inputs_sentence(inputs: Sequence[Input]) -> str:

@@ -59,10 +59,8 @@ def typed_inputs(case: Case) -> list[Input]:
         value = _number(case, key)
         if value is None or not isinstance(value, Written) or not value * value.deviation:
             continue
-        one = as_input(key, value, unit)
-        name = case.sphere.material.name
         if value.stated or not key.startswith("plate."):
-            inputs.append(one._replace(why=f"as of a material by its name, {name}") if value.text == name else one)
+            inputs.append(as_input(key, value, unit))
     return inputs
 
 
@@ -145,7 +143,8 @@ def _number(case: Case, key: str) -> float | None:
     if key == "drop.gravity" and value == STANDARD_GRAVITY:
         return EARTH
     if way[0] == "material" and body.material.name in material_library():
-        return Written(value, _NAMED * value, body.material.name, stated=False)
+        name = body.material.name
+        return Written(value, _NAMED * value, name, stated=False, why=f"as of a material by its name, {name}")
     return value
 
 

@@ -151,6 +151,11 @@ class Conditions:
         """Whether the law models yielding, or gives no contact force at all."""
         return issubclass(self.law, (ElasticPlasticLaw, InstantaneousLaw))
 
+    @property
+    def hertz_ratio(self) -> Array:
+        """Stiffness of the law over that of Hertz's contact of the bodies [-], as numbers."""
+        return self.law_parameter("stiffness") / hertz_stiffness(self.modulus, self.effective_radius)
+
     @cached_property
     def is_hertzian(self) -> Array:
         """Whether the elastic force of the law is that of Hertz for these bodies."""
@@ -163,8 +168,7 @@ class Conditions:
             "exponent" not in contact and "1.5" not in self.law.__dataclass_fields__["stiffness"].metadata["unit"]
         ):
             return False
-        ratio = self.law_parameter("stiffness") / hertz_stiffness(self.modulus, self.effective_radius)
-        return (abs(ratio - 1.0) < _LIKE_HERTZ) & (self.law_parameter("exponent", 1.5) == 1.5)
+        return (abs(self.hertz_ratio - 1.0) < _LIKE_HERTZ) & (self.law_parameter("exponent", 1.5) == 1.5)
 
     def model(self, body: Literal["sphere", "plate"]) -> str:
         """Return whether "sphere" or "plate" is "rigid" or "elastic"."""

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import partial
 
 import numpy as np
 
+from vibroimpact.arrays import Complex, Floats
 from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.made import made_charts
@@ -82,14 +84,8 @@ def _responses(found: Correlation) -> Chart:
     computed = np.array([pair.frequency for pair in found.modes if pair.number is not None])
     quantity = "Magnitude" if found.hits else "Amplitude"
     for number, sensor in enumerate(found.sensors[:MOST]):
-        sizes = [np.abs(one[number]) for one in (found.measured_response, found.simulated_response)]
-        most = max(float(size.max(initial=0.0)) for size in sizes)
-        floor = 10.0**-_DECADES * most + 1e-300
-        shown = (floor, 2.0 * most) if most > 0.0 else None
+        lines, shown = magnitude_lines(found.frequency, (found.measured_response[number], found.simulated_response[number]))
         scale = Axis(quantity, f"{sensor.unit}/N" if found.hits else sensor.unit, log=True, range=shown)
-        lines = [
-            Line(found.frequency, np.maximum(size, 1e-3 * floor), name, role) for size, (name, role) in zip(sizes, _LOOKS[:2], strict=True)
-        ]
         marks: tuple[Mark, ...] = (*lines, Rug(computed, "modes of the case"))
         panels = [Panel(axis, scale, marks, f"{_name(found, number)}: FRAC {found.frac[number]:.3f}")]
         if found.coherence is not None:
@@ -101,6 +97,20 @@ def _responses(found: Correlation) -> Chart:
     what = "Frequency responses to the force (estimator H1)" if found.hits else "Spectra of record and simulation"
     caption = f"{what}, with the same window and spectral leakage. Ticks mark the modes of the case."
     return Chart("responses", "Frequency responses" if found.hits else "Spectra", tuple(rows), caption, _HEIGHT)
+
+
+def magnitude_lines(
+    frequency: Floats, responses: Sequence[Complex], looks: Sequence[tuple[str, str]] = _LOOKS[:2]
+) -> tuple[list[Line], tuple[float, float] | None]:
+    """Return the lines of the magnitudes of responses, (bins,) each, and the range of their axis: decades below the largest peak.
+
+    `looks`: names and roles of the lines.
+    """
+    sizes = [np.abs(one) for one in responses]
+    most = max(float(size.max(initial=0.0)) for size in sizes)
+    floor = 10.0**-_DECADES * most + 1e-300
+    lines = [Line(frequency, np.maximum(size, 1e-3 * floor), name, role) for size, (name, role) in zip(sizes, looks, strict=True)]
+    return lines, (floor, 2.0 * most) if most > 0.0 else None
 
 
 def frac_chart(found: Criteria, of: str) -> Chart:

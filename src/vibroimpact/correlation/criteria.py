@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Complex, Floats
 from vibroimpact.correlation.mode_pairs import ModePair
 from vibroimpact.dynamics.sensors.sensor import Sensor
 
@@ -35,3 +35,27 @@ class Criteria(Protocol):
     @property
     def modes(self) -> tuple[ModePair, ...]:
         """The modes of the case and those that were measured."""
+
+
+class Responses(Protocol):
+    """A correlation as its table of responses has it."""
+
+    @property
+    def sensors(self) -> tuple[Sensor, ...]:
+        """The sensors."""
+
+    @property
+    def frequency(self) -> Floats:
+        """Frequencies in the band [Hz], (bins,)."""
+
+    @property
+    def measured_response(self) -> Complex:
+        """The measured responses, (S, bins)."""
+
+    @property
+    def simulated_response(self) -> Complex:
+        """The simulated responses, (S, bins)."""
+
+    @property
+    def coherence(self) -> Floats | None:
+        """Coherence of force and motion, (S, bins); None if it is not known."""

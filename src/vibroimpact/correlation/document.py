@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
 from vibroimpact._version import __version__
+from vibroimpact.arrays import Floats
 from vibroimpact.correlation.correlate import Correlation
-from vibroimpact.correlation.criteria import Criteria
+from vibroimpact.correlation.criteria import Criteria, Responses
 from vibroimpact.correlation.mode_pairs import ModePair, damping_field
 from vibroimpact.shown import visible
 from vibroimpact.units.display import MISSING, digits
@@ -71,6 +73,26 @@ def record_rows(found: Correlation) -> list[list[str]]:
 def octave_headers(found: Criteria) -> list[str]:
     """Return the headers of the table of octaves."""
     return ["Band", *(visible(sensor.name) for sensor in found.sensors)]
+
+
+def response_columns(found: Responses, plain: Mapping[str, str]) -> dict[str, Floats]:
+    """Return the columns of `responses.csv`: the frequency, and of each response magnitude and phase of both, and the coherence.
+
+    Parameters
+    ----------
+    found : Responses
+        The correlation.
+    plain : mapping of str to str
+        What stands for the name of each sensor.
+    """
+    columns = {"frequency_Hz": found.frequency}
+    for number, sensor in enumerate(found.sensors):
+        name = plain[sensor.name]
+        for what, response in (("measured", found.measured_response), ("simulated", found.simulated_response)):
+            columns |= {f"{name}_{what}_magnitude": np.abs(response[number]), f"{name}_{what}_phase_rad": np.angle(response[number])}
+        if found.coherence is not None:
+            columns[f"{name}_coherence"] = found.coherence[number]
+    return columns
 
 
 def octave_rows(found: Criteria) -> list[list[str]]:

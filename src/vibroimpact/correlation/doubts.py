@@ -11,7 +11,7 @@ from vibroimpact.correlation.acquired import LEAD, Acquired
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.shown import shown
 from vibroimpact.signals.delay import Delay
-from vibroimpact.signals.flat_tops import clipped_samples
+from vibroimpact.signals.flat_tops import clipped_count
 
 _ALIKE = 0.7
 """Correlation coefficient below which the delay may be off by a period."""
@@ -74,7 +74,7 @@ def doubts_about(
 
 
 def _clipped(what: str, value: np.ndarray, recorded: np.ndarray, onset: int) -> Iterator[str]:
-    samples = clipped_samples(value, recorded, value[: max(0, onset - LEAD)])
+    samples = clipped_count(value, recorded, value[: max(0, onset - LEAD)])
     if samples:
         yield f"{what} is clipped: {samples} samples lie at its extremes; damping is estimated from what follows"
 

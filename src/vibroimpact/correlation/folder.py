@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from os import PathLike
 from pathlib import Path
 
-import numpy as np
 import tomli_w
 
 from vibroimpact._version import __version__
@@ -23,6 +22,7 @@ from vibroimpact.correlation.document import (
     octave_headers,
     octave_rows,
     record_rows,
+    response_columns,
     summary_of_correlation,
     what_frac_is_of,
 )
@@ -72,18 +72,13 @@ def save_correlation(found: Correlation, directory: str | PathLike[str], *, forc
     """
     with new_folder(directory, force=force) as folder:
         plain = plain_names([sensor.name for sensor in found.sensors])
-        overlay, responses = {"time_s": found.time}, {"frequency_Hz": found.frequency}
-        parts = (("measured", found.measured_response), ("simulated", found.simulated_response))
+        overlay = {"time_s": found.time}
         for number, sensor in enumerate(found.sensors):
             name = plain[sensor.name]
             for what in ("measured", "simulated", "residual"):
                 overlay[f"{name}_{what}"] = getattr(found, what)[number]
-            for what, response in parts:
-                responses |= {f"{name}_{what}_magnitude": np.abs(response[number]), f"{name}_{what}_phase_rad": np.angle(response[number])}
-            if found.coherence is not None:
-                responses[f"{name}_coherence"] = found.coherence[number]
         write_columns(overlay, folder / "overlay.csv")
-        write_columns(responses, folder / "responses.csv")
+        write_columns(response_columns(found, plain), folder / "responses.csv")
         write_csv(mode_table(found), list(MODE_COLUMNS), folder / "modes.csv")
         write_summary(summary_of_correlation(found), folder)
         (folder / "case.toml").write_text(tomli_w.dumps(resolved_case(found.case)), encoding="utf-8")

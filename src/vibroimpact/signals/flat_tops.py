@@ -21,7 +21,7 @@ _REST, _FEWEST = 0.1, 8
 """Part of the largest magnitude below which an extreme is that of a rest; and least number of samples that tell noise."""
 
 
-def clipped_samples(value: Floats, recorded: Floats, rest: Floats) -> int:
+def clipped_count(value: Floats, recorded: Floats, rest: Floats) -> int:
     """Return how many samples of a record lie at an end of a range; 0 if nothing piles up there.
 
     Parameters
@@ -36,7 +36,7 @@ def clipped_samples(value: Floats, recorded: Floats, rest: Floats) -> int:
     >>> time = np.arange(400) / 400.0
     >>> tone = np.exp(-3.0 * time) * np.sin(97.0 * time)
     >>> noise = 1e-3 * np.random.default_rng(0).standard_normal(400)
-    >>> [clipped_samples(one, one, noise) > 0 for one in (tone, np.minimum(tone, 0.6) + noise, tone + noise)]
+    >>> [clipped_count(one, one, noise) > 0 for one in (tone, np.minimum(tone, 0.6) + noise, tone + noise)]
     [False, True, False]
     """
     most = round(float(FAMILY.of(Block(value[None], 1.0, recorded=recorded[None]))[0, 0]) * len(value))

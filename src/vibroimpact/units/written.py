@@ -26,7 +26,9 @@ class Written(float):
     text : str, default ""
         The number as it was written.
     stated : bool, default True
-        Whether the standard deviation was given; otherwise it is taken from the digits.
+        Whether the standard deviation was given; otherwise it is taken from the digits, or chosen.
+    why : str, default ""
+        Why it was chosen.
 
     Examples
     --------
@@ -38,11 +40,12 @@ class Written(float):
     deviation: float
     text: str
     stated: bool
+    why: str
 
-    def __new__(cls, value: float, deviation: float = 0.0, text: str = "", stated: bool = True) -> Written:
+    def __new__(cls, value: float, deviation: float = 0.0, text: str = "", stated: bool = True, why: str = "") -> Written:
         """Return the number."""
         made = super().__new__(cls, value)
-        made.deviation, made.text, made.stated = deviation, text, stated
+        made.deviation, made.text, made.stated, made.why = deviation, text, stated, why
         return made
 
 

@@ -9,7 +9,6 @@ import numpy as np
 from vibroimpact.arrays import Array
 from vibroimpact.cases.conditions import Conditions
 from vibroimpact.cases.limit import Limit
-from vibroimpact.contact.pair import hertz_stiffness
 
 _SAME = 1e-9
 """Relative difference up to which a stiffness is that of the materials, not one that was given."""
@@ -19,8 +18,7 @@ def _number(drops: Conditions) -> Array:
     contact = drops.case["contact"]
     if "exponent" not in contact or "stiffness" not in contact:
         return math.nan
-    of_materials = hertz_stiffness(drops.modulus, drops.effective_radius)
-    is_hertz = np.abs(drops.law_parameter("stiffness") / of_materials - 1.0) < _SAME
+    is_hertz = np.abs(drops.hertz_ratio - 1.0) < _SAME
     return np.where(is_hertz, np.abs(drops.law_parameter("exponent") - 1.5), math.nan)[()]
 
 

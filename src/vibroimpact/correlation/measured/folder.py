@@ -13,17 +13,14 @@ from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.figures_folder import write_figures
 from vibroimpact.charts.made import made_charts
-from vibroimpact.charts.marks import Line, Rug
-from vibroimpact.correlation.charts import MOST
+from vibroimpact.charts.marks import Mark, Rug
+from vibroimpact.correlation.charts import MOST, magnitude_lines
 from vibroimpact.correlation.measured.document import MEASURED_COLUMNS, measured_records, measured_table, summary_of_measured
 from vibroimpact.correlation.measured.modes_of_file import MeasuredModes
 from vibroimpact.report.page import render_page
 from vibroimpact.results.csv_files import write_csv
 from vibroimpact.results.folder import new_folder, write_summary
 from vibroimpact.shown import shortened, visible
-
-_DECADES = 4.0
-"""Decades below its peak down to which a response is shown."""
 
 
 def save_measured_modes(
@@ -64,12 +61,9 @@ def _chart(found: MeasuredModes) -> Chart:
     axis = Axis("Frequency", "Hz", range=(float(found.frequency[0]), float(found.frequency[-1])))
     places = np.array([pair.measured.frequency.value for pair in found.modes if pair.measured is not None])
     rows = []
-    for one, value in zip(found.responses[:MOST], np.abs(found.value), strict=False):
-        most = float(value.max())
-        scale = Axis("Magnitude", one.unit, log=True, range=(10.0**-_DECADES * most, 2.0 * most))
-        marks = (
-            Line(found.frequency, np.maximum(value, 10.0 ** -(_DECADES + 3.0) * most), "measured", "main"),
-            Rug(places, "measured modes"),
-        )
+    for one, value in zip(found.responses[:MOST], found.value, strict=False):
+        lines, shown = magnitude_lines(found.frequency, (value,), (("measured", "main"),))
+        scale = Axis("Magnitude", one.unit, log=True, range=shown)
+        marks: tuple[Mark, ...] = (*lines, Rug(places, "measured modes"))
         rows.append((Panel(axis, scale, marks, shortened(visible(one.name), 40)),))
     return Chart("responses", "Frequency responses", tuple(rows), "Measured frequency responses. Ticks mark the modes that were found.")

@@ -10,15 +10,13 @@ from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.made import made_charts
 from vibroimpact.charts.marks import Line, Rug
-from vibroimpact.correlation.charts import MOST, damping_chart, frac_chart
+from vibroimpact.correlation.charts import MOST, damping_chart, frac_chart, magnitude_lines
 from vibroimpact.correlation.responses.document import WHAT_FRAC_IS_OF
 from vibroimpact.correlation.responses.result import ResponseCorrelation
 from vibroimpact.shown import shortened, visible
 
 _LOOKS = (("measured", "main"), ("simulated", "fit"))
 """Names and roles of the lines."""
-_DECADES = 4.0
-"""Decades below its peak down to which a response is shown."""
 
 
 def response_charts(found: ResponseCorrelation) -> list[Chart]:
@@ -50,13 +48,8 @@ def _responses(found: ResponseCorrelation) -> Chart:
     rows: list[tuple[Panel, ...]] = []
     for number, sensor in enumerate(found.sensors[:MOST]):
         both = (found.measured_response[number], found.simulated_response[number])
-        sizes = [np.abs(one) for one in both]
-        most = max(float(size.max(initial=0.0)) for size in sizes)
-        floor = 10.0**-_DECADES * most + 1e-300
-        scale = Axis("Magnitude", found.units[number], log=True, range=(floor, 2.0 * most) if most > 0.0 else None)
-        magnitudes = [
-            Line(found.frequency, np.maximum(size, 1e-3 * floor), name, role) for size, (name, role) in zip(sizes, _LOOKS, strict=True)
-        ]
+        magnitudes, shown = magnitude_lines(found.frequency, both)
+        scale = Axis("Magnitude", found.units[number], log=True, range=shown)
         phases = [Line(found.frequency, np.degrees(np.angle(one)), name, role) for one, (name, role) in zip(both, _LOOKS, strict=True)]
         title = f"{shortened(visible(sensor.name), 40)}: FRAC {found.frac[number]:.3f}"
         rows.append((Panel(axis, scale, (*magnitudes, Rug(computed, "modes of the case")), title),))

@@ -6,13 +6,20 @@ from collections.abc import Sequence
 from os import PathLike
 from pathlib import Path
 
-import numpy as np
 import tomli_w
 
 from vibroimpact._version import __version__
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.charts.figures_folder import write_figures
-from vibroimpact.correlation.document import MODE_COLUMNS, MODE_HEADERS, mode_rows, mode_table, octave_headers, octave_rows
+from vibroimpact.correlation.document import (
+    MODE_COLUMNS,
+    MODE_HEADERS,
+    mode_rows,
+    mode_table,
+    octave_headers,
+    octave_rows,
+    response_columns,
+)
 from vibroimpact.correlation.mode_pairs import damping_field
 from vibroimpact.correlation.responses.charts import response_charts
 from vibroimpact.correlation.responses.document import RESPONSE_HEADERS, WHAT_FRAC_IS_OF, response_rows, summary_of_responses
@@ -50,6 +57,7 @@ def save_response_correlation(
     Examples
     --------
     >>> from tempfile import TemporaryDirectory
+    >>> import numpy as np
     >>> import vibroimpact as vi
     >>> plate = {"size": [0.3, 0.3, 0.02], "material": "steel", "model": "elastic", "modes": 10, "supports": "clamped", "damping": 0.01}
     >>> case = vi.read_case({
@@ -63,15 +71,7 @@ def save_response_correlation(
     """
     with new_folder(directory, force=force) as folder:
         plain = plain_names([sensor.name for sensor in found.sensors])
-        columns = {"frequency_Hz": found.frequency}
-        parts = (("measured", found.measured_response), ("simulated", found.simulated_response))
-        for number, sensor in enumerate(found.sensors):
-            name = plain[sensor.name]
-            for what, response in parts:
-                columns |= {f"{name}_{what}_magnitude": np.abs(response[number]), f"{name}_{what}_phase_rad": np.angle(response[number])}
-            if found.coherence is not None:
-                columns[f"{name}_coherence"] = found.coherence[number]
-        write_columns(columns, folder / "responses.csv")
+        write_columns(response_columns(found, plain), folder / "responses.csv")
         write_csv(mode_table(found), list(MODE_COLUMNS), folder / "modes.csv")
         write_summary(summary_of_responses(found), folder)
         (folder / "case.toml").write_text(tomli_w.dumps(resolved_case(found.case)), encoding="utf-8")
