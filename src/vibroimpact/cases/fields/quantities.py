@@ -107,9 +107,8 @@ class Quantity:
 class UncertainQuantity(Quantity):
     """Annotation of a quantity with which a measurement is evaluated: a text may have a standard deviation, "0.6 m +- 5 mm"."""
 
-    def read(self, value: Any) -> Any:
-        """Return a value in SI with its standard deviation; see `read_uncertain`."""
-        return read_uncertain(value, self.unit, self.allowed)
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_plain_validator_function(lambda value: read_uncertain(value, self.unit, self.allowed))
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
         return quantity_schema(self.unit, f'{self.meaning}; for calibrations with a standard deviation, as in "... +- 1 %"')
