@@ -39,6 +39,7 @@ def first(response: vi.Response, column: str) -> float:
     return float(response.impacts[column][0])
 
 
+@pytest.mark.slow
 def test_treatments() -> None:
     def row(response: vi.Response) -> tuple[float, float, float]:
         return first(response, "max_force_N"), 1e6 * first(response, "duration_s"), first(response, "restitution_achieved")
@@ -53,6 +54,7 @@ def test_nothing_yields() -> None:
         assert not any("yield" in doubt or "strength" in doubt for doubt in vi.result_of(response).doubts)
 
 
+@pytest.mark.slow
 def test_numbers_of_modes() -> None:
     def row(modes: int) -> tuple[float, float, float]:
         response = drop(modes)

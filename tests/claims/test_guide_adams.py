@@ -102,6 +102,7 @@ def test_steel_that_yields() -> None:
     says(PAGE, "Structural steel ({} MPa)", 1e-6 * float(vi.find_material("steel").yield_strength or 0.0))
 
 
+@pytest.mark.slow
 def test_what_the_commands_print(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     """The tables of the page, line by line."""
 

@@ -86,6 +86,7 @@ def exact(inelasticity: float) -> float:
     return -float(solve_ivp(slopes, (0.0, 50.0), [0.0, 1.0], rtol=1e-9, atol=1e-12, events=apart).y[1, -1])
 
 
+@pytest.mark.slow
 def test_program_of_the_page() -> None:
     names = names_of_page(PAGE)
     rock = names["zener"](0.008, names["mass"], names["stiffness"], speed=8.83, material=vi.find_material("steel"))

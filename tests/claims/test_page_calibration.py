@@ -163,6 +163,7 @@ def test_intervals_of_bounces() -> None:
     )
 
 
+@pytest.mark.slow
 def test_flights_in_air() -> None:
     (case,) = (table for table in map(tomllib.loads, blocks(PAGE, "toml")) if "air" in table.get("calibrate", {}))
 

@@ -66,7 +66,7 @@ def test_what_is_said_of_a_sphere_is_how_far_it_is_off() -> None:
     assert np.all(ratio > 0.3)
 
 
-@pytest.mark.parametrize("thickness", [5e-4, 4e-3])
+@pytest.mark.parametrize("thickness", [5e-4, pytest.param(4e-3, marks=pytest.mark.slow)])
 def test_a_thin_plate_is_told_the_error_of_its_theory_once_and_none_of_its_mesh(thickness: float) -> None:
     """Kirchhoff's frequencies are those of the closed form to 2e-5; what is told is their difference to the plate with shear."""
     size = (0.3, 0.2, thickness)

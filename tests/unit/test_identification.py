@@ -161,6 +161,7 @@ def test_force_place_size_and_speed_at_40_decibels() -> None:
     assert np.mean(within) > 0.8
 
 
+@pytest.mark.slow
 def test_a_force_of_no_contact_law_is_found_from_one_sensor_at_a_known_place() -> None:
     """Two taps that overlap, as no sphere makes them."""
     model, place, touch = plate(280), (0.05, 0.03), 2e-3

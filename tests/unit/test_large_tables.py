@@ -17,6 +17,7 @@ def calibrated(case: dict[str, Any]) -> None:
     vi.calibrate_case(vi.read_calibration(case))
 
 
+@pytest.mark.slow
 def test_a_table_of_many_rows(tmp_path: Path) -> None:
     """Within a gigabyte and ten seconds; a dense matrix of its noise would take half a gigabyte, and there were several."""
     rows = 8000

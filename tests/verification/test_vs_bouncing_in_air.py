@@ -87,6 +87,7 @@ def test_a_position_record(seen: Bounces, tmp_path: Path) -> None:
     assert np.std(apart) < 1.5e-4, "what is drawn over the record flies in air as well"
 
 
+@pytest.mark.slow
 def test_a_force_record(agrees: Agrees, tmp_path: Path) -> None:
     """Times of flight in air: the sphere comes back more slowly than it left."""
     contact = 1e-3

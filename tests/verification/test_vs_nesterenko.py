@@ -54,11 +54,13 @@ def test_speed_of_the_wave(agrees: Agrees, chain: vi.SystemResponse) -> None:
     agrees("chain of sixty steel spheres", "wave speed", speed, expected, unit="m/s", relative=0.01)
 
 
+@pytest.mark.slow
 def test_it_does_not_change_its_shape(chain: vi.SystemResponse) -> None:
     peaks = chain.impacts["max_force_N"][35:45]
     assert np.ptp(peaks) < 1e-8 * peaks[0]
 
 
+@pytest.mark.slow
 def test_nothing_is_lost(chain: vi.SystemResponse) -> None:
     assert chain.energy["closure_relative"] < 1e-9
     np.testing.assert_allclose(chain.momentum(np.linspace(0.0, 5e-4, 51))[:, 2], 0.5 * MASS, rtol=1e-12)

@@ -74,7 +74,7 @@ def systems_of(geophone: Geophone, kind: str) -> list[tuple[np.ndarray, np.ndarr
     return found
 
 
-@pytest.mark.parametrize("geophone", one_in(2, GEOPHONES))
+@pytest.mark.parametrize("geophone", one_in(6, GEOPHONES))
 @pytest.mark.parametrize("kind", ["none", "sigma-delta", "butterworth"])
 def test_geophone(agrees: Agrees, response: vi.Response, geophone: Geophone, kind: str) -> None:
     assert len(response.impacts["impact"]) > 1

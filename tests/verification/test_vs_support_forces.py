@@ -143,6 +143,7 @@ def test_edges(agrees: Agrees, response: vi.Response, forces: Floats, number: in
     agrees("each of four supported edges after an impact", "support force signal", found, exact, unit="N", rms=0.01)
 
 
+@pytest.mark.slow
 def test_balance_of_momentum(agrees: Agrees, response: vi.Response, forces: Floats) -> None:
     """The supports together give the contact force and the change of the plate's momentum."""
     found = sum(signal.value for signal in response.signals().values())

@@ -70,6 +70,7 @@ def test_medians_are_near_those_of_a_kirchhoff_plate(agrees: Agrees, diameter: f
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("diameter", KIRCHHOFF)
 def test_places_differ_as_they_are_known_to(diameter: float) -> None:
     assert 1.3 < amplitudes(diameter).max() / amplitudes(diameter).min() < 2.5
