@@ -80,7 +80,7 @@ with Runge-Kutta steps of fixed size.
 Other measurements are printed by the other scripts in `benchmarks/`: elastic bodies, modes, studies, calibration, features,
 pages.
 
-**Next:** [validation](validation.md), every comparison of results with its numbers.
+**Next:** [validation](validation.md), the comparisons of results, with their numbers.
 """
 
 
