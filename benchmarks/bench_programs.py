@@ -66,7 +66,7 @@ fifth rebound height, compared with DOP853 with a relative tolerance of 1e-13.
 
 The time of vibroimpact includes the energy ledger, the located peaks and the table of impacts; those of the others are for the motion
 alone, those of LAMMPS and EXUDYN less the start of the program. The forces in the
-rows of SciPy and EXUDYN are Python functions; compiled ones would be faster.
+rows of SciPy and EXUDYN are Python functions; compiled ones may be faster.
 
 ## {drops:,} drops, one impact
 
@@ -80,7 +80,7 @@ with Runge-Kutta steps of fixed size.
 Other measurements are printed by the other scripts in `benchmarks/`: elastic bodies, modes, studies, calibration, features,
 pages.
 
-**Next:** [validation](validation.md), every comparison of results with its numbers.
+**Next:** [validation](validation.md), the comparisons of results, with their numbers.
 """
 
 

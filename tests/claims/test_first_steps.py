@@ -29,6 +29,7 @@ def run(**changes: dict[str, Any]) -> vi.Response:
 def test_python() -> None:
     required = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["requires-python"]
     says(PAGE, "You need Python {} or newer", float(required.removeprefix(">=")))
+    says("README.md", "On Linux with Python {} or newer", float(required.removeprefix(">=")))
 
 
 @pytest.mark.slow  # modes of the plate
