@@ -176,7 +176,7 @@ def test_flights_in_air() -> None:
     says(PAGE, "A rubber ball of {} mm", 2.0 * 13.0)
     says(PAGE, "has {} at its first impact if its heights are treated as those in a vacuum", first(air=False)[0])
     says(PAGE, "and the result is {}.", in_air)
-    says(PAGE, "a doubt states the change of the restitutions if it exceeds {} %", 100.0 * _MATTERS)
+    says(PAGE, "a doubt states the largest change of a restitution if it exceeds {} %", 100.0 * _MATTERS)
     says(PAGE, "drag (air of {} kg/m³", float(vi.Air().density))
 
 
