@@ -91,7 +91,7 @@ def test_the_table_of_bounds(whole: Bound) -> None:
     says(
         BOUNDS, "So of the {} to {} % for an unknown position {} % or less would remain", *per_cent(far), 100.0 * exact["one impact"].upper
     )
-    assert exact["one impact"].upper < 0.55 * far.lower  # more than half of the error, beyond doubt of sampling or not, is the scatter
+    assert exact["one impact"].upper < 0.55 * far.lower  # about half of the error or more is the scatter
     says(GUIDE, "with a bandwidth of 1 kHz the lowest error is at most {} %, with 8 kHz {} %", *over_bandwidth(whole, 40.0))
     says(GUIDE, "At 20 dB it is {} and {} %", *over_bandwidth(whole, 20.0))
     most = max(one.standard_error for one in whole.errors.values())
