@@ -73,7 +73,6 @@ def test_hollow_balls(tmp_path: Path, blocks: list[str]) -> None:
         )
         left = vi.simulate(rolling).impacts["separation_velocity_x_m_s"][0]
         assert left == pytest.approx(part * 1.0, rel=1e-6)
-    says(PAGE, "keeps {}/5 of its velocity once it rolls if it is a thin shell, and {}/7 if it is solid", 3, 5)
 
 
 def in_air_as_liquid(folder: Path, text: str) -> vi.Case:
