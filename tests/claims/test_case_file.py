@@ -73,7 +73,6 @@ def test_hollow_balls(tmp_path: Path, blocks: list[str]) -> None:
         )
         left = vi.simulate(rolling).impacts["separation_velocity_x_m_s"][0]
         assert left == pytest.approx(part * 1.0, rel=1e-6)
-    says(PAGE, "A rolling thin shell keeps {}/5 of its velocity of sliding, a solid ball {}/7.", 3, 5)
 
 
 def in_air_as_liquid(folder: Path, text: str) -> vi.Case:
@@ -118,7 +117,7 @@ def test_limits_of_size() -> None:
     says(PAGE, "more than {} values, strings of more than {} characters", most.MOST_VALUES, most.LONGEST_TEXT)
     says(PAGE, "and keys of more than {}, more than {} sensors or supports", most.LONGEST_KEY, most.MOST_ITEMS)
     says(PAGE, "more than {} values of a parameter, integers beyond {} bits", most.MOST_OF_A_LIST, most.LARGEST_WHOLE.bit_length() + 1)
-    says(PAGE, "quantities smaller than {} or larger than {} in SI", quantities.SMALLEST, quantities.LARGEST)
+    says(PAGE, "whose magnitude is smaller than {} or larger than {} in SI", quantities.SMALLEST, quantities.LARGEST)
     says(PAGE, "Names are one line of at most {} printable characters", most.LONGEST_NAME)
 
 

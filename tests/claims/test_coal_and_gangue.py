@@ -137,7 +137,6 @@ def test_the_assumed_channel() -> None:
         100.0 * one.place,
     )
     says(GUIDE, "the bound assumes a scatter of {} %", 100.0 * one.place)
-    says(RECOGNITION, "That bound assumes a scatter of {} %", 100.0 * one.place)
     says(GUIDE, "at a peak force of {} dB above the noise", one.signal_to_noise)
     says(BOUNDS, "The noise is counted in {} kHz, whatever the band", 10.0)
 

@@ -57,7 +57,7 @@ def test_as_drawn() -> None:
 @pytest.mark.slow
 def test_corrected() -> None:
     again = example()["again"]
-    says(PAGE, "the residual is {} %, most of it noise, and FRAC {}", 100.0 * float(again.relative_residual[0]), float(again.frac[0]))
+    says(PAGE, "the residual is {} %, and FRAC {}", 100.0 * float(again.relative_residual[0]), float(again.frac[0]))
 
 
 def test_what_of_damping_is_not_told() -> None:

@@ -98,7 +98,7 @@ def test_samples_of_a_universal_file() -> None:
 
 
 def test_names() -> None:
-    says(EXPORT, "at most {} characters: quotes", len(plain_words("x" * 1000)))
+    says(EXPORT, "at most {} characters, so that none", len(plain_words("x" * 1000)))
     says(EXPORT, "are kept, on one line of at most {}", len(one_line("x" * 1000)))
 
 

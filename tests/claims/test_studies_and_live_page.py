@@ -22,7 +22,6 @@ from vibroimpact.app.messages import LONGEST
 from vibroimpact.app.server import MOST_WINDOWS
 from vibroimpact.app.session import _SHORT
 from vibroimpact.cli.studies import MOST_BYTES_UNCONFIRMED, MOST_DROPS_UNCONFIRMED
-from vibroimpact.studies.compute_points import _TOGETHER
 from vibroimpact.studies.report.tables import doubt_sentences
 from vibroimpact.studies.section import MOST_DROPS
 from vibroimpact.studies.sensitivity import MOST_LEFT_OUT
@@ -35,7 +34,6 @@ def test_sizes_of_studies() -> None:
     says(STUDIES, "More than {} drops, or {} GB of results, are computed only with", MOST_DROPS_UNCONFIRMED, 1e-9 * MOST_BYTES_UNCONFIRMED)
     assert "the maximum is ten million" in page_text(STUDIES)
     assert MOST_DROPS == 10_000_000
-    says(STUDIES, "and drops of elastic bodies, are computed in batches of {}", _TOGETHER)
     says(STUDIES, "not if more than {} % of the points have no value", 100.0 * MOST_LEFT_OUT)
 
 

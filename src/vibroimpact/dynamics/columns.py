@@ -65,7 +65,7 @@ VIBRATION_IMPACT_COLUMNS: dict[str, Column] = {
     ),
     "sensitivity": Column(
         "1",
-        "relative change of the motion at first touch, for a small relative change of the drop's height or speed",
+        "relative change of the impact, for a small relative change of the drop's height or speed",
         "Sensitivity",
         "sensitivity",
         "factor",

@@ -22,12 +22,12 @@ SPEED = 8.8
 """The approach speed at which the achieved restitution is shown [m/s], that of the paper."""
 
 _ENDS = {
-    "zero-indentation": "The contact ends at zero indentation.",
-    "zero-force": "The contact ends at zero force.",
-    "pull-off": "The contact ends at pull-off.",
+    "zero-indentation": "On a rigid plate the contact ends at zero indentation.",
+    "zero-force": "On a rigid plate the contact ends at zero force.",
+    "pull-off": "On a rigid plate the contact ends at pull-off.",
 }
 _TENSION = {
-    "none": "The force is never tensile.",
+    "none": "The force is not tensile there.",
     "cut": "Where the formula gives a tensile force, the force is zero.",
     "kept": "The force may be tensile before the end.",
 }
