@@ -76,7 +76,7 @@ for name in classifiers:
     print(
         f"{name}: grouped {apart.value:.3f}, random {mixed.value:.3f}, highest possible {best:.3f}"
     )
-    assert np.percentile(apart.draws, 2.5) < best < mixed.value
+    assert apart.low < best < mixed.value
 
 # %%
 # Charts of the result show the confusion matrix, the effect of noise, the calibration and the importance of features; this one shows the
@@ -96,7 +96,10 @@ for scores, side, colour, words in (
 ):
     value = np.array([scores[name].balanced_accuracy.value for name in classifiers])
     interval = np.array(
-        [np.percentile(scores[name].balanced_accuracy.draws, (2.5, 97.5)) for name in classifiers]
+        [
+            (scores[name].balanced_accuracy.low, scores[name].balanced_accuracy.high)
+            for name in classifiers
+        ]
     ).T
     bars = np.abs(interval - value)
     axes.errorbar(

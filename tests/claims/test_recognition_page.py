@@ -10,11 +10,13 @@ import pytest
 import vibroimpact as vi
 from knocks import BAYES_ERROR, write_knocks
 from stated import says
-from vibroimpact.recognition.bound import _SURE
+from vibroimpact.recognition.bound import SURE
+from vibroimpact.recognition.few_groups import FINE
+from vibroimpact.recognition.folds import FEW, FOLDS
 from vibroimpact.recognition.recognise import MOST_SIGNALS
 from vibroimpact.recognition.recogniser import _DIFFERENT
 from vibroimpact.recognition.robustness import LEVELS
-from vibroimpact.recognition.scores import Score
+from vibroimpact.recognition.scores import Score, widening_by_training
 
 PAGE = "docs/recognition.md"
 
@@ -41,9 +43,14 @@ def test_the_example_of_a_random_split(tmp_path: Path) -> None:
 def test_settings_and_population() -> None:
     says(PAGE, "If there are more than {} signals", MOST_SIGNALS)
     per_cent = Score(50.0, np.linspace(0.0, 100.0, 1001), np.zeros(1))
-    says(PAGE, "**Intervals** of {} % by bootstrap", per_cent.high - per_cent.low)
-    says(PAGE, "with a confidence of {} %, the result reports *leak*", _SURE)
-    says(PAGE, "below the bound in {} % of the bootstrap draws", _SURE)
+    says(PAGE, "**Intervals** of {} % count groups", per_cent.high - per_cent.low)
+    says(PAGE, "if a class has fewer than {} groups, into as many folds as it has", FEW)
+    assert FOLDS == 5, "the page says five folds"
+    says(PAGE, "by {} for five folds", widening_by_training(FOLDS))
+    says(PAGE, "is wider than from {} to +{} %", -100.0 * FINE, 100.0 * FINE)
+    says(PAGE, "an interval of {} % on each side", 100.0 * FINE)
+    says(PAGE, "with a confidence of {} %, the result reports *leak*", SURE)
+    says(PAGE, "below the bound with a confidence of {} %", SURE)
     says(PAGE, "of the trained classifier for {} % of the signals or more", 100.0 * (1.0 - _DIFFERENT))
     says(PAGE, "white noise from {} to {} dB", max(LEVELS), min(LEVELS))
     sweep = vi.load_sweep("signals:coal-gangue").whole_table["sweep"]

@@ -430,7 +430,7 @@ def test_plates_that_were_never_trained_on(folder: Path) -> None:
     with pytest.raises(
         vi.InputError, match="coal is in 3 plates, too few for 5 folds; give signals of 5 plates or more, or ask for 3 folds"
     ):
-        vi.recognise(folder, group="plate")
+        vi.recognise(folder, group="plate", folds=5)
 
 
 # leaks
@@ -465,7 +465,7 @@ def test_a_computed_bound_names_what_it_counts(found: vi.Recognition) -> None:
     rocks = np.repeat(np.arange(60), 5)
     right = np.eye(2)[rocks % 2]
     perfect = {"any": score(right[np.newaxis], rocks % 2, Bootstrap(rocks, rocks % 2))}
-    (doubt,) = bound_doubts(perfect, 0.2, 60, "any", "any", "impulse and contact time")
+    (doubt,) = bound_doubts(perfect, 0.2, "any", "any", "impulse and contact time")
     assert doubt.startswith(
         "possible leak: any errs in 0.00%, below the Bayes error of 20.00% of classifiers that see only impulse and contact"
     )
@@ -489,16 +489,15 @@ def test_a_bound_is_not_passed_by_chance() -> None:
         told = np.stack([1 - wrong[0], wrong[0]], axis=1)
         scores = {"any": score(np.where((rocks % 2 == 0)[:, None], told, told[:, ::-1])[np.newaxis], rocks % 2, bootstrap)}
         assert scores["any"].error.value == pytest.approx(wrong.mean())
-        called += bool(bound_doubts(scores, 0.2, 60, "any", "any"))
+        called += bool(bound_doubts(scores, 0.2, "any", "any"))
     assert called <= 8
 
 
 def test_no_error_at_all_counts_as_none_in_so_many_groups() -> None:
     from vibroimpact.recognition.bound import below_bound
 
-    none = Score(0.0, np.zeros(1000), np.zeros(1))
-    assert below_bound(none, 0.1, 60)
-    assert not below_bound(none, 0.1, 20)  # 0.9^20 = 0.12: such luck is not rare enough
+    assert below_bound(Score(0.0, np.zeros(1000), np.zeros(1), 60.0), 0.1)
+    assert not below_bound(Score(0.0, np.zeros(1000), np.zeros(1), 20.0), 0.1)  # 0.9^20 = 0.12: such luck is not rare enough
 
 
 # the model

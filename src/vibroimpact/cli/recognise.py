@@ -28,7 +28,14 @@ def recognise(
     group: Annotated[
         str, typer.Option("--group", metavar="NAME", help="Groups kept together in the cross-validation: rock, plate or fall.")
     ] = "rock",
-    folds: Annotated[int, typer.Option("--folds", metavar="N", help="Number of folds of the cross-validation.")] = 5,
+    folds: Annotated[
+        int | None,
+        typer.Option(
+            "--folds",
+            metavar="N",
+            help="Number of folds of the cross-validation; by default 5, or as many as each class has groups, if fewer than 10.",
+        ),
+    ] = None,
     seeds: Annotated[int, typer.Option("--seeds", metavar="N", help="Number of seeds over which the scores are averaged.")] = 5,
     seed: Annotated[int, typer.Option("--seed", metavar="N", min=0, help="The first seed.")] = 0,
     most: Annotated[

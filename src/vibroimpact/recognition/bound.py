@@ -8,37 +8,30 @@ import numpy as np
 
 from vibroimpact.recognition.scores import Score, Scores
 
-_SURE = 99.0
-"""Part of the draws whose error must lie below the bound [%]."""
+SURE = 99.0
+"""Confidence with which an error must lie below the bound [%]."""
 
 
-def below_bound(error: Score, bayes_error: float, groups: int) -> bool:
+def below_bound(error: Score, bayes_error: float) -> bool:
     """Return whether an error rate lies below the Bayes error by more than chance.
 
     Parameters
     ----------
     error : Score
-        Error rate with its bootstrap draws.
+        Error rate with its interval, which counts groups.
     bayes_error : float
         The bound: the lowest error of a classifier that sees only what the bound counts.
-    groups : int
-        Number of independent groups: where no group has an error all draws are zero, and the upper end is that of none in so many.
 
     Examples
     --------
-    >>> none = Score(0.0, np.zeros(1000), np.zeros(5))
-    >>> below_bound(none, 0.2, 100), below_bound(none, 0.02, 100)
+    >>> none = Score(0.0, np.zeros(1000), np.zeros(5), 100.0)
+    >>> below_bound(none, 0.2), below_bound(none, 0.02)
     (True, False)
     """
-    high = float(np.nanpercentile(error.draws, _SURE))
-    if not error.draws.any():
-        high = 1.0 - (1.0 - _SURE / 100.0) ** (1.0 / groups)
-    return high < bayes_error
+    return error.end(SURE / 100.0) < bayes_error
 
 
-def bound_doubts(
-    scores: Mapping[str, Scores], bayes_error: float | None, groups: int, probe: str, best: str, sees: str | None = None
-) -> list[str]:
+def bound_doubts(scores: Mapping[str, Scores], bayes_error: float | None, probe: str, best: str, sees: str | None = None) -> list[str]:
     """Return a sentence for each possible leak: what is better than the bound, and a probe that is better than all features.
 
     Parameters
@@ -47,8 +40,6 @@ def bound_doubts(
         Scores under the grouped split.
     bayes_error : float, optional
         The bound, where it is known.
-    groups : int
-        Number of groups.
     probe : str
         Name of the classifier of what should tell little.
     best : str
@@ -73,10 +64,10 @@ def bound_doubts(
         found = [
             f"possible leak: {name} errs in {one.error.value:.2%}, below the Bayes error of {bayes_error:.2%} {bound}; {beyond}"
             for name, one in scores.items()
-            if below_bound(one.error, bayes_error, groups)
+            if below_bound(one.error, bayes_error)
         ]
     apart = scores[probe].balanced_accuracy.draws - scores[best].balanced_accuracy.draws
-    if np.nanpercentile(apart, 100.0 - _SURE) > 0.0:
+    if np.nanpercentile(apart, 100.0 - SURE) > 0.0:
         found.append(
             f"leak: {probe} alone classify better (balanced accuracy {scores[probe].balanced_accuracy.value:.3f}) than all "
             f"features ({scores[best].balanced_accuracy.value:.3f}); check how the signals were cut"

@@ -8,8 +8,14 @@ import numpy as np
 
 from vibroimpact.arrays import Indices
 
+FOLDS = 5
+"""Parts of the cross-validation of many groups."""
+FEW = 10
+"""Groups of a class below which each part leaves one out: that trains on as many as there are."""
 _INNER = 3
 """Parts of the cross-validation within a training part."""
+_UNEVEN = 0.02
+"""Difference of the share of a class in a training part from that of all from which groups are dealt by class instead."""
 
 
 class Split(NamedTuple):
@@ -17,6 +23,31 @@ class Split(NamedTuple):
 
     train: Indices
     test: Indices
+
+
+def fewest_groups(classes: Indices, groups: Indices) -> int:
+    """Return the number of groups of the class that is in the fewest.
+
+    Examples
+    --------
+    >>> fewest_groups(np.array([0, 0, 1, 1, 1]), np.array([0, 0, 1, 2, 2]))
+    1
+    """
+    return min(len(np.unique(groups[classes == one])) for one in np.unique(classes))
+
+
+def default_folds(classes: Indices, groups: Indices) -> int:
+    """Return the number of parts for some groups: five, or of few groups as many as a class has, so that one of each class is left out.
+
+    To leave out a single group would train on more of the other classes, and so guess those more often.
+
+    Examples
+    --------
+    >>> default_folds(np.array([0, 1] * 4), np.arange(8)), default_folds(np.array([0, 1] * 40), np.arange(80))
+    (4, 5)
+    """
+    fewest = fewest_groups(classes, groups)
+    return max(2, fewest) if fewest < FEW else FOLDS
 
 
 def split_signals(classes: Indices, groups: Indices | None, folds: int, seed: int) -> list[Split]:
@@ -45,7 +76,37 @@ def split_signals(classes: Indices, groups: Indices | None, folds: int, seed: in
     blank = np.zeros(len(classes))
     if groups is None:
         return [Split(*one) for one in StratifiedKFold(folds, shuffle=True, random_state=seed).split(blank, classes)]
-    return [Split(*one) for one in StratifiedGroupKFold(folds, shuffle=True, random_state=seed).split(blank, classes, groups)]
+    drawn = [Split(*one) for one in StratifiedGroupKFold(folds, shuffle=True, random_state=seed).split(blank, classes, groups)]
+    if _unevenness(drawn, classes) <= _UNEVEN:
+        return drawn
+    return min(drawn, _dealt(classes, groups, folds, seed), key=lambda one: _unevenness(one, classes))
+
+
+def _unevenness(splits: list[Split], classes: Indices) -> float:
+    """Return the largest difference of the share of a class in a training part from that of all; 1 if a part lacks a class."""
+    whole = np.bincount(classes) / len(classes)
+    apart = 0.0
+    for split in splits:
+        counts = np.bincount(classes[split.train], minlength=len(whole))
+        if not counts[whole > 0.0].all() or not np.bincount(classes[split.test], minlength=len(whole))[whole > 0.0].all():
+            return 1.0
+        apart = max(apart, float(np.abs(counts / counts.sum() - whole).max()))
+    return apart
+
+
+def _dealt(classes: Indices, groups: Indices, folds: int, seed: int) -> list[Split]:
+    """Return parts that are dealt whole groups class by class, the largest first: surplus groups of all classes are in the same parts.
+
+    A group of several classes is dealt with the first of them.
+    """
+    random = np.random.default_rng(seed)
+    part = np.full(len(classes), -1)
+    for one in np.unique(classes):
+        names, sizes = np.unique(groups[(classes == one) & (part < 0)], return_counts=True)
+        drawn = random.permutation(len(names))
+        for number, place in enumerate(drawn[np.argsort(-sizes[drawn], kind="stable")].tolist()):
+            part[groups == names[place]] = number % folds
+    return [Split(np.flatnonzero(part != one), np.flatnonzero(part == one)) for one in range(folds)]
 
 
 def inner_splits(classes: Indices, groups: Indices | None, seed: int) -> list[Split]:
@@ -68,7 +129,7 @@ def inner_splits(classes: Indices, groups: Indices | None, seed: int) -> list[Sp
     2
     """
     if groups is not None:
-        fewest = min(len(np.unique(groups[classes == one])) for one in np.unique(classes))
+        fewest = fewest_groups(classes, groups)
         if fewest > 1:
             return split_signals(classes, groups, min(_INNER, fewest), seed)
     return split_signals(classes, None, _INNER, seed)

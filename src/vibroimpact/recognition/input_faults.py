@@ -7,6 +7,7 @@ from scipy.spatial import cKDTree
 
 from vibroimpact.arrays import Floats, Indices
 from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.recognition.folds import default_folds
 from vibroimpact.recognition.labelled_signals import GROUPS, LabelledSignals, lengths
 
 DURATION, FORCE = "first_duration_s", "largest_force_N"
@@ -16,7 +17,7 @@ _CORNER = 0.67
 """Frequency at which the spectrum of Hertz's force has fallen by 3 dB, times the contact time."""
 
 
-def check_signals(signals: LabelledSignals, group: str, folds: int) -> list[str]:
+def check_signals(signals: LabelledSignals, group: str, folds: int | None = None) -> list[str]:
     """Check that classifiers can be trained on signals and tested honestly, and return what is doubtful.
 
     Parameters
@@ -25,8 +26,8 @@ def check_signals(signals: LabelledSignals, group: str, folds: int) -> list[str]
         The signals.
     group : str
         What signals of a group share; no group is both trained on and tested on.
-    folds : int
-        Number of parts of the cross-validation.
+    folds : int, optional
+        Number of parts of the cross-validation; by default as many as the groups allow.
 
     Raises
     ------
@@ -53,7 +54,7 @@ def check_signals(signals: LabelledSignals, group: str, folds: int) -> list[str]
     return doubts
 
 
-def check_groups(signals: LabelledSignals, classes: Indices, group: str, folds: int) -> Indices:
+def check_groups(signals: LabelledSignals, classes: Indices, group: str, folds: int | None) -> Indices:
     """Return the group of each signal, after a check that the groups can be split so that every part has every class."""
     if group not in signals.groups:
         known = tuple(signals.groups)
@@ -69,6 +70,7 @@ def check_groups(signals: LabelledSignals, classes: Indices, group: str, folds: 
             f"give several {group}s of each class"
         )
     fewest = min(names, key=lambda one: len(names[one]))
+    folds = default_folds(classes, groups) if folds is None else folds
     if (count := len(names[fewest])) < folds:
         remedy = f"or ask for {count} folds" if count > 1 else "since training on one can't be tested on another"
         raise InputError(

@@ -18,6 +18,7 @@ from vibroimpact.recognition.card import FORMAT
 from vibroimpact.recognition.classifiers import CLASSIFIER, PROBE, Classifier, all_classifiers, fit_tuned
 from vibroimpact.recognition.cross_validation import Chosen, Validated, cross_validate
 from vibroimpact.recognition.extra import needs_extra
+from vibroimpact.recognition.folds import default_folds
 from vibroimpact.recognition.fraction import Streams, draw_rates, try_streams
 from vibroimpact.recognition.importance import Importance, permutation_importance
 from vibroimpact.recognition.input_faults import check_signals
@@ -33,8 +34,8 @@ from vibroimpact.recognition.scores import Bootstrap, Score, Scores, score
 from vibroimpact.recognition.signal_features import FEATURES, baseline_doubts, features_of, tables_of
 from vibroimpact.recognition.unseen_bins import Unseen, score_unseen
 
-MOST_SIGNALS, FOLDS, SEEDS = 4000, 5, 5
-"""By default: largest number of signals used, parts of the cross-validation, and seeds."""
+MOST_SIGNALS, SEEDS = 4000, 5
+"""By default: largest number of signals used, and seeds."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,7 +118,7 @@ def recognise(
     dataset: str | PathLike[str] | LabelledSignals,
     *,
     group: str = "rock",
-    folds: int = FOLDS,
+    folds: int | None = None,
     seeds: int = SEEDS,
     seed: int = 0,
     most: int = MOST_SIGNALS,
@@ -136,8 +137,8 @@ def recognise(
         Folder of a data set, its file `dataset.nc`, or signals that were read.
     group : str, default "rock"
         What signals of a group share: "rock", "plate" or "fall".
-    folds : int, default 5
-        Number of parts of the cross-validation.
+    folds : int, optional
+        Number of parts of the cross-validation; by default 5, or as many as a class has groups, if that is fewer than 10.
     seeds : int, default 5
         Number of seeds; every score is a mean over them.
     seed : int, default 0
@@ -183,6 +184,7 @@ def recognise(
     doubts = check_signals(signals, group, folds) + baseline_doubts(signals)
     assert signals.classes is not None  # checked
     classes, groups = signals.classes, signals.groups[group]
+    folds = default_folds(classes, groups) if folds is None else folds
     if signals.bayes_error_sees is None:  # of what this program computed there is no recorder
         doubts += recorder_leaks(signals, classes, groups, group, seed)
     progress("features", 0, 1)
@@ -193,14 +195,14 @@ def recognise(
     validate = partial(cross_validate, compared, tables, classes, folds=folds, seeds=numbers, workers=workers, progress=progress)
     apart = validate(groups, what=f"cross-validation by {group}")
     at_random = validate(None, what="cross-validation at random")
-    bootstrap = Bootstrap(groups, classes, seed)
+    bootstrap = Bootstrap(groups, classes, seed, folds)
     scores = {name: score(one.held_out, classes, bootstrap) for name, one in apart.items()}
     random = {name: score(one.held_out, classes, bootstrap) for name, one in at_random.items()}
     optimism = {name: _difference(random[name].balanced_accuracy, scores[name].balanced_accuracy) for name in scores}
     best = max((one for one in compared if one.kind == CLASSIFIER), key=lambda one: scores[one.name].balanced_accuracy.value)
     (probe,) = (one.name for one in compared if one.kind == PROBE)
     count, chosen = len(np.unique(groups)), Chosen(best, classes, groups, apart[best.name], seed)
-    doubts += bound_doubts(scores, signals.bayes_error, count, probe, best.name, signals.bayes_error_sees)
+    doubts += bound_doubts(scores, signals.bayes_error, probe, best.name, signals.bayes_error_sees)
     held_out = chosen.validated.held_out.mean(axis=0)
     curve = reliability(held_out, classes, signals.class_names, bootstrap)
     return Recognition(
@@ -230,10 +232,10 @@ def recognise(
     )
 
 
-def check_settings(folds: int, seeds: int, most: int) -> None:
+def check_settings(folds: int | None, seeds: int, most: int) -> None:
     """Raise InputError if the numbers of folds, seeds or signals are not allowed."""
     for name, value, least in (("folds", folds, 2), ("seeds", seeds, 1), ("most", most, 10)):
-        if value < least:
+        if value is not None and value < least:
             raise InputError(f"{value} is not allowed; it must be {least} or more", name)
 
 

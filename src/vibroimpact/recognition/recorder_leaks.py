@@ -6,7 +6,8 @@ than chance is tested by exchanging the classes of whole groups.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from math import factorial, prod
 
 import numpy as np
 from scipy.stats import rankdata
@@ -19,6 +20,9 @@ from vibroimpact.shown import shown
 _RATE = 0.01
 """Part of the data sets without a leak in which chance makes one."""
 _DRAWS = 999
+"""Number of exchanges that are drawn; if there are no more, each is tried."""
+_SAME = 1e-9
+"""Rounding of how well a quantity tells classes."""
 _ONSET, _FEWEST = 0.1, 8
 """Part of the largest magnitude that is the onset, and least number of samples before it that tell something."""
 _FAINT = 0.01
@@ -63,7 +67,51 @@ def recorder_leaks(signals: LabelledSignals, classes: Indices, groups: Indices, 
             often = f"apart in {50.0 + 50.0 * apart:.0f} % of pairs, by chance in less than {100.0 * _RATE:g} % of data sets"
             words = f"{name} tells the classes (medians {told}; {often}); it does not come from what falls"
             found.append(f"leak of the recorder at {shown(sensor)}: {words}: record all {group}s alike")
-    return found
+    return found + _too_few(classes, groups, group)
+
+
+def _too_few(classes: Indices, groups: Indices, group: str) -> list[str]:
+    """Return a sentence if there are so few exchanges of classes between groups that nothing can be told from chance."""
+    firsts = _class_of_groups(classes, groups)
+    if firsts is None:
+        return []
+    counts = np.bincount(firsts)
+    counts = counts[counts > 0]
+    # with classes of equally many groups exchanged whole, all is apart as it was
+    alike = factorial(len(counts)) if len(set(counts.tolist())) == 1 else 1
+    least = alike / _exchanges(counts)
+    if least <= _RATE:
+        return []
+    needed = 2
+    while factorial(len(counts)) / _exchanges(np.full(len(counts), needed)) > _RATE:
+        needed += 1
+    return [
+        f"leaks of the recorder can't be told from chance with {len(firsts)} {group}s: chance separates classes fully in at "
+        f"least {100.0 * least:.2g} % of data sets; at least {needed} {group}s of each class are needed"
+    ]
+
+
+def _class_of_groups(classes: Indices, groups: Indices) -> Indices | None:
+    """Return the class of each group; None if a group has several."""
+    labels, place = np.unique(groups, return_inverse=True)
+    firsts = np.array([classes[np.argmax(place == number)] for number in range(len(labels))])
+    return firsts if (firsts[place] == classes).all() else None
+
+
+def _exchanges(counts: Indices) -> float:
+    """Return the number of ways in which classes of so many groups each can be given to them."""
+    return factorial(int(counts.sum())) / prod(factorial(one) for one in counts.tolist())
+
+
+def _all_exchanges(firsts: list[int]) -> Iterator[list[int]]:
+    """Yield each of these ways once."""
+    if not firsts:
+        yield []
+    for one in sorted(set(firsts)):
+        rest = firsts.copy()
+        rest.remove(one)
+        for others in _all_exchanges(rest):
+            yield [one, *others]
 
 
 def _matters(name: str, values: Floats, classes: Indices, one: SensorSignals) -> bool:
@@ -79,12 +127,11 @@ def _tested(traces: Mapping[str, Floats], classes: Indices, groups: Indices, see
     ranks = np.stack([rankdata(values) for values in traces.values()])
     ranks = (ranks - ranks.mean(axis=1, keepdims=True)) / len(classes)
     random, names = np.random.default_rng(seed), np.unique(classes)
-    labels, place = np.unique(groups, return_inverse=True)
-    firsts = np.array([classes[np.argmax(place == number)] for number in range(len(labels))])
-    whole = bool((firsts[place] == classes).all())
+    _, place = np.unique(groups, return_inverse=True)
+    firsts = _class_of_groups(classes, groups)
 
     def exchanged() -> Indices:
-        if whole:
+        if firsts is not None:
             return np.asarray(random.permutation(firsts)[place])
         order = np.lexsort((random.random(len(classes)), place))
         drawn = np.empty_like(classes)
@@ -101,6 +148,9 @@ def _tested(traces: Mapping[str, Floats], classes: Indices, groups: Indices, see
         return most
 
     seen = apart(classes)
+    if firsts is not None and _exchanges(np.bincount(firsts)) <= _DRAWS:
+        every = np.array([apart(np.array(one)[place]).max() for one in _all_exchanges(firsts.tolist())])
+        return {name: (float(value), float((every >= value - _SAME).mean())) for name, value in zip(traces, seen, strict=True)}
     largest = np.array([apart(exchanged()).max() for _ in range(_DRAWS)])
     return {name: (float(value), float((1 + (largest >= value).sum()) / (_DRAWS + 1))) for name, value in zip(traces, seen, strict=True)}
 

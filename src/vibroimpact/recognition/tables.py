@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 
 from vibroimpact._version import __version__
+from vibroimpact.recognition.bound import SURE
+from vibroimpact.recognition.few_groups import coarse, groups_for_bound, groups_for_error, largest_error_of_none
 from vibroimpact.recognition.recognise import Recognition
 from vibroimpact.recognition.scores import Score, Scores
 
@@ -146,6 +148,7 @@ def summary_of_recognition(found: Recognition) -> dict[str, Any]:
             "group": found.group,
             "groups": found.groups,
             "folds": found.folds,
+            "groups_for_5_percent": groups_for_error(found.scores[found.best].error, found.groups),
             "seeds": list(found.seeds),
             "signals": dict(zip(found.class_names, found.counts, strict=True)),
             "best": found.best,
@@ -175,16 +178,17 @@ SCORE_HEADERS: list[str | tuple[str, str]] = [
 
 def score_cells(found: Recognition) -> list[tuple[str, ...]]:
     """Return the table of scores with the optimism, a row a classifier, as pages and terminals show it."""
+    digits = _digits(found)
     return [
         (
             name,
-            _percent(one.error.value),
-            _percents(one.error),
-            _percent(one.balanced_accuracy.value),
-            _percents(one.balanced_accuracy),
-            _percent(found.random[name].balanced_accuracy.value),
-            f"{100.0 * found.optimism[name].value:+.1f}",
-            f"{one.brier.value:.3f}",
+            _percent(one.error.value, digits),
+            _percents(one.error, digits),
+            _percent(one.balanced_accuracy.value, digits),
+            _percents(one.balanced_accuracy, digits),
+            _percent(found.random[name].balanced_accuracy.value, digits),
+            f"{100.0 * found.optimism[name].value:+.{digits}f}",
+            f"{one.brier.value:.{digits + 2}f}",
         )
         for name, one in found.scores.items()
     ]
@@ -194,18 +198,19 @@ def confusion_cells(found: Recognition) -> tuple[list[str | tuple[str, str]], li
     """Return headers and rows of the table of what the best classifier takes for what."""
     counts = found.confusion[found.best]
     parts = counts / counts.sum(axis=1, keepdims=True)
-    rows = [[name, *map(_percent, row)] for name, row in zip(found.class_names, parts, strict=True)]
+    rows = [[name, *(_percent(one, _digits(found)) for one in row)] for name, row in zip(found.class_names, parts, strict=True)]
     return ["True class", *((f"Classified as {name}", "%") for name in found.class_names)], rows
 
 
 def sentences(found: Recognition) -> Iterator[str]:
     """Yield what the scores say, in sentences."""
-    best = found.scores[found.best]
-    low, high = _percents(best.balanced_accuracy).split(" to ")
+    best, digits = found.scores[found.best], _digits(found)
     yield (
-        f"The best classifier, {found.best}, has a balanced accuracy of {_percent(best.balanced_accuracy.value)} % ({low} to {high} %) on "
-        f"{found.group}s not used in training; a random split gives {_percent(found.random[found.best].balanced_accuracy.value)} %."
+        f"The best classifier, {found.best}, has a balanced accuracy of {_percent(best.balanced_accuracy.value, digits)} % "
+        f"({_percents(best.balanced_accuracy, digits)} %) on {found.group}s not used in training; a random split gives "
+        f"{_percent(found.random[found.best].balanced_accuracy.value, digits)} %."
     )
+    yield from _few(found)
     if found.bayes_error is not None:
         least = f"{_percent(found.bayes_error)} %" if found.bayes_error >= _LEAST_SHOWN else "less than 0.05 %, which excludes nothing"
         bound = (
@@ -215,14 +220,41 @@ def sentences(found: Recognition) -> Iterator[str]:
             f"above the noise, is {least}. A classifier that sees more can be better. For a band, a noise and a scatter of a sensor "
             "vibroimpact bound computes such bounds."
         )
-        yield f"{bound} The error of the best classifier is {_percent(best.error.value)} % ({_percents(best.error)} %)."
+        yield f"{bound} The error of the best classifier is {_percent(best.error.value, digits)} % ({_percents(best.error, digits)} %)."
+        most = largest_error_of_none(found.groups, found.folds)
+        if _LEAST_SHOWN <= found.bayes_error <= most:
+            yield (
+                f"With {found.groups} {found.group}s no classifier can be shown to be better than this bound: one without any error may "
+                f"err in up to {_percent(most, digits)} % of further signals (confidence {SURE:g} %). At least some "
+                f"{groups_for_bound(found.bayes_error, found.folds):,} {found.group}s are needed."
+            )
     hardest = [one for one in found.streams if one.impacts == max(row.impacts for row in found.streams)]
     if hardest:
         worst = max(hardest, key=lambda row: row.error)
         yield (
-            f"The fraction of {worst.class_name} in a stream of {worst.impacts} impacts has an error of {_percent(worst.error)} % "
+            f"The fraction of {worst.class_name} in a stream of {worst.impacts} impacts has an error of {_percent(worst.error, digits)} % "
             f"(root mean square, at the fraction with the largest error, {worst.fraction:g})."
         )
+
+
+def _few(found: Recognition) -> Iterator[str]:
+    """Yield what the number of groups does not allow to tell."""
+    best = found.scores[found.best]
+    if not coarse(best.error):
+        return
+    yield (
+        f"With {found.groups} {found.group}s an error between {_percent(best.error.low, 0)} and {_percent(best.error.high, 0)} % can't be "
+        f"told apart; for +-5 % some {groups_for_error(best.error, found.groups):,} {found.group}s are needed. More signals of the same "
+        f"{found.group}s do not replace them."
+    )
+    chance = 1.0 / len(found.class_names)
+    if best.balanced_accuracy.low <= chance:
+        yield f"Whether the best classifier is better than guessing, {_percent(chance, 0)} %, can't be told."
+
+
+def _digits(found: Recognition) -> int:
+    """Return the number of decimals of scores in per cent."""
+    return 0 if coarse(found.scores[found.best].error) else 1
 
 
 def _scores(one: Scores) -> Row:
@@ -236,9 +268,9 @@ def _interval(name: str, one: Score) -> Row:
     return {name: one.value, f"{name}_low": one.low, f"{name}_high": one.high}
 
 
-def _percent(value: float) -> str:
-    return f"{100.0 * value:.1f}"
+def _percent(value: float, digits: int = 1) -> str:
+    return f"{100.0 * value:.{digits}f}"
 
 
-def _percents(one: Score) -> str:
-    return f"{_percent(one.low)} to {_percent(one.high)}"
+def _percents(one: Score, digits: int) -> str:
+    return f"{_percent(one.low, digits)} to {_percent(one.high, digits)}"
