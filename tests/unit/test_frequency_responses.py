@@ -252,6 +252,17 @@ def test_a_modulus_three_per_cent_off_is_told() -> None:
     assert not any("Young" in one for one in thin().doubts)
 
 
+def test_where_damping_alone_differs_it_is_said(tmp_path: Path) -> None:
+    """A smaller damping has larger responses, which is no sensitivity."""
+    found = compared(tmp_path, *noisy(RIGHT), case=a_case(damping=4.0 * DAMPING))
+    (doubt,) = (one for one in found.doubts if "the measured damping" in one)
+    assert "the frequencies agree within 0.2 %, and the damping does not: the measured damping ratios of 7 modes are 0.25 times" in doubt
+    assert (found.frac < 0.8).all()  # 0.64 for one resonance, by the closed form
+    assert (found.damped_frac > 0.97).all()
+    assert found.scaled_frac.tolist() == found.frac.tolist()
+    assert not any("sensitivity" in one for one in found.doubts)
+
+
 def test_gain_polarity_and_coherence_are_told(tmp_path: Path) -> None:
     resonance = float(modal(PLACES[0])[0][0])
     coherence = np.where(np.abs(FREQUENCY - resonance) < 5.0, 0.6, 0.99)

@@ -152,6 +152,8 @@ def summary_of_correlation(found: Correlation) -> dict[str, Any]:
         found.relative_residual,
         found.frac,
         found.octave_frac,
+        found.scaled_frac,
+        found.damped_frac,
         strict=True,
     )
     return {
@@ -172,8 +174,10 @@ def summary_of_correlation(found: Correlation) -> dict[str, Any]:
                 "residual_rms_relative": float(part),
                 "frac": float(of),
                 "octave_frac": [None if np.isnan(value) else float(value) for value in octaves],
+                "scaled_frac": float(scaled),
+                "damped_frac": float(damped),
             }
-            for sensor, sign, alike, late, scale, part, of, octaves in records
+            for sensor, sign, alike, late, scale, part, of, octaves, scaled, damped in records
         },
         "removed": {name: {"offset": one.offset, "drift": one.drift} for name, one in found.removed.items()},
         "modes": mode_table(found),

@@ -10,8 +10,8 @@ import numpy as np
 
 from vibroimpact.arrays import Complex, Floats
 from vibroimpact.correlation.mode_pairs import ModePair, paired
-from vibroimpact.correlation.responses.common_error import common_difference
 from vibroimpact.correlation.responses.doubts import doubts_of_files, doubts_of_resolution
+from vibroimpact.correlation.shared_differences import shared_differences
 from vibroimpact.errors import InputError
 from vibroimpact.signals.decay.find import DecayMode
 from vibroimpact.signals.decay.responses import common_lines, modes_in_responses
@@ -80,8 +80,7 @@ def modes_beside(basis: ModalBasis | None, paths: Sequence[str | PathLike[str]])
         raise InputError(f"{words}, and the responses from {frequency[0]:.5g} to {frequency[-1]:.5g} Hz; they have no mode in common")
     found = modes_in_responses(responses, band)
     pairs = paired(basis.frequencies, basis.damping_ratios, np.ones(len(basis.frequencies)), found, band)
-    common = common_difference(pairs)
-    doubts = (*_doubts(responses, found, frequency), *([] if common is None else [common.sentence]))
+    doubts = (*_doubts(responses, found, frequency), *shared_differences(pairs).sentences)
     return MeasuredModes(responses, frequency, value, pairs, doubts)
 
 

@@ -74,6 +74,7 @@ def summary_of_responses(found: ResponseCorrelation) -> dict[str, Any]:
                 "frac": float(found.frac[number]),
                 "octave_frac": [None if np.isnan(value) else float(value) for value in found.octave_frac[number]],
                 "scaled_frac": float(found.scaled_frac[number]),
+                "damped_frac": float(found.damped_frac[number]),
                 "coherence_median": coherences[number],
                 "coherence_low_part": None
                 if found.coherence is None or coherences[number] is None
