@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from os import PathLike
 
@@ -16,7 +16,7 @@ from vibroimpact.errors import InputError
 from vibroimpact.signals.decay.find import DecayMode
 from vibroimpact.signals.decay.responses import common_lines, modes_in_responses
 from vibroimpact.signals.frequency_response import FrequencyResponse
-from vibroimpact.signals.reading.universal_responses import read_responses
+from vibroimpact.signals.reading.universal_responses import contents_of, read_responses
 from vibroimpact.structures.modal_model import ModalBasis
 
 
@@ -90,4 +90,13 @@ def _read(paths: Sequence[str | PathLike[str]]) -> tuple[tuple[FrequencyResponse
 
 
 def _doubts(responses: Sequence[FrequencyResponse], found: Sequence[DecayMode], frequency: Floats) -> tuple[str, ...]:
-    return (*doubts_of_files(responses), *doubts_of_resolution(found, frequency))
+    return (*_of_records(responses), *doubts_of_files(responses), *doubts_of_resolution(found, frequency))
+
+
+def _of_records(responses: Sequence[FrequencyResponse]) -> Iterator[str]:
+    """Yield which files have records over time too."""
+    for source in dict.fromkeys(one.source for one in responses):
+        number = len(contents_of(source).records)
+        if number:
+            records = f"{number} record{'s' if number > 1 else ''} over time"
+            yield f"{source} has {records} too, of which these modes are not; correlate compares them with a case"
