@@ -457,6 +457,30 @@ def both_kinds(path: Path) -> Path:
     return with_records(path, RIGHT, signal.resample_poly(push, 1, 8, window=("kaiser", 12.0)), motions, RATE)
 
 
+def test_phases_do_not_cross_the_chart() -> None:
+    """Near 180 degrees noise drew a line from one end of the axis to the other at each second frequency."""
+    (chart,) = (one for one in vi.response_charts(thin()) if one.name == "responses")
+    phases = [panel for row in chart.rows for panel in row if panel.title == "Phase"]
+    assert len(phases) == len(NODES)
+    lines = [mark for panel in phases for mark in panel.marks]
+    assert any(np.isnan(line.y).any() for line in lines)
+    for line in lines:
+        assert np.isfinite(line.y).sum() == len(thin().frequency)
+        assert np.nanmax(np.abs(np.diff(line.y))) <= 180.0
+
+
+def test_the_report_can_be_read(tmp_path: Path) -> None:
+    """Words to the left, no column of remarks without any, and the whole line for the case."""
+    page = (vi.save_response_correlation(thin(), tmp_path / "compared") / "report.html").read_text()
+    assert '<th scope="col" class="text">Polarity</th>' in page
+    assert '<td class="text">as simulated</td>' in page
+    assert '<td class="text">m/s²/N</td>' in page
+    assert '<th scope="col">FRAC</th>' in page
+    assert "Remark" not in page
+    assert '<pre id="damping-text" class="wrapped">damping = { frequencies = [' in page
+    assert '<button type="button" data-copy="damping-text">' in page
+
+
 def test_of_a_file_with_both_either_is_compared(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """It was read as records alone, and its frequency responses were not mentioned."""
     monkeypatch.chdir(tmp_path)

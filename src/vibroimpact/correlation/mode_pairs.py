@@ -89,7 +89,12 @@ def paired(
     taken = set(partner.values())
     nan = float("nan")
     rows += [ModePair(None, nan, nan, nan, mode, "no mode of the case nearby") for number, mode in enumerate(found) if number not in taken]
-    return tuple(sorted(rows, key=lambda row: row.frequency if row.measured is None else row.measured.frequency.value))
+    return tuple(sorted(rows, key=_place))
+
+
+def _place(pair: ModePair) -> float:
+    """Return by which frequency a mode has its place among others: that of the case, if it has one."""
+    return pair.measured.frequency.value if pair.number is None and pair.measured is not None else pair.frequency
 
 
 def _responses(problem: Problem, sensors: Sequence[Sensor]) -> Floats:

@@ -88,7 +88,8 @@ class DampingDifference:
         number = len(self.measured)
         modes = f"the measured damping ratios of {number} modes are" if number > 1 else "the measured damping ratio of a mode is"
         if np.isfinite(self.value):
-            ends = f" ({self.least:.2g} to {self.largest:.2g})" if number > 1 else ""
+            ends = range_of((self.least, self.largest), 2)
+            ends = f" ({ends})" if " " in ends else ""
             differ = f"{modes} {self.value:.2g} times the case's{ends}"
         else:
             differ = f"{modes} {range_of(list(self.measured.values()), 2)}, and the case has no damping"

@@ -89,7 +89,7 @@ def _of_coherence(found: ResponseCorrelation) -> Iterator[str]:
     for sensor, coherence in zip(found.sensors, found.coherence, strict=True):
         part = float((coherence < COHERENT).mean())
         low = [f"{found.frequency[line]:.4g}" for line in nearest if coherence[line] < COHERENT]
-        at = f"at the modes of {_few(low)} Hz" if low else ""
+        at = f"at the mode{'s' if len(low) > 1 else ''} of {_few(low)} Hz" if low else ""
         many = f"at {100.0 * part:.2g} % of the frequencies" if part > _MANY else ""
         if at or many:
             words = f"the coherence of {shown(sensor.name)} is below {COHERENT} {' and '.join(filter(None, (at, many)))}"
@@ -101,5 +101,6 @@ def doubts_of_resolution(modes: Sequence[DecayMode], frequency: Floats) -> Itera
     step = float(np.median(np.diff(frequency)))
     narrow = [f"{mode.frequency.value:.4g}" for mode in modes if 2.0 * mode.damping_ratio.value * mode.frequency.value < _LINES * step]
     if narrow:
-        words = f"the half-power bandwidths of the modes of {_few(narrow)} Hz have fewer than {_LINES} frequencies {step:.3g} Hz apart"
+        places = f"bandwidths of the modes of {_few(narrow)} Hz have" if len(narrow) > 1 else f"bandwidth of the mode of {narrow[0]} Hz has"
+        words = f"the half-power {places} fewer than {_LINES} frequencies {step:.3g} Hz apart"
         yield f"{words}: a window or a record that was cut off makes damping look larger; measure longer"
