@@ -232,7 +232,7 @@ def _whole(damping: float) -> Correlation:
 
 @pytest.mark.parametrize("hits", [(0.02, 0.023), (0.02, 0.024, 0.24, 0.247)])
 def test_the_band_of_a_double_hit_is_that_of_its_pulses(hits: tuple[float, ...]) -> None:
-    """The zeros that two pulses have by their distance begin below the band, which then was taken whole: FRAC of this plate was 0.47."""
+    """The zeros that two pulses have by their distance begin below the band, which then was taken whole, with those of each pulse."""
     force, value = hammered(hits, 0.45)
     for damping in (0.008, 0.02):
         found = vi.correlate(a_case(damping=damping), records(value), force=Record("hammer", force, RATE, "N"))

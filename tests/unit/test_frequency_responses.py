@@ -288,7 +288,7 @@ def test_gain_polarity_and_coherence_are_told(tmp_path: Path) -> None:
     assert 'the response "12" has 1.1 times the size' in words
     assert 'the response "13" has inverted polarity' in words
     assert found.polarity.tolist() == [1.0, -1.0]
-    assert 'the coherence of "12" is below 0.9 at the modes of 12' in words
+    assert 'the coherence of "12" is below 0.9 at the mode of 12' in words
     assert found.coherence is not None
     assert found.coherence.shape == found.measured_response.shape
 
