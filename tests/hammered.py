@@ -70,3 +70,39 @@ def records(value: Array, decibels: float | None = 40.0, seed: int = 0, rate: fl
     level = 0.0 if decibels is None else 10.0 ** (-decibels / 20.0)
     noise = level * np.sqrt(np.mean(value**2, axis=1, keepdims=True)) * random.standard_normal(value.shape)
     return [Record(name, one, rate, "m/s2") for name, one in zip(names, value + noise, strict=True)]
+
+
+KNOCKED_RATE = 25600.0
+SOFT = {"density": 7850.0, "youngs_modulus": "8 GPa", "poissons_ratio": 0.4}
+
+
+def knocked_case(radius: float, material: Any = SOFT, damping: float = 0.005, modulus: float = 206e9) -> vi.Case:
+    """A plate of 40 modes under a sphere whose contact force has zeros at lower frequencies the larger and softer it is."""
+    steel = {"density": 7850.0, "youngs_modulus": modulus, "poissons_ratio": 0.3}
+    return vi.read_case(
+        {
+            **TABLE,
+            "sphere": {"radius": radius, "material": material},
+            "plate": {**PLATE, "material": steel, "modes": 40, "damping": damping},
+            "drop": {"speed": 1.0, "position": TABLE["drop"]["position"]},
+            "run": {"impacts": 1, "duration": 0.35},
+            "sensors": [{**one, "rate": KNOCKED_RATE} for one in TABLE["sensors"]],
+        }
+    )
+
+
+def knocked(case: vi.Case, level: float = 1e-3) -> tuple[list[Record], Record]:
+    """The records of an impact with white noise, relative to their peaks, and its force, through a filter as they are."""
+    response = vi.simulate(case)
+    value = np.stack([response.signals()[one["name"]].value for one in TABLE["sensors"]])
+    duration = float(response.impacts["duration_s"][0])
+    time = np.arange(value.shape[1] * FINE) / (KNOCKED_RATE * FINE)
+    force = np.where(time < duration, response.at(np.minimum(time, duration))["force_N"], 0.0)
+    force = signal.resample_poly(force, 1, FINE, window=("kaiser", 10.0))
+    quiet = np.zeros((3, round(0.02 * KNOCKED_RATE)))
+    whole = np.concatenate([quiet, np.vstack([value, force])], axis=1)
+    noise = level * np.abs(whole).max(axis=1, keepdims=True) * np.random.default_rng(1).standard_normal(whole.shape)
+    noise[2] = 0.0
+    *motions, push = whole + noise
+    named = [Record(one["name"], motion, KNOCKED_RATE, "m/s2") for one, motion in zip(TABLE["sensors"], motions, strict=True)]
+    return named, Record("hammer", push, KNOCKED_RATE, "N")

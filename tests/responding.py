@@ -125,6 +125,30 @@ def measured(
     return by_pyuff(path, *sets)
 
 
+OF_TIME = {
+    "func_type": 1,
+    "ord_data_type": 4,
+    "ref_node": 0,
+    "ref_dir": 0,
+    "abscissa_spec_data_type": 17,
+    "abscissa_axis_units_lab": "s",
+    "orddenom_spec_data_type": 0,
+    "orddenom_axis_units_lab": "NONE",
+}
+
+
+def with_records(path: Path, responses: Sequence[Complex], force: Floats, motions: Sequence[Floats], rate: float) -> Path:
+    """A universal file with the responses of the two places, and with the records of the force, "hammer", and of the motion at both."""
+    time = np.arange(len(force)) / rate
+    of_force = {"id1": "hammer", "rsp_node": REFERENCE, "ordinate_spec_data_type": 13, "ordinate_axis_units_lab": "N", "data": force}
+    sets: list[dict[str, Any]] = [{**OF_TIME, "x": time, **of_force}]
+    sets += [
+        {**OF_TIME, "x": time, "id1": str(node), "rsp_node": node, "data": motion} for node, motion in zip(NODES, motions, strict=True)
+    ]
+    sets += [{"rsp_node": node, "x": FREQUENCY, "data": response} for node, response in zip(NODES, responses, strict=True)]
+    return by_pyuff(path, *sets)
+
+
 def a_case(**plate: Any) -> vi.Case:
     """The case, with another plate."""
     return vi.read_case({**TABLE, "plate": {**TABLE["plate"], **plate}})

@@ -16,7 +16,7 @@ from hammered import RATE, a_case, hammered, records
 from responding import MODULUS, PLACES, SIZE, accelerance, measured, noisy
 from responding import a_case as a_thin_plate
 from stated import ROOT, says
-from vibroimpact.correlation.responses.common_error import common_difference
+from vibroimpact.correlation.shared_differences import common_difference
 from vibroimpact.signals.decay import find
 from vibroimpact.signals.estimate import Estimate
 

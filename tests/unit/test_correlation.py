@@ -16,7 +16,7 @@ import pytest
 import tomli_w
 
 import vibroimpact as vi
-from hammered import RATE, TABLE, a_case, hammered, records
+from hammered import RATE, SOFT, TABLE, a_case, hammered, knocked, knocked_case, records
 from vibroimpact.correlation.acquired import acquired_of
 from vibroimpact.correlation.correlate import Correlation
 from vibroimpact.signals.flat_tops import clipped_count
@@ -228,6 +228,69 @@ def _whole(damping: float) -> Correlation:
     force, value = hammered((0.02, 0.24), 0.45)
     hammer = Record("hammer", force, RATE, "N")
     return vi.correlate(a_case(damping=damping), records(value), force=hammer, band=(struck(damping).band[0], 3100.0))
+
+
+@pytest.mark.parametrize("hits", [(0.02, 0.023), (0.02, 0.024, 0.24, 0.247)])
+def test_the_band_of_a_double_hit_is_that_of_its_pulses(hits: tuple[float, ...]) -> None:
+    """The zeros that two pulses have by their distance begin below the band, which then was taken whole, with those of each pulse."""
+    force, value = hammered(hits, 0.45)
+    for damping in (0.008, 0.02):
+        found = vi.correlate(a_case(damping=damping), records(value), force=Record("hammer", force, RATE, "N"))
+        assert found.band[1] == pytest.approx(1300.0, rel=0.02)  # of a half sine of 1 ms the spectrum falls by 20 dB at 1.30 kHz
+        assert any("double hit" in doubt for doubt in found.doubts)
+        assert (found.damped_frac > 0.995).all()
+        assert (found.frac > (0.995 if damping == 0.008 else 0.8)).all()
+
+
+def fallen_by_20_dB(force: Record) -> float:
+    """Where the spectrum of one pulse has fallen by 20 dB [Hz]; infinite if nowhere."""
+    spectrum = np.abs(np.fft.rfft(force.value, 1 << 18))
+    low = np.flatnonzero(spectrum < 0.1 * spectrum[0])
+    return low[0] * force.rate / (1 << 18) if len(low) else np.inf
+
+
+@pytest.mark.parametrize("with_force", [True, False])
+@pytest.mark.parametrize(("radius", "material"), [pytest.param(0.016, "steel", marks=pytest.mark.slow), (0.016, SOFT), (0.03, SOFT)])
+def test_where_damping_alone_differs_it_is_said(radius: float, material: Any, with_force: bool) -> None:
+    """FRAC is low rightly, and not for zeros of the force; it is not the frequencies either, nor a sensitivity."""
+    motions, force = knocked(knocked_case(radius, material))
+    found = vi.correlate(knocked_case(radius, material, damping=0.02), motions, force=force if with_force else None)
+    assert found.band[1] == pytest.approx(min(11296.0, fallen_by_20_dB(force)), rel=0.01)
+    assert (found.frac < 0.85).all()
+    assert found.scaled_frac.tolist() == found.frac.tolist()
+    assert (found.damped_frac > 0.995).all()
+    said = [doubt for doubt in found.doubts if "spectrum" not in doubt]
+    assert len(said) == 1
+    assert "the frequencies agree within 0.2 %, and the damping does not" in said[0]
+    assert "modes are 0.25 times the case's" in said[0]
+    assert f"FRAC is {found.damped_frac.min():.3f}" in said[0]
+    same = vi.correlate(knocked_case(radius, material), motions, force=force if with_force else None)
+    assert (same.frac > 0.995).all()
+    assert same.damped_frac.tolist() == same.frac.tolist()
+    assert not any("damping" in doubt for doubt in same.doubts)
+
+
+def test_a_case_without_damping() -> None:
+    motions, force = knocked(knocked_case(0.016))
+    found = vi.correlate(knocked_case(0.016, damping=0.0), motions, force=force)
+    assert any("modes are 0.0" in doubt and "and the case has no damping" in doubt for doubt in found.doubts)
+    assert (found.damped_frac > 0.995).all()
+
+
+@pytest.mark.parametrize("with_force", [True, False])
+def test_a_modulus_that_is_off_is_told_of_records_too(with_force: bool) -> None:
+    """Frequencies are proportional to its square root; with them the damping can be told apart."""
+    motions, force = knocked(knocked_case(0.016, modulus=1.03 * 206e9))
+    found = vi.correlate(knocked_case(0.016, damping=0.01), motions, force=force if with_force else None)
+    (said,) = (doubt for doubt in found.doubts if "Young's modulus over density" in doubt)
+    assert "modes are all 1.5 % higher" in said
+    assert "differs by +3 %" in said
+    assert any("modes are 0.5 times the case's" in doubt for doubt in found.doubts)
+    assert (found.frac < 0.6).all()
+    assert (found.scaled_frac > 0.85).all()
+    assert (found.damped_frac > 0.99).all()
+    # modes are dense above: some were paired with a neighbour
+    assert all(0.012 < pair.frequency_difference < 0.018 for pair in found.modes if pair.number and pair.measured)
 
 
 CLIPPED = ("equal", "pairs", "noise", "offset", "steps")

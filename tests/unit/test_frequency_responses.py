@@ -11,11 +11,28 @@ from typing import Any
 import numpy as np
 import pytest
 import tomli_w
+from scipy import signal
 from typer.testing import CliRunner
 
 import vibroimpact as vi
-from responding import DAMPING, FREQUENCY, IMPACT, MODULUS, NODES, PLACES, TABLE, a_case, accelerance, by_pyuff, measured, modal, noisy
+from responding import (
+    DAMPING,
+    FREQUENCY,
+    IMPACT,
+    MODULUS,
+    NODES,
+    PLACES,
+    TABLE,
+    a_case,
+    accelerance,
+    by_pyuff,
+    measured,
+    modal,
+    noisy,
+    with_records,
+)
 from vibroimpact.cli import app
+from vibroimpact.correlation.compared_kind import compared_kind
 from vibroimpact.correlation.responses.computed import computed_responses
 from vibroimpact.correlation.responses.result import ResponseCorrelation
 from vibroimpact.correlation.simulated import plate_problem
@@ -252,6 +269,17 @@ def test_a_modulus_three_per_cent_off_is_told() -> None:
     assert not any("Young" in one for one in thin().doubts)
 
 
+def test_where_damping_alone_differs_it_is_said(tmp_path: Path) -> None:
+    """A smaller damping has larger responses, which is no sensitivity."""
+    found = compared(tmp_path, *noisy(RIGHT), case=a_case(damping=4.0 * DAMPING))
+    (doubt,) = (one for one in found.doubts if "the measured damping" in one)
+    assert "the frequencies agree within 0.2 %, and the damping does not: the measured damping ratios of 7 modes are 0.25 times" in doubt
+    assert (found.frac < 0.8).all()  # 0.64 for one resonance, by the closed form
+    assert (found.damped_frac > 0.97).all()
+    assert found.scaled_frac.tolist() == found.frac.tolist()
+    assert not any("sensitivity" in one for one in found.doubts)
+
+
 def test_gain_polarity_and_coherence_are_told(tmp_path: Path) -> None:
     resonance = float(modal(PLACES[0])[0][0])
     coherence = np.where(np.abs(FREQUENCY - resonance) < 5.0, 0.6, 0.99)
@@ -260,7 +288,7 @@ def test_gain_polarity_and_coherence_are_told(tmp_path: Path) -> None:
     assert 'the response "12" has 1.1 times the size' in words
     assert 'the response "13" has inverted polarity' in words
     assert found.polarity.tolist() == [1.0, -1.0]
-    assert 'the coherence of "12" is below 0.9 at the modes of 12' in words
+    assert 'the coherence of "12" is below 0.9 at the mode of 12' in words
     assert found.coherence is not None
     assert found.coherence.shape == found.measured_response.shape
 
@@ -404,3 +432,107 @@ def test_what_the_commands_refuse(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
         raised = run(*words).exception
         assert isinstance(raised, vi.InputError), words
         assert message in str(raised)
+
+
+RATE = 5000.0
+
+
+def both_kinds(path: Path) -> Path:
+    """A file with responses and with records of the case's own plate under a pulse of 1 ms."""
+    from vibroimpact.cases.build import problem_of
+
+    modes = problem_of(a_case()).plate.modes
+    assert modes is not None
+    fine = np.arange(round(8 * RATE * 0.8)) / (8 * RATE)
+    push = 50.0 * np.sin(np.pi * (fine - 0.05) / 1e-3) * ((fine > 0.05) & (fine < 0.051))
+    motions = []
+    for node in NODES:
+        motion = np.zeros(len(fine))
+        for omega, ratio, here, there in zip(
+            modes.angular_frequencies, modes.damping_ratios, modes.contact, modes.points[str(node)][:, 2], strict=True
+        ):
+            system = signal.cont2discrete(([1.0, 0.0, 0.0], [1.0, 2.0 * ratio * omega, omega**2]), 1.0 / (8 * RATE), method="foh")
+            motion -= here * there * signal.lfilter(np.ravel(system[0]), system[1], push)
+        motions.append(signal.resample_poly(motion, 1, 8, window=("kaiser", 12.0)))
+    return with_records(path, RIGHT, signal.resample_poly(push, 1, 8, window=("kaiser", 12.0)), motions, RATE)
+
+
+def test_phases_do_not_cross_the_chart() -> None:
+    """Near 180 degrees noise drew a line from one end of the axis to the other at each second frequency."""
+    (chart,) = (one for one in vi.response_charts(thin()) if one.name == "responses")
+    phases = [panel for row in chart.rows for panel in row if panel.title == "Phase"]
+    assert len(phases) == len(NODES)
+    lines = [mark for panel in phases for mark in panel.marks]
+    assert any(np.isnan(line.y).any() for line in lines)
+    for line in lines:
+        assert np.isfinite(line.y).sum() == len(thin().frequency)
+        assert np.nanmax(np.abs(np.diff(line.y))) <= 180.0
+
+
+def test_the_report_can_be_read(tmp_path: Path) -> None:
+    """Words to the left, no column of remarks without any, and the whole line for the case."""
+    page = (vi.save_response_correlation(thin(), tmp_path / "compared") / "report.html").read_text()
+    assert '<th scope="col" class="text">Polarity</th>' in page
+    assert '<td class="text">as simulated</td>' in page
+    assert '<td class="text">m/s²/N</td>' in page
+    assert '<th scope="col">FRAC</th>' in page
+    assert "Remark" not in page
+    assert '<pre id="damping-text" class="wrapped">damping = { frequencies = [' in page
+    assert '<button type="button" data-copy="damping-text">' in page
+
+
+def test_of_a_file_with_both_either_is_compared(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It was read as records alone, and its frequency responses were not mentioned."""
+    monkeypatch.chdir(tmp_path)
+    Path("plate.toml").write_text(tomli_w.dumps({**TABLE, "sensors": [{**one, "rate": RATE} for one in TABLE["sensors"]]}))
+    path = both_kinds(Path("both.uff"))
+    found = {}
+    for name, options in (
+        ("plain", ()),
+        ("of hammer", ("--hammer", "hammer", "--band", "60 Hz, 700 Hz")),
+        ("asked", ("--hammer", "hammer", "--compare", "records", "--band", "60 Hz, 700 Hz")),
+        ("node", ("--hammer", "4", "--compare", "responses")),
+    ):
+        told = run("correlate", "plate.toml", str(path), "-o", name, "--json", *options)
+        assert told.exit_code == 0, (name, told.output, told.exception)
+        found[name] = json.loads(Path(name, "summary.json").read_text())
+    has = "both.uff has 3 records over time and 2 frequency responses: "
+    for name, kind, remark in (
+        ("plain", "responses", "the responses are compared, and the records by --compare records"),
+        ("node", "responses", "the responses are compared, and the records by --compare records"),
+        ("of hammer", "records", "the records are compared, and the responses by --compare responses"),
+        ("asked", "records", "the records are compared, and the responses by --compare responses"),
+    ):
+        assert list(found[name][kind]) == ["12", "13"]
+        assert found[name]["doubts"].count(has + remark) == 1
+        assert min(one["frac"] for one in found[name][kind].values()) > 0.97
+        assert "both.uff has 3 records" in Path(name, "report.html").read_text()
+    assert compared_kind([path], None, None, windowed=True).kind == "records"
+    told = run("modes", str(path), "--json")
+    assert any(
+        "both.uff has 3 records over time too" in doubt for doubt in json.loads(Path("both-modes/summary.json").read_text())["doubts"]
+    )
+
+
+def test_several_files_of_different_kinds(tmp_path: Path) -> None:
+    both, alone = both_kinds(tmp_path / "both.uff"), measured(tmp_path / "plate.uff", RIGHT)
+    table = tmp_path / "records.csv"
+    table.write_text("time [s],12 [m/s^2]\n0,0\n1e-4,1\n")
+    kinds = {
+        (both, alone): "responses",
+        (both, table): "records",
+        (alone,): "responses",
+        (table,): "records",
+    }
+    for files, kind in kinds.items():
+        found = compared_kind(files, None, None, windowed=False)
+        assert found.kind == kind
+        assert len(found.remarks) == (both in files)
+    for files, asked, message in (
+        ((alone, table), None, "plate.uff has frequency responses, and .*records.csv records over time; compare them one after the other"),
+        ((both, alone), "records", "plate.uff has no record over time; leave it out"),
+        ((both, table), "responses", "records.csv has no frequency response; leave it out"),
+        ((both,), "respones", 'there are records, responses. Did you mean "responses"'),
+    ):
+        with pytest.raises(vi.InputError, match=message):
+            compared_kind(files, asked, None, windowed=False)

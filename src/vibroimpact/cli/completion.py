@@ -114,6 +114,17 @@ def complete_features(incomplete: str) -> list[str]:
     return _lists(incomplete, _words()["features"])
 
 
+def complete_compared(incomplete: str) -> list[str]:
+    """Return what `correlate` may compare.
+
+    Examples
+    --------
+    >>> complete_compared("re")
+    ['records', 'responses']
+    """
+    return _starting(incomplete, _words()["compared"])
+
+
 def _laws() -> list[str]:
     from importlib.metadata import entry_points
 

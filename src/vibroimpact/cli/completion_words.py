@@ -14,6 +14,7 @@ from vibroimpact.cases.case import case_schema
 from vibroimpact.cases.keys import quantity_keys
 from vibroimpact.cli.completion import WORDS
 from vibroimpact.contact.registry import contact_laws
+from vibroimpact.correlation.compared_kind import KINDS
 from vibroimpact.exporting.export_format import export_formats
 from vibroimpact.materials import RIGID, material_library
 from vibroimpact.paper.report.outline import PARTS
@@ -47,6 +48,7 @@ def completion_words() -> dict[str, Any]:
         "formats": list(export_formats()),
         "parts": list(PARTS),
         "features": list(features()),
+        "compared": list(KINDS),
     }
 
 

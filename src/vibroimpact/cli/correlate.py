@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from vibroimpact.cli.completion import complete_compared
 from vibroimpact.cli.shared import (
     CaseArgument,
     Changes,
@@ -63,6 +65,15 @@ def correlate(
             ),
         ),
     ] = None,
+    compare: Annotated[
+        str | None,
+        typer.Option(
+            "--compare",
+            metavar="KIND",
+            autocompletion=complete_compared,
+            help="What of UFF files with both is compared: records, or responses, as by default without a record named by --hammer.",
+        ),
+    ] = None,
     columns: Columns = None,
     changes: Changes = None,
     figures: Figures = False,
@@ -75,6 +86,7 @@ def correlate(
     Measured frequency responses are compared with those of the case, and so are the modes that are fitted to them.
     """
     from vibroimpact.cases.reader import load_case
+    from vibroimpact.correlation.compared_kind import compared_kind
     from vibroimpact.correlation.correlate import correlate as correlated
     from vibroimpact.correlation.document import summary_of_correlation
     from vibroimpact.correlation.folder import save_correlation
@@ -82,21 +94,17 @@ def correlate(
     from vibroimpact.report.progress import patient_progress
     from vibroimpact.results.folder import check_free
     from vibroimpact.signals.read_records import read_records
-    from vibroimpact.signals.reading.universal_responses import holds_responses
 
     found = load_case(case, settings_of(changes))
     target = Path(f"{stem(case)}-correlated") if output is None else output
     check_free(target, force=force)
     length = None if window is None else quantity_in("--window", window, "s")
     ends = None if band is None else pair_in("--band", band, "Hz", "a lower and an upper frequency", "100 Hz, 5 kHz")
-    measured = [path for path in records if holds_responses(path)]
-    if measured:
-        if len(measured) < len(records):
-            other = next(path for path in records if path not in measured)
-            raise InputError(f"{measured[0]} has frequency responses, and {other} records over time; compare them one after the other")
+    compared = compared_kind(records, compare, hammer, windowed=length is not None)
+    if compared.kind == "responses":
         if length is not None:
             raise InputError("frequency responses have no time; leave it out, or take a --band", "--window")
-        _correlate_responses(found, measured, target, hammer, ends, figures=figures, force=force, as_json=as_json)
+        _correlate_responses(found, records, target, hammer, ends, compared.remarks, figures=figures, force=force, as_json=as_json)
         return
     heard = [record for path in records for record in read_records(path, columns)]
     push = None if hammer is None else _force_among(heard, hammer)
@@ -104,6 +112,7 @@ def correlate(
         with patient_progress("correlating", console(err=as_json)) as progress:
             motions = [record for record in heard if record is not push]
             told = correlated(found, motions, force=push, window=length, band=ends, progress=progress)
+        told = replace(told, doubts=(*compared.remarks, *told.doubts))
         folder = save_correlation(told, target, force=force, figures=("png",) if figures else ())
     show_folder(folder, lambda: summary_of_correlation(told), lambda: correlation_summary(told), as_json=as_json)
 
@@ -114,6 +123,7 @@ def _correlate_responses(
     target: Path,
     reference: str | None,
     band: tuple[float, float] | None,
+    remarks: tuple[str, ...],
     *,
     figures: bool,
     force: bool,
@@ -131,6 +141,7 @@ def _correlate_responses(
     with exit_on_interrupt():
         with patient_progress("correlating", console(err=as_json)) as progress:
             told = correlate_responses(case, responses, reference=reference, band=band, progress=progress)
+        told = replace(told, doubts=(*remarks, *told.doubts))
         folder = save_response_correlation(told, target, force=force, figures=("png",) if figures else ())
     show_folder(folder, lambda: summary_of_responses(told), lambda: response_summary(told), as_json=as_json)
 

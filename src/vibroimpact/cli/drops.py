@@ -195,7 +195,8 @@ def modes(
     document = modes_document(found, bodies) | ({} if beside is None else {"measured": list(beside.rows), "doubts": list(beside.doubts)})
     tables = [lambda: modes_summary(found, bodies), *([] if beside is None else [lambda: compared_summary(beside)])]
     show(lambda: {"folder": str(folder), **document}, *tables, as_json=as_json)
-    say(f"wrote {folder / 'report.html'}, and modes.csv and meshes beside it", err=as_json)
+    tables_written = "modes.csv and meshes" if beside is None else "modes.csv, measured.csv and meshes"
+    say(f"wrote {folder / 'report.html'}, and {tables_written} beside it", err=as_json)
 
 
 @app.command()

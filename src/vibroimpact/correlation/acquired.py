@@ -15,7 +15,7 @@ from vibroimpact.identification.measured import on_common_time, sensors_of
 from vibroimpact.shown import shown
 from vibroimpact.signals.baseline import without_baseline
 from vibroimpact.signals.onset import onset_time
-from vibroimpact.signals.packets import find_packets
+from vibroimpact.signals.packets import THRESHOLD, find_packets
 from vibroimpact.signals.record import Record, Removed
 
 _SAME_HIT = 0.05
@@ -46,8 +46,8 @@ class Acquired:
         First sample of each hit; of one alone without a force.
     ends : tuple of int
         The sample after which the force of each hit is over; empty without a force.
-    pulses : int
-        Pulses of force: more than there are hits, if a hammer hit twice.
+    pulses : tuple of (int, int)
+        First and last sample of each pulse of force: of more than there are hits, if a hammer hit twice.
     recorded : array, shape (S or S + 1, samples)
         The samples with their baselines, as they were recorded; those of the force last.
     removed : tuple of Removed
@@ -60,7 +60,7 @@ class Acquired:
     start: float
     onsets: tuple[int, ...]
     ends: tuple[int, ...]
-    pulses: int
+    pulses: tuple[tuple[int, int], ...]
     recorded: Floats
     removed: tuple[Removed, ...]
 
@@ -68,6 +68,14 @@ class Acquired:
     def rate(self) -> float:
         """Samples per second [Hz]."""
         return self.sensors[0].rate
+
+    @property
+    def pulse_times(self) -> Floats:
+        """Begin and end of each pulse of force, after the first sample, with what a converter's filter spreads of it, (pulses, 2) [s]."""
+        pulses = np.array(self.pulses, dtype=float).reshape(-1, 2)
+        room = np.minimum(LEAD, 0.5 * (pulses[1:, 0] - pulses[:-1, 1]))
+        before, after = np.append(LEAD, room), np.append(room, LEAD)
+        return np.stack([pulses[:, 0] - before, pulses[:, 1] + after], axis=1) / self.rate
 
     @property
     def passed(self) -> float:
@@ -116,10 +124,20 @@ def acquired_of(sensors: Sequence[Sensor], records: Sequence[Record], force: Rec
     value = whole[: len(records)]
     if force is None:
         onset = min(onset_time(Record(one.name, part, rate, one.unit, removed=one.removed)) for one, part in zip(every, value, strict=True))
-        return Acquired(used, value, None, start, (round(onset * rate),), (), 0, recorded, removed)
+        return Acquired(used, value, None, start, (round(onset * rate),), (), (), recorded, removed)
     push = whole[-1]
-    pulses = Record(force.name, push, rate, "N", removed=removed[-1])
-    hits = find_packets(pulses, dead_time=_SAME_HIT)
-    number = len(find_packets(pulses, dead_time=_APART).first)
+    hits = find_packets(Record(force.name, push, rate, "N", removed=removed[-1]), dead_time=_SAME_HIT)
     onsets, ends = (tuple(part.tolist()) for part in (hits.first, hits.last))
-    return Acquired(used, value, push, start, onsets, ends, number, recorded, removed)
+    return Acquired(used, value, push, start, onsets, ends, _pulses(push, rate), recorded, removed)
+
+
+def _pulses(force: Floats, rate: float) -> tuple[tuple[int, int], ...]:
+    """Return the first and the last sample of each pulse of a force, where it is above a tenth of its largest.
+
+    The envelope, by which hits are found, falls so slowly beside a pulse that it joins pulses which are near.
+    """
+    high = np.flatnonzero(np.abs(force) >= THRESHOLD * np.abs(force).max())
+    gaps = np.flatnonzero(np.diff(high) > max(1.0, _APART * rate))
+    firsts = high[np.append(0, gaps + 1)]
+    lasts = high[np.append(gaps, len(high) - 1)]
+    return tuple(zip(firsts.tolist(), lasts.tolist(), strict=True))

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from scipy import fft
@@ -13,9 +14,11 @@ from vibroimpact.arrays import Complex, Floats
 from vibroimpact.cases.schema import CaseTable
 from vibroimpact.correlation.acquired import LEAD, Acquired, acquired_of
 from vibroimpact.correlation.alignment import LEAST, delay_of
-from vibroimpact.correlation.doubts import doubts_about, force_ends
+from vibroimpact.correlation.doubts import doubts_about
+from vibroimpact.correlation.excitation import Excited, force_ends, is_excited
 from vibroimpact.correlation.mode_pairs import ModePair, pairs_of
 from vibroimpact.correlation.octaves import frac_of_octaves, octaves_of
+from vibroimpact.correlation.shared_differences import doubts_of_differences, shared_differences
 from vibroimpact.correlation.simulated import Listening, Pushes, listening, plate_problem, pushes_of_impact
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.sensors.antialias import HALF_LENGTH
@@ -23,7 +26,7 @@ from vibroimpact.dynamics.sensors.sensor import Sensor
 from vibroimpact.errors import InputError
 from vibroimpact.signals.baseline import without_baseline
 from vibroimpact.signals.decay.find import DecayMode, modes_in_decay
-from vibroimpact.signals.delay import band_limited
+from vibroimpact.signals.delay import Delay, band_limited
 from vibroimpact.signals.frac import frac
 from vibroimpact.signals.onset import onset_time
 from vibroimpact.signals.record import Record, Removed
@@ -64,6 +67,10 @@ class Correlation:
         The octaves of the band [Hz].
     frac, octave_frac : array, shape (S,) and (S, octaves)
         Frequency response assurance criterion over the band, and over each octave; NaN with fewer than four frequencies in it.
+    scaled_frac : array, shape (S,)
+        The criterion with the frequencies of the case scaled by what all of them have in common.
+    damped_frac : array, shape (S,)
+        The criterion with these frequencies and the measured damping ratios, where they differ from the case's.
     modes : tuple of ModePair
         The modes of the case and of the records.
     removed : dict of str to Removed
@@ -105,6 +112,8 @@ class Correlation:
     octaves: tuple[tuple[float, float], ...]
     frac: Floats
     octave_frac: Floats
+    scaled_frac: Floats
+    damped_frac: Floats
     modes: tuple[ModePair, ...]
     removed: Mapping[str, Removed]
     skew: Floats
@@ -149,7 +158,7 @@ def correlate(
         Time from the first touch on that is compared [s]; by default to the next impact, or to the end of the records.
     band : tuple of two floats, optional
         The band of frequencies [Hz]; by default from half the lowest mode of the plate to its highest, or to what the sensors pass, or to
-        where the spectrum of the force has fallen by 20 dB. Modes are sought in all of the band.
+        where the spectrum of the force, measured or that of the case's impact, has fallen by 20 dB. Modes are sought beyond that too.
     progress : callable, optional
         Called with the fraction done while modes are computed.
 
@@ -184,24 +193,33 @@ def correlate(
     records, force = [without_baseline(one) for one in records], None if force is None else without_baseline(force)
     acquired = acquired_of(problem.sensors, records, force)
     sought = _band(problem, acquired, band)
-    used = _excited(acquired, sought) if band is None else sought
     rate, samples = acquired.rate, acquired.value.shape[1]
     hears = listening(problem, acquired.sensors, samples)
     acting = _acting(problem, acquired, hears, window)
-    delay, skew = delay_of(acquired, hears.to(acting.pushes, acting.about), used, acting.length)
-    value, simulated = delay.polarity[:, None] * acquired.value, hears.to(acting.pushes, acting.about + delay.time)
+    ends = force_ends(acting.pushes, sought[1])
+    used = (sought[0], ends) if band is None and ends is not None and is_excited(sought, ends) else sought
+    heard = _heard(hears, acquired, acting, used)
+    delay, simulated = heard.delay, heard.value
+    value = delay.polarity[:, None] * acquired.value
     touch = acting.about + delay.time if acquired.force is None else acquired.onsets[0] / rate
     onsets = acquired.onsets if acquired.force is not None else (max(0, round(touch * rate)),)
     pieces = _pieces(onsets, int(acting.length * rate), samples)
     measured_response, coherence = _responses(value, acquired.force, pieces)
-    simulated_response, _ = _responses(simulated, acquired.force, pieces)
     frequency = np.arange(measured_response.shape[1]) * rate / (pieces[0].stop - pieces[0].start)
     inside = (frequency >= used[0]) & (frequency <= used[1])
-    both = measured_response[:, inside], simulated_response[:, inside]
+    measured_response = measured_response[:, inside]
+    pairs = pairs_of(problem, acquired.sensors, _decays(acquired, value, pieces, acting.over, sought), sought)
+    differences = shared_differences(pairs)
+    as_scaled = differences.scaled(problem)
+    as_damped = differences.damped(as_scaled)
+    scaled = heard if as_scaled is problem else _heard(listening(as_scaled, acquired.sensors, samples), acquired, acting, used)
+    damped = scaled if as_damped is as_scaled else _heard(listening(as_damped, acquired.sensors, samples), acquired, acting, used)
+    responses = [_responses(one.value, acquired.force, pieces)[0][:, inside] for one in (heard, scaled, damped)]
+    plain_frac, scaled_frac, damped_frac = (frac(measured_response, one) for one in responses)
     octaves = octaves_of(used)
-    decays = _decays(acquired, value, pieces, acting.over, sought)
-    heard = [*records, *([] if force is None else [force])]
-    of_files = dict.fromkeys(doubt for record in heard for doubt in record.named_doubts)
+    whole = [*records, *([] if force is None else [force])]
+    of_files = dict.fromkeys(doubt for record in whole for doubt in record.named_doubts)
+    of_test = doubts_about(problem, acquired, delay, damped.delay, heard.skew, Excited(used, sought, ends))
     return Correlation(
         case=case,
         sensors=acquired.sensors,
@@ -214,18 +232,34 @@ def correlate(
         measured=band_limited(value, rate, used)[:, pieces[0]],
         simulated=band_limited(simulated, rate, used)[:, pieces[0]],
         frequency=frequency[inside],
-        measured_response=both[0],
-        simulated_response=both[1],
+        measured_response=measured_response,
+        simulated_response=responses[0],
         coherence=None if coherence is None else coherence[:, inside],
         hits=len(pieces) if acquired.force is not None else 0,
         octaves=octaves,
-        frac=frac(*both),
-        octave_frac=frac_of_octaves(octaves, frequency[inside], *both),
-        modes=pairs_of(problem, acquired.sensors, decays, sought),
-        removed={one.name: part for one, part in zip(heard, acquired.removed, strict=True)},
-        skew=skew,
-        doubts=(*of_files, *doubts_about(problem, acquired, delay, skew, used, sought)),
+        frac=plain_frac,
+        octave_frac=frac_of_octaves(octaves, frequency[inside], measured_response, responses[0]),
+        scaled_frac=scaled_frac,
+        damped_frac=damped_frac,
+        modes=pairs,
+        removed={one.name: part for one, part in zip(whole, acquired.removed, strict=True)},
+        skew=heard.skew,
+        doubts=(*of_files, *doubts_of_differences(differences, plain_frac, scaled_frac, damped_frac), *of_test),
     )
+
+
+class _Heard(NamedTuple):
+    """A simulation in the time of the records: how much later they are, as `delay_of` returns it, and its samples, (S, samples)."""
+
+    delay: Delay
+    skew: Floats
+    value: Floats
+
+
+def _heard(hears: Listening, acquired: Acquired, acting: _Acting, band: tuple[float, float]) -> _Heard:
+    """Return what sensors hear of a force, aligned with the records within a band."""
+    delay, skew = delay_of(acquired, hears.to(acting.pushes, acting.about), band, acting.length)
+    return _Heard(delay, skew, hears.to(acting.pushes, acting.about + delay.time))
 
 
 @dataclass(frozen=True)
@@ -266,14 +300,15 @@ def _acting(problem: Problem, acquired: Acquired, hears: Listening, window: floa
         pushes = pushes_of_impact(problem, rate, length, 2 if window is None else None)
         if window is None and len(pushes.contacts) > 1:
             length = min(length, float(pushes.contacts[1, 0]) - HALF_LENGTH / rate)
-        over = float(pushes.contacts[pushes.contacts[:, 0] < max(length, 0.0), 1].max(initial=0.0))
+        pushes = replace(pushes, contacts=pushes.contacts[pushes.contacts[:, 0] < max(length, 0.0)])
+        over = float(pushes.contacts[:, 1].max(initial=0.0))
         # both reach a tenth of their largest at the same time
         reached = min(onset_time(Record("", one, rate, "")) for one in hears.to(pushes, 0.0))
         acting = _Acting(pushes, acquired.onsets[0] / rate - reached, length, over)
     else:
         time = np.arange(len(acquired.force)) / rate
         over = max(end - onset for end, onset in zip(acquired.ends, acquired.onsets, strict=True)) / rate
-        acting = _Acting(Pushes(time, acquired.force / rate, np.empty((0, 2))), 0.0, length, over)
+        acting = _Acting(Pushes(time, acquired.force / rate, acquired.pulse_times), 0.0, length, over)
     if length * rate < LEAST:
         words = f"there are {max(0, int(length * rate))} samples from the first touch to the next, or to the end of the records"
         raise InputError(f"{words}; {LEAST} are needed, that is {1e3 * LEAST / rate:.3g} ms at {rate:g} Hz; state a window")
@@ -309,15 +344,6 @@ def _band(problem: Problem, acquired: Acquired, band: tuple[float, float] | None
     if lowest >= acquired.passed:
         raise InputError(f"the lowest mode of the plate has {lowest:.5g} Hz, and the sensors pass {acquired.passed:g} Hz; sample faster")
     return 0.5 * lowest, min(max(highest, 1.5 * lowest), acquired.passed)
-
-
-def _excited(acquired: Acquired, band: tuple[float, float]) -> tuple[float, float]:
-    """Return the band up to where the spectrum of a measured force has fallen by 20 dB: from there on it has zeros, and excites nothing.
-
-    It is left as it is without a force, and where less than half an octave would remain.
-    """
-    ends = force_ends(acquired, band)
-    return band if ends is None or ends < np.sqrt(2.0) * band[0] else (band[0], ends)
 
 
 def _longest(acquired: Acquired) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -30,6 +30,8 @@ MODE_HEADERS = (
     "Remark",
 )
 """Headers of the table of modes."""
+TEXTS = ("Record", "Response", "Unit", "Polarity", "Band", "Remark")
+"""Headers of columns of words."""
 MODE_COLUMNS = (
     "mode",
     "case_frequency_Hz",
@@ -105,9 +107,15 @@ def octave_rows(found: Criteria) -> list[list[str]]:
     return [whole, *parts]
 
 
-def mode_rows(found: Criteria) -> list[list[str]]:
-    """Return the cells of the table of modes."""
-    return [mode_row(pair) for pair in found.modes]
+def mode_cells(modes: Sequence[ModePair]) -> tuple[list[str], list[list[str]]]:
+    """Return headers and rows of the table of modes."""
+    return without_blank_remarks(MODE_HEADERS, [mode_row(pair) for pair in modes])
+
+
+def without_blank_remarks(headers: Sequence[str], rows: Sequence[Sequence[str]]) -> tuple[list[str], list[list[str]]]:
+    """Return headers and rows of a table whose last column has remarks, without that if there is none."""
+    told = len(headers) if any(row[-1] for row in rows) else len(headers) - 1
+    return list(headers[:told]), [list(row[:told]) for row in rows]
 
 
 def mode_row(pair: ModePair) -> list[str]:
@@ -120,8 +128,20 @@ def mode_row(pair: ModePair) -> list[str]:
     half = mode.frequency.interval[1] - mode.frequency.value
     ratio_and_ends = (mode.damping_ratio.value, *mode.damping_ratio.interval)
     damping = [MISSING if mode.doubt else digits(value, 4) for value in ratio_and_ends]
-    difference = MISSING if pair.number is None else f"{100.0 * pair.frequency_difference:+.2f}"
+    difference = MISSING if pair.number is None else signed(100.0 * pair.frequency_difference)
     return [number, computed, digits(mode.frequency.value, 6), digits(half, 2), difference, ratio, *damping, pair.remark]
+
+
+def signed(value: float) -> str:
+    """Return a number with its sign and two decimals; 0.00, which has none.
+
+    Examples
+    --------
+    >>> signed(1.486), signed(-0.004)
+    ('+1.49', '0.00')
+    """
+    text = f"{value:+.2f}"
+    return text if float(text) else text[1:]
 
 
 def mode_table(found: Criteria) -> list[dict[str, Any]]:
@@ -152,6 +172,8 @@ def summary_of_correlation(found: Correlation) -> dict[str, Any]:
         found.relative_residual,
         found.frac,
         found.octave_frac,
+        found.scaled_frac,
+        found.damped_frac,
         strict=True,
     )
     return {
@@ -172,8 +194,10 @@ def summary_of_correlation(found: Correlation) -> dict[str, Any]:
                 "residual_rms_relative": float(part),
                 "frac": float(of),
                 "octave_frac": [None if np.isnan(value) else float(value) for value in octaves],
+                "scaled_frac": float(scaled),
+                "damped_frac": float(damped),
             }
-            for sensor, sign, alike, late, scale, part, of, octaves in records
+            for sensor, sign, alike, late, scale, part, of, octaves, scaled, damped in records
         },
         "removed": {name: {"offset": one.offset, "drift": one.drift} for name, one in found.removed.items()},
         "modes": mode_table(found),

@@ -8,6 +8,7 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.correlation.acquired import LEAD, Acquired
+from vibroimpact.correlation.excitation import Excited, is_excited
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.shown import shown
 from vibroimpact.signals.delay import Delay
@@ -19,17 +20,15 @@ _TOGETHER = 0.5
 """Delay behind a force of the same acquisition that is none, in samples."""
 _GAIN, _GAIN_ALIKE = 0.05, 0.95
 """Logarithm of a gain from which on it is doubted, and the correlation coefficient from which on it is one."""
-_SOFT = 0.1
-"""Part of the force's spectrum at low frequencies below which it excites nothing."""
 
 
 def doubts_about(
     problem: Problem,
     acquired: Acquired,
     delay: Delay,
+    corrected: Delay,
     skew: Floats,
-    band: tuple[float, float],
-    sought: tuple[float, float],
+    excited: Excited,
 ) -> Iterator[str]:
     """Yield the doubts about a correlation, one sentence each without its full stop.
 
@@ -41,10 +40,12 @@ def doubts_about(
         The records.
     delay : Delay
         How they were aligned.
+    corrected : Delay
+        How they are aligned with a simulation of frequencies and damping as they were measured.
     skew : array, shape (S,)
         How much later each record is than the others [s].
-    band, sought : tuple of two floats
-        The band of frequencies that is compared, and that in which modes are sought [Hz].
+    excited : Excited
+        The bands of frequencies, and where the force ends.
     """
     rates = {sensor.rate for sensor in problem.sensors if sensor.name in {one.name for one in acquired.sensors}} - {acquired.rate}
     if rates:
@@ -64,13 +65,14 @@ def doubts_about(
         if late:
             words = f"{abs(late) * acquired.rate:.3g} samples {'later' if late > 0.0 else 'earlier'} than the others and its simulation"
             yield f"the record {shown(sensor.name)} comes {words}: the channels were not sampled together; its FRAC and residual suffer"
-    yield from _of_gains(acquired, delay)
+    yield from _of_gains(acquired, corrected)
     if acquired.force is not None:
-        yield from _of_force(acquired, delay, band, sought)
+        yield from _of_force(acquired, delay)
+    yield from _of_excitation(acquired, excited)
     assert problem.plate.modes is not None
     highest = float(problem.plate.modes.frequencies[-1])
-    if highest < sought[1]:
-        yield f"the modes of the case end at {highest:.5g} Hz, and the band at {sought[1]:.5g} Hz: ask for more modes"
+    if highest < excited.sought[1]:
+        yield f"the modes of the case end at {highest:.5g} Hz, and the band at {excited.sought[1]:.5g} Hz: ask for more modes"
 
 
 def _clipped(what: str, value: np.ndarray, recorded: np.ndarray, onset: int) -> Iterator[str]:
@@ -94,20 +96,7 @@ def _of_gains(acquired: Acquired, delay: Delay) -> Iterator[str]:
             yield f"the record {shown(sensor.name)} is {times:.3g} times its simulation in the first 5 ms: {words}"
 
 
-def force_ends(acquired: Acquired, band: tuple[float, float]) -> float | None:
-    """Return the lowest frequency in a band at which the spectrum of the measured force has fallen by 20 dB [Hz]; None if there is none."""
-    if acquired.force is None:
-        return None
-    begin = acquired.onsets[0]
-    over = max(end - onset for end, onset in zip(acquired.ends, acquired.onsets, strict=True))
-    pulse = acquired.force[begin : begin + max(4, over + 2)]
-    spectrum = np.abs(np.fft.rfft(pulse, 4096))
-    frequency = np.fft.rfftfreq(4096, 1.0 / acquired.rate)
-    weak = frequency[(spectrum < _SOFT * spectrum[0]) & (frequency <= band[1])]
-    return float(weak[0]) if len(weak) else None
-
-
-def _of_force(acquired: Acquired, delay: Delay, band: tuple[float, float], sought: tuple[float, float]) -> Iterator[str]:
+def _of_force(acquired: Acquired, delay: Delay) -> Iterator[str]:
     """Yield the doubts about the force of a hammer."""
     assert acquired.force is not None
     yield from _clipped("the force", acquired.force, acquired.recorded[-1], acquired.onsets[0])
@@ -116,11 +105,21 @@ def _of_force(acquired: Acquired, delay: Delay, band: tuple[float, float], sough
     samples = delay.time * acquired.rate
     if abs(samples) > _TOGETHER:
         yield f"the records come {samples:.3g} samples later than computed from the force: the channels were not sampled simultaneously"
-    if acquired.pulses > len(acquired.onsets):
-        yield f"double hit of the hammer: there are {acquired.pulses} pulses of force in {len(acquired.onsets)} hits"
-    ends = force_ends(acquired, sought)
-    if ends is not None and ends < band[1]:
-        yield f"the spectrum of the force has fallen by 20 dB at {ends:.4g} Hz; use a harder tip, or a band that ends there"
-    elif ends is not None:
-        words = "only decays are evaluated above; use a harder tip to compare more, or state a band"
-        yield f"the spectrum of the force has fallen by 20 dB at {ends:.4g} Hz, where the band ends: {words}"
+    if len(acquired.pulses) > len(acquired.onsets):
+        yield f"double hit of the hammer: there are {len(acquired.pulses)} pulses of force in {len(acquired.onsets)} hits"
+
+
+def _of_excitation(acquired: Acquired, excited: Excited) -> Iterator[str]:
+    """Yield where the force excites little."""
+    band, ends = excited.compared, excited.ends
+    if ends is None:
+        return
+    measured = acquired.force is not None
+    fallen = f"the spectrum of {'the force' if measured else 'the contact force of the case'} has fallen by 20 dB at {ends:.4g} Hz"
+    harder = "a harder tip" if measured else "a smaller or harder sphere"
+    if not is_excited(band, ends):
+        yield f"{fallen}, and the band begins at {band[0]:.4g} Hz: hardly anything is excited in it; use {harder}"
+    elif ends == band[1]:
+        yield f"{fallen}, where the band ends: only decays are evaluated above; use {harder} to compare more, or state a band"
+    elif measured:  # what is divided by it is noise
+        yield f"{fallen}; use {harder}, or a band that ends there"

@@ -15,9 +15,9 @@ from vibroimpact.correlation.charts import correlation_charts
 from vibroimpact.correlation.correlate import Correlation
 from vibroimpact.correlation.document import (
     MODE_COLUMNS,
-    MODE_HEADERS,
     RECORD_HEADERS,
-    mode_rows,
+    TEXTS,
+    mode_cells,
     mode_table,
     octave_headers,
     octave_rows,
@@ -93,8 +93,8 @@ def save_correlation(found: Correlation, directory: str | PathLike[str], *, forc
             octave_headers=octave_headers(found),
             octaves=octave_rows(found),
             of=what_frac_is_of(found),
-            mode_headers=list(MODE_HEADERS),
-            modes=mode_rows(found),
+            modes=mode_cells(found.modes),
+            texts=TEXTS,
             damping=damping_field(found.modes),
             doubts=found.doubts,
             version=__version__,

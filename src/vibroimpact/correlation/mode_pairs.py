@@ -15,9 +15,11 @@ from vibroimpact.signals.decay.find import DecayMode
 
 _FAR = 0.05
 """Relative difference of frequencies from which on two modes are not one."""
+FEWEST = 3
+"""Least number of modes whose frequencies have anything in common."""
 _HEARD = 1e-3
 """Response of a mode, relative to the strongest in the band, from which on it may be found in the records."""
-_WEAK = 0.02
+WEAK = 0.02
 """Response below which nobody wonders that it is not."""
 
 
@@ -67,7 +69,8 @@ class ModePair:
 def pairs_of(problem: Problem, sensors: Sequence[Sensor], found: Sequence[DecayMode], band: tuple[float, float]) -> tuple[ModePair, ...]:
     """Return the modes of a plate within a band beside measured ones, in the order of their frequencies.
 
-    Pairs are those whose relative differences of frequency have the least sum; modes that no sensor hears have none.
+    Pairs are those whose relative differences of frequency have the least sum, aside from what all have in common where that makes it less;
+    modes that no sensor hears have none.
     """
     modes = problem.plate.modes
     assert modes is not None  # `plate_problem` has seen to it
@@ -86,7 +89,12 @@ def paired(
     taken = set(partner.values())
     nan = float("nan")
     rows += [ModePair(None, nan, nan, nan, mode, "no mode of the case nearby") for number, mode in enumerate(found) if number not in taken]
-    return tuple(sorted(rows, key=lambda row: row.frequency if row.measured is None else row.measured.frequency.value))
+    return tuple(sorted(rows, key=_place))
+
+
+def _place(pair: ModePair) -> float:
+    """Return by which frequency a mode has its place among others: that of the case, if it has one."""
+    return pair.measured.frequency.value if pair.number is None and pair.measured is not None else pair.frequency
 
 
 def _responses(problem: Problem, sensors: Sequence[Sensor]) -> Floats:
@@ -103,11 +111,23 @@ def _partners(places: Floats, response: Floats, measured: Sequence[float]) -> di
     heard = np.flatnonzero(response >= _HEARD)
     if not len(heard) or not len(measured):
         return {}
-    cost = np.abs(np.log(np.asarray(measured)[None] / places[heard][:, None]))
+    apart = np.log(np.asarray(measured)[None] / places[heard][:, None])
+    found, sum_of_differences = _nearest(apart)
+    if len(found) >= FEWEST:
+        # a wrong modulus moves all: where modes are dense, some are nearer to a neighbour than to their own
+        shift = float(np.median([apart[pair] for pair in found]))
+        again, other_sum = _nearest(apart - shift)
+        found = again if other_sum < sum_of_differences else found
+    return {int(heard[row]): column for row, column in found}
+
+
+def _nearest(apart: Floats) -> tuple[list[tuple[int, int]], float]:
+    """Return the pairs, (row, column), of the least sum of magnitudes of differences (rows, columns), and this sum."""
     # to leave both alone costs as much as a pair that is too far
-    rows, columns = linear_sum_assignment(np.minimum(cost, _FAR))
+    cost = np.minimum(np.abs(apart), _FAR)
+    rows, columns = linear_sum_assignment(cost)
     near = cost[rows, columns] < _FAR
-    return dict(zip(heard[rows[near]].tolist(), columns[near].tolist(), strict=True))
+    return list(zip(rows[near].tolist(), columns[near].tolist(), strict=True)), float(cost[rows, columns].sum())
 
 
 def _of_case(
@@ -117,7 +137,7 @@ def _of_case(
         measured = found[partner[number]] if number in partner else None
         remark = "" if measured is None else measured.doubt
         if measured is None:
-            remark = f"weak: {100.0 * share:.2g} % of the strongest" if share < _WEAK else _missing(float(place), float(ratio), found)
+            remark = f"weak: {100.0 * share:.2g} % of the strongest" if share < WEAK else _missing(float(place), float(ratio), found)
         yield ModePair(index + 1, float(place), float(ratio), float(share), measured, remark)
 
 

@@ -35,8 +35,8 @@ class Pushes:
     ----------
     time, impulse : array, shape (n,)
         Times [s] and impulses [N s] that stand for it.
-    contacts : array, shape (impacts, 2)
-        Begin and end of each contact [s].
+    contacts : array, shape (contacts, 2)
+        Begin and end of each contact, or of each pulse of a measured force [s].
     """
 
     time: Floats

@@ -9,9 +9,9 @@ from rich.text import Text
 
 from vibroimpact.correlation.correlate import Correlation
 from vibroimpact.correlation.document import (
-    MODE_HEADERS,
     RECORD_HEADERS,
-    mode_rows,
+    TEXTS,
+    mode_cells,
     octave_headers,
     octave_rows,
     record_rows,
@@ -27,18 +27,18 @@ def correlation_summary(found: Correlation) -> RenderableType:
     octaves = octave_rows(found)
     parts: list[RenderableType] = [
         Text(found.case.name or "a test", style="bold"),
-        criteria_table(RECORD_HEADERS, record_rows(found), ("Record", "Polarity")),
+        criteria_table(RECORD_HEADERS, record_rows(found)),
         Text(f"\nFRAC of {what_frac_is_of(found)}"),
-        criteria_table(octave_headers(found), octaves, ("Band",)),
+        criteria_table(octave_headers(found), octaves),
         Text("\nmodes"),
-        criteria_table(MODE_HEADERS, mode_rows(found), ("Remark",)),
+        criteria_table(*mode_cells(found.modes)),
     ]
     if damping := damping_field(found.modes):
         parts.append(Text(f"\nin [plate] of the case:\n{damping}"))
     return Group(*parts, *doubt_lines(found.doubts))
 
 
-def criteria_table(headers: Sequence[str], rows: Sequence[Sequence[str]], texts: Sequence[str]) -> TerminalTable:
-    """Return a table of a correlation for the terminal; `texts` are the headers of columns of words."""
+def criteria_table(headers: Sequence[str], rows: Sequence[Sequence[str]]) -> TerminalTable:
+    """Return a table of a correlation for the terminal."""
     columns = zip(headers, zip(*rows, strict=True), strict=True) if rows else ((head, ()) for head in headers)
-    return TerminalTable([TerminalColumn(head, cells, text=head in texts) for head, cells in columns])
+    return TerminalTable([TerminalColumn(head, cells, text=head in TEXTS) for head, cells in columns])

@@ -29,6 +29,7 @@ _MULTIPLES: dict[str, tuple[Multiple, ...]] = {
     "s": (Multiple("s", 1.0), Multiple("ms", 1e-3), Multiple("µs", 1e-6), Multiple("ns", 1e-9)),
     "m/s": (Multiple("m/s", 1.0), Multiple("mm/s", 1e-3), Multiple("µm/s", 1e-6)),
     "m/s2": (Multiple("m/s²", 1.0), Multiple("mm/s²", 1e-3)),  # nobody reads km/s²
+    "m/s2/N": (Multiple("m/s²/N", 1.0),),
     "N": (Multiple("MN", 1e6), Multiple("kN", 1e3), Multiple("N", 1.0), Multiple("mN", 1e-3), Multiple("µN", 1e-6), Multiple("nN", 1e-9)),
     "J": (
         Multiple("MJ", 1e6),

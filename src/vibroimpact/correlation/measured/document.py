@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from vibroimpact._version import __version__
-from vibroimpact.correlation.document import MODE_COLUMNS, MODE_HEADERS, mode_record, mode_row
+from vibroimpact.correlation.document import MODE_COLUMNS, MODE_HEADERS, TEXTS, mode_cells, mode_record, mode_row, without_blank_remarks
 from vibroimpact.correlation.measured.modes_of_file import MeasuredModes
 from vibroimpact.modes.measured_table import MeasuredTable
 
@@ -21,7 +21,7 @@ def measured_table(found: MeasuredModes) -> tuple[list[str], list[list[str]]]:
     for number, pair in enumerate(found.modes, start=1):
         cells = dict(zip(MODE_HEADERS, mode_row(pair), strict=True)) | {"Mode": str(number)}
         rows.append([cells[head] for head in _OF_MEASURED])
-    return list(_OF_MEASURED), rows
+    return without_blank_remarks(_OF_MEASURED, rows)
 
 
 def measured_records(found: MeasuredModes) -> list[dict[str, Any]]:
@@ -34,8 +34,8 @@ def measured_records(found: MeasuredModes) -> list[dict[str, Any]]:
 
 def compared_table(found: MeasuredModes) -> MeasuredTable:
     """Return the modes of a case and measured ones as the folder of the case's modes has them."""
-    cells, rows = [mode_row(pair) for pair in found.modes], [mode_record(pair) for pair in found.modes]
-    return MeasuredTable(MODE_HEADERS, cells, MODE_COLUMNS, rows, found.doubts)
+    rows = [mode_record(pair) for pair in found.modes]
+    return MeasuredTable(*mode_cells(found.modes), TEXTS, MODE_COLUMNS, rows, found.doubts)
 
 
 def summary_of_measured(found: MeasuredModes) -> dict[str, Any]:

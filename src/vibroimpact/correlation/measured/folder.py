@@ -15,6 +15,7 @@ from vibroimpact.charts.figures_folder import write_figures
 from vibroimpact.charts.made import made_charts
 from vibroimpact.charts.marks import Mark, Rug
 from vibroimpact.correlation.charts import MOST, magnitude_lines
+from vibroimpact.correlation.document import TEXTS
 from vibroimpact.correlation.measured.document import MEASURED_COLUMNS, measured_records, measured_table, summary_of_measured
 from vibroimpact.correlation.measured.modes_of_file import MeasuredModes
 from vibroimpact.report.page import render_page
@@ -52,7 +53,17 @@ def save_measured_modes(
         charts = made_charts({"responses": lambda: _chart(found)})
         write_figures(charts, folder, figures)
         headers, rows = measured_table(found)
-        page = render_page(__package__, charts, name=name, headers=headers, modes=rows, doubts=found.doubts, version=__version__)
+        page = render_page(
+            __package__,
+            charts,
+            name=name,
+            headers=headers,
+            modes=rows,
+            texts=TEXTS,
+            sources=list(dict.fromkeys(visible(one.source) for one in found.responses)),
+            doubts=found.doubts,
+            version=__version__,
+        )
         (folder / "report.html").write_text(page, encoding="utf-8")
     return Path(directory)
 

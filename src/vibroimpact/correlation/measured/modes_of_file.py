@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from os import PathLike
 
@@ -10,13 +10,13 @@ import numpy as np
 
 from vibroimpact.arrays import Complex, Floats
 from vibroimpact.correlation.mode_pairs import ModePair, paired
-from vibroimpact.correlation.responses.common_error import common_difference
 from vibroimpact.correlation.responses.doubts import doubts_of_files, doubts_of_resolution
+from vibroimpact.correlation.shared_differences import shared_differences
 from vibroimpact.errors import InputError
 from vibroimpact.signals.decay.find import DecayMode
 from vibroimpact.signals.decay.responses import common_lines, modes_in_responses
 from vibroimpact.signals.frequency_response import FrequencyResponse
-from vibroimpact.signals.reading.universal_responses import read_responses
+from vibroimpact.signals.reading.universal_responses import contents_of, read_responses
 from vibroimpact.structures.modal_model import ModalBasis
 
 
@@ -80,8 +80,7 @@ def modes_beside(basis: ModalBasis | None, paths: Sequence[str | PathLike[str]])
         raise InputError(f"{words}, and the responses from {frequency[0]:.5g} to {frequency[-1]:.5g} Hz; they have no mode in common")
     found = modes_in_responses(responses, band)
     pairs = paired(basis.frequencies, basis.damping_ratios, np.ones(len(basis.frequencies)), found, band)
-    common = common_difference(pairs)
-    doubts = (*_doubts(responses, found, frequency), *([] if common is None else [common.sentence]))
+    doubts = (*_doubts(responses, found, frequency), *shared_differences(pairs).sentences)
     return MeasuredModes(responses, frequency, value, pairs, doubts)
 
 
@@ -91,4 +90,13 @@ def _read(paths: Sequence[str | PathLike[str]]) -> tuple[tuple[FrequencyResponse
 
 
 def _doubts(responses: Sequence[FrequencyResponse], found: Sequence[DecayMode], frequency: Floats) -> tuple[str, ...]:
-    return (*doubts_of_files(responses), *doubts_of_resolution(found, frequency))
+    return (*_of_records(responses), *doubts_of_files(responses), *doubts_of_resolution(found, frequency))
+
+
+def _of_records(responses: Sequence[FrequencyResponse]) -> Iterator[str]:
+    """Yield which files have records over time too."""
+    for source in dict.fromkeys(one.source for one in responses):
+        number = len(contents_of(source).records)
+        if number:
+            records = f"{number} record{'s' if number > 1 else ''} over time"
+            yield f"{source} has {records} too, of which these modes are not; correlate compares them with a case"

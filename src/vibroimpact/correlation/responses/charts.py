@@ -6,6 +6,7 @@ from functools import partial
 
 import numpy as np
 
+from vibroimpact.arrays import Complex, Floats
 from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.made import made_charts
@@ -44,13 +45,13 @@ def response_charts(found: ResponseCorrelation) -> list[Chart]:
 def _responses(found: ResponseCorrelation) -> Chart:
     axis = Axis("Frequency", "Hz", range=found.band)
     computed = np.array([pair.frequency for pair in found.modes if pair.number is not None])
-    turns = Axis("Phase", "°", range=(-180.0, 180.0))
+    turns = Axis("Phase", "°", range=(-190.0, 190.0))
     rows: list[tuple[Panel, ...]] = []
     for number, sensor in enumerate(found.sensors[:MOST]):
         both = (found.measured_response[number], found.simulated_response[number])
         magnitudes, shown = magnitude_lines(found.frequency, both)
         scale = Axis("Magnitude", found.units[number], log=True, range=shown)
-        phases = [Line(found.frequency, np.degrees(np.angle(one)), name, role) for one, (name, role) in zip(both, _LOOKS, strict=True)]
+        phases = [Line(*_phase(found.frequency, one), name, role) for one, (name, role) in zip(both, _LOOKS, strict=True)]
         title = f"{shortened(visible(sensor.name), 40)}: FRAC {found.frac[number]:.3f}"
         rows.append((Panel(axis, scale, (*magnitudes, Rug(computed, "modes of the case")), title),))
         rows.append((Panel(axis, turns, tuple(phases), "Phase"),))
@@ -61,3 +62,10 @@ def _responses(found: ResponseCorrelation) -> Chart:
         f"Measured frequency responses to a force at {visible(found.reference)}, and those of the case. Ticks mark the modes of the case."
     )
     return Chart("responses", "Frequency responses", tuple(rows), caption)
+
+
+def _phase(frequency: Floats, response: Complex) -> tuple[Floats, Floats]:
+    """Return the frequencies and the phases [°] of a line, which is interrupted where a phase goes on at the other end of the axis."""
+    phase = np.degrees(np.angle(response))
+    turns = np.flatnonzero(np.abs(np.diff(phase)) > 180.0) + 1
+    return np.insert(frequency, turns, frequency[turns]), np.insert(phase, turns, np.nan)

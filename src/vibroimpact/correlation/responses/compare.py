@@ -11,11 +11,11 @@ from vibroimpact.arrays import Bools, Complex, Floats
 from vibroimpact.cases.schema import CaseTable
 from vibroimpact.correlation.mode_pairs import pairs_of
 from vibroimpact.correlation.octaves import frac_of_octaves, octaves_of
-from vibroimpact.correlation.responses.common_error import common_difference
 from vibroimpact.correlation.responses.computed import computed_responses
 from vibroimpact.correlation.responses.doubts import doubts_about
 from vibroimpact.correlation.responses.matching import UP, Matched, matched, unit_of
 from vibroimpact.correlation.responses.result import ResponseCorrelation
+from vibroimpact.correlation.shared_differences import shared_differences
 from vibroimpact.correlation.simulated import plate_problem
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.errors import InputError
@@ -84,12 +84,13 @@ def correlate_responses(
         raise InputError(f"{words}, and the responses are from {frequency[0]:.5g} to {frequency[-1]:.5g} Hz; {_FEWEST} are needed")
     found = modes_in_responses(match.responses, used)
     pairs = pairs_of(problem, match.sensors, found, used)
-    common = common_difference(pairs)
-    factor = 1.0 if common is None else 1.0 + common.value
+    differences = shared_differences(pairs)
     units = tuple(one.unit or unit_of(sensor) for sensor, one in zip(match.sensors, match.responses, strict=True))
     stated = np.array(match.signs)[:, None]
-    simulated, scaled = (stated * computed_responses(problem, match.sensors, units, frequency[inside] / by) for by in (1.0, factor))
-    polarity = _polarity(value[:, inside], scaled, match)
+    as_scaled = differences.scaled(problem)
+    plates = (problem, as_scaled, differences.damped(as_scaled))
+    simulated, scaled, damped = (stated * computed_responses(plate, match.sensors, units, frequency[inside]) for plate in plates)
+    polarity = _polarity(value[:, inside], damped, match)
     measured = polarity[:, None] * value[:, inside]
     octaves = octaves_of(used)
     compared = ResponseCorrelation(
@@ -108,10 +109,11 @@ def correlate_responses(
         frac=frac(measured, simulated),
         octave_frac=frac_of_octaves(octaves, frequency[inside], measured, simulated),
         scaled_frac=frac(measured, scaled),
+        damped_frac=frac(measured, damped),
         modes=pairs,
         doubts=(),
     )
-    return replace(compared, doubts=tuple(doubts_about(compared, problem, match, common, _norms(measured) / _norms(scaled))))
+    return replace(compared, doubts=tuple(doubts_about(compared, problem, match, differences, _norms(measured) / _norms(damped))))
 
 
 def responses_of_case(case: CaseTable, frequency: object, progress: Callable[[float], None] | None = None) -> tuple[FrequencyResponse, ...]:

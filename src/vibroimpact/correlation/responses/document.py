@@ -12,7 +12,7 @@ from vibroimpact.correlation.mode_pairs import damping_field
 from vibroimpact.correlation.responses.doubts import COHERENT
 from vibroimpact.correlation.responses.result import ResponseCorrelation
 from vibroimpact.shown import visible
-from vibroimpact.units.display import MISSING, digits
+from vibroimpact.units.display import MISSING, digits, multiple
 
 RESPONSE_HEADERS = ("Response", "Unit", "Polarity", "Measured over simulated", "Level, dB", "Phase, °", "FRAC", "Coherence")
 """Headers of the table of responses."""
@@ -35,7 +35,7 @@ def response_rows(found: ResponseCorrelation) -> list[list[str]]:
     return [
         [
             visible(sensor.name),
-            unit,
+            multiple(unit, 0.0).unit,
             "inverted" if sign < 0.0 else "as simulated",
             digits(scale, 4),
             f"{level:.2f}",
@@ -74,6 +74,7 @@ def summary_of_responses(found: ResponseCorrelation) -> dict[str, Any]:
                 "frac": float(found.frac[number]),
                 "octave_frac": [None if np.isnan(value) else float(value) for value in found.octave_frac[number]],
                 "scaled_frac": float(found.scaled_frac[number]),
+                "damped_frac": float(found.damped_frac[number]),
                 "coherence_median": coherences[number],
                 "coherence_low_part": None
                 if found.coherence is None or coherences[number] is None

@@ -7,9 +7,9 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.correlation.responses.common_error import CommonDifference
 from vibroimpact.correlation.responses.matching import Matched
 from vibroimpact.correlation.responses.result import ResponseCorrelation
+from vibroimpact.correlation.shared_differences import SharedDifferences, doubts_of_differences
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.shown import shown
 from vibroimpact.signals.decay.find import DecayMode
@@ -29,7 +29,7 @@ _NAMED = 4
 
 
 def doubts_about(
-    found: ResponseCorrelation, problem: Problem, match: Matched, common: CommonDifference | None, scale: Floats
+    found: ResponseCorrelation, problem: Problem, match: Matched, differences: SharedDifferences, scale: Floats
 ) -> Iterator[str]:
     """Yield the doubts about a correlation, one sentence each without its full stop.
 
@@ -41,10 +41,10 @@ def doubts_about(
         The problem of the case.
     match : Matched
         The responses.
-    common : CommonDifference or None
-        What all frequencies have in common.
+    differences : SharedDifferences
+        What the measured modes have in common that the case has not.
     scale : array, shape (S,)
-        Measured over simulated size.
+        Measured over simulated size, without these differences.
     """
     yield from doubts_of_files(match.responses)
     if match.left_out:
@@ -54,9 +54,8 @@ def doubts_about(
     for name, sign in zip((sensor.name for sensor in found.sensors), found.polarity, strict=True):
         if sign < 0.0:
             yield f"the response {shown(name)} has inverted polarity; its sign is changed"
-    if common is not None:
-        yield f"{common.sentence}; with that FRAC is {_range(found.scaled_frac)}, and {_range(found.frac)} without"
-    for name, size, of in zip((sensor.name for sensor in found.sensors), scale, found.scaled_frac, strict=True):
+    yield from doubts_of_differences(differences, found.frac, found.scaled_frac, found.damped_frac)
+    for name, size, of in zip((sensor.name for sensor in found.sensors), scale, found.damped_frac, strict=True):
         if abs(size - 1.0) > (_GAIN if of > _ALIKE else _LARGE_GAIN):
             yield f"the response {shown(name)} has {size:.3g} times the size that is simulated: a wrong sensitivity, mass or damping"
     yield from _of_coherence(found)
@@ -81,11 +80,6 @@ def _few(names: Sequence[str]) -> str:
     return f"{', '.join(names[:_NAMED])}{' and more' if len(names) > _NAMED else ''}"
 
 
-def _range(values: Floats) -> str:
-    least, most = (f"{value:.3f}" for value in (values.min(), values.max()))
-    return least if least == most else f"{least} to {most}"
-
-
 def _of_coherence(found: ResponseCorrelation) -> Iterator[str]:
     """Yield where a response is not coherent with the force."""
     if found.coherence is None:
@@ -95,7 +89,7 @@ def _of_coherence(found: ResponseCorrelation) -> Iterator[str]:
     for sensor, coherence in zip(found.sensors, found.coherence, strict=True):
         part = float((coherence < COHERENT).mean())
         low = [f"{found.frequency[line]:.4g}" for line in nearest if coherence[line] < COHERENT]
-        at = f"at the modes of {_few(low)} Hz" if low else ""
+        at = f"at the mode{'s' if len(low) > 1 else ''} of {_few(low)} Hz" if low else ""
         many = f"at {100.0 * part:.2g} % of the frequencies" if part > _MANY else ""
         if at or many:
             words = f"the coherence of {shown(sensor.name)} is below {COHERENT} {' and '.join(filter(None, (at, many)))}"
@@ -107,5 +101,6 @@ def doubts_of_resolution(modes: Sequence[DecayMode], frequency: Floats) -> Itera
     step = float(np.median(np.diff(frequency)))
     narrow = [f"{mode.frequency.value:.4g}" for mode in modes if 2.0 * mode.damping_ratio.value * mode.frequency.value < _LINES * step]
     if narrow:
-        words = f"the half-power bandwidths of the modes of {_few(narrow)} Hz have fewer than {_LINES} frequencies {step:.3g} Hz apart"
+        places = f"bandwidths of the modes of {_few(narrow)} Hz have" if len(narrow) > 1 else f"bandwidth of the mode of {narrow[0]} Hz has"
+        words = f"the half-power {places} fewer than {_LINES} frequencies {step:.3g} Hz apart"
         yield f"{words}: a window or a record that was cut off makes damping look larger; measure longer"

@@ -13,8 +13,8 @@ from vibroimpact.cases.build import resolved_case
 from vibroimpact.charts.figures_folder import write_figures
 from vibroimpact.correlation.document import (
     MODE_COLUMNS,
-    MODE_HEADERS,
-    mode_rows,
+    TEXTS,
+    mode_cells,
     mode_table,
     octave_headers,
     octave_rows,
@@ -86,8 +86,8 @@ def save_response_correlation(
             octave_headers=octave_headers(found),
             octaves=octave_rows(found),
             of=WHAT_FRAC_IS_OF,
-            mode_headers=list(MODE_HEADERS),
-            modes=mode_rows(found),
+            modes=mode_cells(found.modes),
+            texts=TEXTS,
             damping=damping_field(found.modes),
             doubts=found.doubts,
             version=__version__,

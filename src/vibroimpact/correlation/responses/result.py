@@ -44,6 +44,8 @@ class ResponseCorrelation:
         Frequency response assurance criterion over the band, and over each octave; NaN with fewer than four frequencies in it.
     scaled_frac : array, shape (S,)
         The criterion with the frequencies of the case scaled by what all of them have in common.
+    damped_frac : array, shape (S,)
+        The criterion with these frequencies and the measured damping ratios, where they differ from the case's.
     modes : tuple of ModePair
         The modes of the case and of the responses.
     doubts : tuple of str
@@ -79,6 +81,7 @@ class ResponseCorrelation:
     frac: Floats
     octave_frac: Floats
     scaled_frac: Floats
+    damped_frac: Floats
     modes: tuple[ModePair, ...]
     doubts: tuple[str, ...]
 

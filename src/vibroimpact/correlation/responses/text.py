@@ -5,7 +5,7 @@ from __future__ import annotations
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from vibroimpact.correlation.document import MODE_HEADERS, mode_rows, octave_headers, octave_rows
+from vibroimpact.correlation.document import mode_cells, octave_headers, octave_rows
 from vibroimpact.correlation.mode_pairs import damping_field
 from vibroimpact.correlation.responses.document import RESPONSE_HEADERS, WHAT_FRAC_IS_OF, response_rows
 from vibroimpact.correlation.responses.result import ResponseCorrelation
@@ -17,11 +17,11 @@ def response_summary(found: ResponseCorrelation) -> RenderableType:
     """Return how frequency responses agree, the modes of both, the damping to be put into the case, and the doubts, for the terminal."""
     parts: list[RenderableType] = [
         Text(found.case.name or "a test", style="bold"),
-        criteria_table(RESPONSE_HEADERS, response_rows(found), ("Response", "Unit", "Polarity")),
+        criteria_table(RESPONSE_HEADERS, response_rows(found)),
         Text(f"\nFRAC of {WHAT_FRAC_IS_OF}"),
-        criteria_table(octave_headers(found), octave_rows(found), ("Band",)),
+        criteria_table(octave_headers(found), octave_rows(found)),
         Text("\nmodes"),
-        criteria_table(MODE_HEADERS, mode_rows(found), ("Remark",)),
+        criteria_table(*mode_cells(found.modes)),
     ]
     if damping := damping_field(found.modes):
         parts.append(Text(f"\nin [plate] of the case:\n{damping}"))

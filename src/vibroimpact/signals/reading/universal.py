@@ -34,7 +34,12 @@ def universal_records(path: Path) -> Iterator[Record]:
             rate = rate_of(one.time)
         except InputError as error:
             raise InputError(f"{path}, function {one.number} {shown(one.identification)}: {error.message}") from None
-        yield Record(one.identification or f"function {one.number}", factor * one.values, rate, unit, float(one.time[0]))
+        yield Record(record_name(one), factor * one.values, rate, unit, float(one.time[0]))
+
+
+def record_name(one: Function) -> str:
+    """Return the name of a function of time: its first identification line, or its number."""
+    return one.identification or f"function {one.number}"
 
 
 def _unit(one: Function, factors: dict[str, float] | None) -> tuple[float, str]:

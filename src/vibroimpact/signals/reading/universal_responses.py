@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 from os import PathLike
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -22,6 +23,7 @@ from vibroimpact.measurements.universal_file import (
 from vibroimpact.shown import shown
 from vibroimpact.signals.frequency_response import RESPONSE_UNITS, DegreeOfFreedom, FrequencyResponse
 from vibroimpact.signals.reading.si_units import in_si
+from vibroimpact.signals.reading.universal import record_name
 from vibroimpact.units.reading import to_si
 
 _MOTIONS = {8: "m", 11: "m/s", 12: "m/s2"}
@@ -31,8 +33,15 @@ _OVER = 1e-3
 """By how much a coherence exceeds 1 that is rounded."""
 
 
-def holds_responses(path: str | PathLike[str]) -> bool:
-    """Return whether a file is a universal file with frequency responses and without functions of time, which would be its records.
+class Contents(NamedTuple):
+    """What a file of a test has: the names of its records over time, and the number of its frequency responses."""
+
+    records: tuple[str, ...]
+    responses: int
+
+
+def contents_of(path: str | PathLike[str]) -> Contents:
+    """Return what a file has; of a file that is not universal, which has records alone, its own name.
 
     Raises
     ------
@@ -40,9 +49,10 @@ def holds_responses(path: str | PathLike[str]) -> bool:
         If it is a universal file that can't be read.
     """
     if not Path(path).is_file() or not is_universal(Path(path)):
-        return False
+        return Contents((str(path),), 0)
     file = read_universal_file(Path(path))
-    return not file.functions and any(one.function_type == FREQUENCY_RESPONSE for one in file.of_frequency)
+    responses = sum(one.function_type == FREQUENCY_RESPONSE for one in file.of_frequency)
+    return Contents(tuple(record_name(one) for one in file.functions), responses)
 
 
 def read_responses(path: str | PathLike[str]) -> tuple[FrequencyResponse, ...]:
