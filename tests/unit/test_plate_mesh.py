@@ -51,7 +51,7 @@ def case(size: tuple[float, float, float] = SIZE, local: str = "consistent", **p
 @pytest.mark.parametrize("theory", ["thick", "thin"])
 @pytest.mark.parametrize("supports", SUPPORTS)
 def test_it_is_what_smaller_elements_add(supports: str, theory: str) -> None:
-    """Of elements of nine thicknesses, beside elements of three: within 5 %. What supports within the plate lack besides is not asked for."""
+    """Of elements of nine thicknesses, beside elements of three: within 5 %. Of supports within the plate nothing is asked."""
     coarse, fine = (
         plate_recipe(SIZE, STEEL, Reduction(modes=4), SUPPORTS[supports], element_size=size, theory=theory) for size in (0.009, 0.003)
     )
