@@ -19,7 +19,7 @@ from stated import ROOT, says
 from support import plain_case
 from vibroimpact.cases import sensor_doubts
 from vibroimpact.cases.fields.size_limits import MOST_ITEMS
-from vibroimpact.cases.limits import modes_left_out, plate_waves, small_contact
+from vibroimpact.cases.limits import modes_left_out, plate_mesh, plate_waves, small_contact
 from vibroimpact.dynamics.sensors import antialias
 from vibroimpact.dynamics.vibrating import visit
 from vibroimpact.structures.plate_waves import bending_factor
@@ -141,6 +141,7 @@ def test_filters() -> None:
 def test_thresholds_of_doubts() -> None:
     says(PAGE, "or if the estimate exceeds {} %", 100.0 * modes_left_out._TRUNCATED)
     says(PAGE, "right within a third. Above {} % a doubt is raised", 100.0 * plate_waves.LIMITS[0].threshold)
+    says(PAGE, "Above {} % a doubt is raised, with an element size", 100.0 * plate_mesh.LIMITS[0].threshold)
     says(PAGE, "(more than {} % of the rms value", 100.0 * sensor_doubts._PROMISED)
     says(PAGE, "contact radii up to about {} radii", small_contact.LIMITS[0].threshold)
 

@@ -47,6 +47,8 @@ class DropSummary:
         `RELATIVE_CHANGE`, or of the tolerance if that is larger.
     plate_theory : float
         For a single drop on plate elements: estimated part by which its first largest force is too large due to plate theory.
+    plate_mesh : float
+        For a single drop on plate elements: estimated part by which its first largest force is too large due to the mesh.
     slowest : float or array
         Lowest approach speed of its impacts [m/s].
     """
@@ -59,6 +61,7 @@ class DropSummary:
     modes: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     changes: Array = 0.0
     plate_theory: Array = math.nan
+    plate_mesh: Array = math.nan
     slowest: Array = math.nan
 
 

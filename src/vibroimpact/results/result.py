@@ -15,6 +15,7 @@ from vibroimpact._version import __version__
 from vibroimpact.arrays import Floats
 from vibroimpact.cases.conditions import DropSummary
 from vibroimpact.cases.doubts import doubts
+from vibroimpact.cases.limits.plate_mesh import plate_mesh_error
 from vibroimpact.cases.limits.plate_waves import plate_theory_error
 from vibroimpact.cases.sensor_doubts import sensor_doubts
 from vibroimpact.dynamics.change_by_impact import RELATIVE_CHANGE, change_by_impact
@@ -123,9 +124,9 @@ class Result:
         duration, speed = time_of_contact(self.impacts), float(self.impacts["approach_speed_m_s"][0])
         deflection = float(self.peaks.get("plate", {}).get("max_bending_m") or math.nan)
         modes = {body: (part, self.frequencies(body)[-1]) for body, part in self.truncation.items()}
-        theory = plate_theory_error(self.deformation, self.impacts)
+        theory, mesh = (error(self.deformation, self.impacts) for error in (plate_theory_error, plate_mesh_error))
         slowest = float(self.impacts["approach_speed_m_s"].min())
-        return DropSummary(force, depth, duration, speed, deflection, modes, self.change_by_impact, theory, slowest)
+        return DropSummary(force, depth, duration, speed, deflection, modes, self.change_by_impact, theory, mesh, slowest)
 
     @property
     def name(self) -> str:

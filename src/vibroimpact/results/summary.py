@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+from vibroimpact.cases.limits.plate_mesh import PLATE_MESH_COMPLIANCE
 from vibroimpact.cases.limits.plate_waves import PLATE_THEORY_INERTIA
 from vibroimpact.results.csv_files import impact_rows
 from vibroimpact.results.result import Result
@@ -68,8 +69,8 @@ def check_types(summary: Mapping[str, Any]) -> None:
     for key, kinds in (("provenance", (str,)), ("deformation", (str, int, float)), ("truncation", (int, float, type(None)))):
         table = summary.get(key, {})
         _check(key, isinstance(table, dict) and all(isinstance(value, kinds) for value in table.values()))
-    inertia = summary.get("deformation", {}).get(PLATE_THEORY_INERTIA, 0.0)
-    _check(PLATE_THEORY_INERTIA, isinstance(inertia, (int, float)))
+    for fact in (PLATE_THEORY_INERTIA, PLATE_MESH_COMPLIANCE):
+        _check(fact, isinstance(summary.get("deformation", {}).get(fact, 0.0), (int, float)))
     for body in ("sphere", "plate"):
         peaks = summary.get(body, {})
         _check(body, isinstance(peaks, dict) and all(_is_peak(value) for value in peaks.values()))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from vibroimpact.cases.limits.plate_mesh import plate_mesh_error
 from vibroimpact.cases.limits.plate_waves import plate_theory_error
 from vibroimpact.results.result import Result
 from vibroimpact.units.display import digits, fixed, text
@@ -67,9 +68,9 @@ def deformation_rows(result: Result) -> list[tuple[str, str]]:
             rows.append(
                 (f"Estimated error of the largest force due to the modes of the {body} left out", f"{digits(100.0 * part, 2)}\u00a0%")
             )
-    lacking = plate_theory_error(facts, result.impacts)
-    if math.isfinite(lacking):
-        rows.append(("Estimated error of the largest force due to the limits of plate elements", f"{digits(100.0 * lacking, 2)}\u00a0%"))
+    for words, error in (("the mesh of the plate", plate_mesh_error), ("the limits of plate elements", plate_theory_error)):
+        if math.isfinite(part := error(facts, result.impacts)):
+            rows.append((f"Estimated error of the largest force due to {words}", f"{digits(100.0 * part, 2)}\u00a0%"))
     return rows
 
 

@@ -118,20 +118,47 @@ def computed_compliances(recipe: Recipe, places: Sequence[tuple[float, float]], 
     for thickness, place in zip(_thicknesses(structure, places), places, strict=True):
         material = _material_of_layer(structure.mesh, recipe, place, thickness)
         layer = thickness, material.youngs_modulus, material.poissons_ratio
-        if is_thin(recipe):
-            averages.append(Average(0.0, 0.0))
-            terms.append(0.0)
-        elif structure.mesh.is_flat:
-            factor = shear_factor(material.poissons_ratio)
-            averages.append(plate_theory_average(_RADIUS * thickness, thickness, material.poissons_ratio, factor))
-            terms.append(plate_theory_term(*layer, factor, averages[-1]))
+        if structure.mesh.is_flat:
+            averages.append(plate_element_average(thickness, material.poissons_ratio, is_thin(recipe)))
+            terms.append(0.0 if is_thin(recipe) else plate_theory_term(*layer, shear_factor(material.poissons_ratio), averages[-1]))
         else:
             averages.append(through_thickness_average(_RADIUS * thickness))
             terms.append(through_thickness_term(*layer, averages[-1]))
+    return averaged_compliances(held, elastic, places, averages, side) + terms
+
+
+def plate_element_average(thickness: float, poissons_ratio: float, thin: bool = False) -> Average:
+    """Return the average of force and displacement around a place of plate elements; by Kirchhoff's theory, `thin`, that of a point."""
+    if thin:
+        return Average(0.0, 0.0)
+    return plate_theory_average(_RADIUS * thickness, thickness, poissons_ratio, shear_factor(poissons_ratio))
+
+
+def averaged_compliances(
+    held: HeldStructure, elastic: ElasticSystem, places: Sequence[tuple[float, float]], averages: Sequence[Average], side: Side = "upper"
+) -> Floats:
+    """Return the averaged displacements of the opposite face under unit forces averaged in the same way, (places,) [m/N].
+
+    Parameters
+    ----------
+    held, elastic : HeldStructure, ElasticSystem
+        A held body, and its factorised system.
+    places : sequence of two floats
+        x and y [m].
+    averages : sequence of Average
+        One per place.
+    side : str, default "upper"
+        The loaded face: "upper" or "lower".
+
+    Raises
+    ------
+    InputError
+        If a place is not on the body.
+    """
     upper, lower = _faces(held, places, averages)
     load, opposite = (upper, lower) if side == "upper" else (lower, upper)
     moved = elastic.static(load.toarray().T)
-    return np.asarray(opposite.multiply(moved.T).sum(axis=1)) + terms
+    return np.asarray(opposite.multiply(moved.T).sum(axis=1))
 
 
 def _material_of_layer(mesh: Mesh, recipe: Recipe, place: tuple[float, float], thickness: float) -> Material:

@@ -291,6 +291,38 @@ def slope_divergence(mesh: Mesh, place: tuple[float, float]) -> csr_array:
     return csr_array(coo_array((gradients.ravel(), (np.zeros(gradients.size, dtype=np.int64), columns.ravel())), shape=shape))
 
 
+def element_at(mesh: Mesh, place: tuple[float, float]) -> tuple[Floats, Floats]:
+    """Return corners and local coordinates at a place of the plate element that contains it; of several, of the largest.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        Mesh of plate elements.
+    place : tuple of two floats
+        x and y [m].
+
+    Returns
+    -------
+    corners : array, shape (4, 2)
+        x and y of the corners in order [m].
+    local : array, shape (2,)
+        Position of the place from the first corner towards the second and the fourth, from 0 to 1.
+
+    Raises
+    ------
+    InputError
+        If the place is not on the body.
+    """
+    places = np.array([place])
+    for faces in facing(_near_column(mesh, places), "upper"):
+        _, face, local = _locate(mesh.nodes, faces, places, _STARTS[0])
+        if len(face):
+            corners = mesh.nodes[faces.connectivity[face][:, list(faces.corners)]][:, :, :2]
+            largest = int(np.ptp(corners, axis=1).prod(axis=1).argmax())
+            return corners[largest], local[largest]
+    raise InputError(f"({place[0]:g}, {place[1]:g}) m is not on the body")
+
+
 def face_gradients(mesh: Mesh, place: tuple[float, float], side: Side = "upper") -> tuple[Integers, Floats]:
     """Return nodes (k,), and the weights of their values in the gradient of a function along x and y on one side, (2, k).
 

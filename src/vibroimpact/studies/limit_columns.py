@@ -14,6 +14,7 @@ from vibroimpact.cases.case import Case
 from vibroimpact.cases.conditions import Conditions, DropSummary
 from vibroimpact.cases.keys import with_values
 from vibroimpact.cases.limit import limits, numbers_of
+from vibroimpact.cases.limits.plate_mesh import plate_mesh_error
 from vibroimpact.cases.limits.plate_waves import plate_theory_error
 from vibroimpact.cases.rigid import by_speed_of
 from vibroimpact.contact.law import ContactLaw
@@ -86,6 +87,7 @@ def drop_conditions(response: Response, peaks: Mapping[str, NDArray[Any]]) -> Co
         modes=modes,
         changes=change_by_impact(response.impacts, problem.tolerance),
         plate_theory=plate_theory_error(problem.facts, response.impacts),
+        plate_mesh=plate_mesh_error(problem.facts, response.impacts),
     )
     return Conditions(problem.source or {}, seen)
 

@@ -20,6 +20,7 @@ from vibroimpact.bodies.rigid import rigid_sphere
 from vibroimpact.cases.elastic.modes import BodyModes, compute_modes, contact_place
 from vibroimpact.cases.elastic.residuals import residual_keys, with_residuals
 from vibroimpact.cases.fields.local import MeasuredImpact
+from vibroimpact.cases.limits.plate_mesh import PLATE_MESH_COMPLIANCE
 from vibroimpact.cases.limits.plate_waves import PLATE_THEORY_INERTIA
 from vibroimpact.cases.pair import contact_pair, is_free_sphere
 from vibroimpact.cases.rigid import PLATE_FALLS, contact_laws_of, elastic_names, touch_speed
@@ -32,6 +33,7 @@ from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.dynamics.vibrating.local import LocalContact
 from vibroimpact.errors import InputError
 from vibroimpact.materials import Material
+from vibroimpact.structures.mesh_compliance import mesh_compliance
 from vibroimpact.structures.modal_model import ModalBasis, ModalModel
 from vibroimpact.structures.plate_face import face_shapes
 from vibroimpact.structures.plate_waves import inertia_beyond_bending
@@ -107,6 +109,8 @@ def coupling_of(case: CaseTable, progress: Callable[[float], None] | None = None
             static = _plate_compliance(bodies["plate"], tell)  # what the truncated modes lack of it is put in series
             facts["plate_static_compliance_m_N"] = static
             linear += static - carried
+            if bodies["plate"].model.mesh.is_flat:
+                facts[PLATE_MESH_COMPLIANCE] = _lacking_compliance(bodies["plate"])
             modes["plate"] = with_residuals(bodies["plate"], modes["plate"], tell)
     if is_free_sphere(case):
         rigid = _free_sphere(case)
@@ -168,6 +172,13 @@ def _compliance(basis: ModalBasis) -> float:
 def _plate_compliance(body: BodyModes, tell: Callable[[str], None] | None) -> float:
     """Return the static compliance of a plate at the contact point, with all its modes [m/N]."""
     return static_compliance(body.body.recipe, *contact_place(body), tell)
+
+
+def _lacking_compliance(body: BodyModes) -> float:
+    """Return the compliance that the plate elements lack at the contact point [m/N]."""
+    recipe, model = body.body.recipe, body.model
+    material = Material(recipe.density, recipe.youngs_modulus, recipe.poissons_ratio)
+    return mesh_compliance(model.mesh, material, model.thickness, contact_place(body)[0], is_thin(recipe))
 
 
 def _finite_size(case: CaseTable, patch: float) -> tuple[QuasiStatic, float]:
