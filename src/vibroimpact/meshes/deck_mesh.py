@@ -21,7 +21,8 @@ _SQUARE = np.array([(0, 0), (0, 2), (2, 2), (2, 0), (0, 1), (1, 2), (2, 1), (1, 
 class DeckMesh:
     """Nodes in use, and element shapes with connectivity, numbered from 1.
 
-    The shape is the element kind of the block, except for "hex20" in place of hex27 and "quad8" in place of quad25. `materials` are
+    The shape is the element kind of the block, except for "hex20" in place of hex27, "pyramid13" in place of pyramid14, and "quad8" in
+    place of quad25. `materials` are
     those of the elements, by number, and of the body if some elements have none of their own: number -1.
     """
 
@@ -115,6 +116,8 @@ def _shape(block: ElementBlock) -> tuple[str, Integers]:
         return "quad8", nine_node_shells(block.connectivity)[:, :8]
     if block.kind == "hex27":
         return "hex20", block.connectivity[:, :20]
+    if block.kind == "pyramid14":
+        return "pyramid13", block.connectivity[:, :13]
     return block.kind, block.connectivity
 
 

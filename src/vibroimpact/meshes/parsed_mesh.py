@@ -158,7 +158,7 @@ class Parts:
         if not self._elements:
             left_out = ", ".join(f"{shown(name)[1:-1]} ({count})" for name, count in self.skipped.most_common(5))
             raise InputError(
-                f"{self.path}: the file has no solid element; a mesh is of tetrahedra, wedges or bricks"
+                f"{self.path}: the file has no solid element; a mesh is of tetrahedra, pyramids, wedges or bricks"
                 f"{left_out and '; left out: ' + left_out}"
             )
         numbers, points = self._distinct_nodes()

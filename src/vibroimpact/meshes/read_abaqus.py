@@ -18,7 +18,17 @@ from vibroimpact.shown import shown
 from vibroimpact.structures.element_kinds import ELEMENT_KINDS
 from vibroimpact.structures.mesh import Mesh
 
-_KINDS = {"4": "tet4", "6": "wedge6", "8": "hex8", "10": "tet10", "15": "wedge15", "20": "hex20", "27": "hex27"}
+_KINDS = {
+    "4": "tet4",
+    "5": "pyramid5",
+    "6": "wedge6",
+    "8": "hex8",
+    "10": "tet10",
+    "13": "pyramid13",
+    "15": "wedge15",
+    "20": "hex20",
+    "27": "hex27",
+}
 _SOLID = re.compile(r"C3D(\d+)[A-Z]*")
 _OTHER_SOLID = re.compile(r"E?C3D|SC[68]|CSS8|CCL\d|Q3D")
 _MAKES_MESH = {"NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "SYMMETRIC MODEL GENERATION"}
@@ -29,9 +39,9 @@ _QUIET = {"HEADING", "INCLUDE", "PART", "END PART", "ASSEMBLY", "END ASSEMBLY", 
 def read_abaqus(path: str | PathLike[str]) -> Mesh:
     """Read the solid elements of an Abaqus input file with one part.
 
-    The mesh consists of C3D4, C3D6, C3D8, C3D10, C3D15, C3D20 and C3D27 elements of every formulation, and the sets of *NSET, *ELSET,
-    *NODE and *ELEMENT. The materials of *SOLID SECTION are in `Mesh.stated`. Other keywords, and elements that are not solid, are
-    counted in `Mesh.skipped`.
+    The mesh consists of C3D4, C3D5, C3D6, C3D8, C3D10, C3D13, C3D15, C3D20 and C3D27 elements of every formulation, and the sets of
+    *NSET, *ELSET, *NODE and *ELEMENT. The materials of *SOLID SECTION are in `Mesh.stated`. Other keywords, and elements that are not
+    solid, are counted in `Mesh.skipped`.
 
     Parameters
     ----------
@@ -144,7 +154,7 @@ class _Reader:
                 where = " in the assembly" if self.in_assembly else ""
                 raise block.line.wrong(
                     f"{shown(given)}{where} is a solid element that is not read; "
-                    "the part must be of C3D4, C3D6, C3D8, C3D10, C3D15, C3D20 or C3D27"
+                    "the part must be of C3D4, C3D5, C3D6, C3D8, C3D10, C3D13, C3D15, C3D20 or C3D27"
                 )
             if not given:
                 raise block.line.wrong("*ELEMENT has no TYPE; it must have one, such as TYPE=C3D10")

@@ -20,7 +20,13 @@ from vibroimpact.meshes.text_files import TextLine, parse_integer, read_lines_wi
 from vibroimpact.shown import shown
 from vibroimpact.structures.mesh import Mesh
 
-_KINDS = {"CTETRA": {4: "tet4", 10: "tet10"}, "CPENTA": {6: "wedge6", 15: "wedge15"}, "CHEXA": {8: "hex8", 20: "hex20"}}
+_KINDS = {
+    "CTETRA": {4: "tet4", 10: "tet10"},
+    "CPYRAM": {5: "pyramid5", 13: "pyramid13"},
+    "CPYRA": {5: "pyramid5", 13: "pyramid13"},
+    "CPENTA": {6: "wedge6", 15: "wedge15"},
+    "CHEXA": {8: "hex8", 20: "hex20"},
+}
 _OTHER_SOLIDS = ("CTETRA", "CHEX", "CPENT", "CPYR", "CWEDGE")
 _BEGIN = re.compile(r"\s*BEGIN[\s,]+(\w*)", re.IGNORECASE)
 _SET = re.compile(r"\s*SET\s+(\d{1,18})\s*=(.*)", re.IGNORECASE)
@@ -30,7 +36,7 @@ _SET_NAME = re.compile(r"\$ node set (\d{1,18}): (\S.*)")
 def read_nastran(path: str | PathLike[str]) -> Mesh:
     """Read the solid elements of a Nastran file (bulk data, with or without executive and case control).
 
-    The mesh consists of CTETRA, CPENTA, CHEXA and GRID cards, also in coordinate systems of CORD1 and CORD2 cards. The elements of
+    The mesh consists of CTETRA, CPYRAM, CPENTA, CHEXA and GRID cards, also in coordinate systems of CORD1 and CORD2 cards. The elements of
     property n form the set `PIDn`, the nodes of SPC1 cards the set `SPCn`, and those of `SET n` in case control the set `SETn`, or the
     name in a comment "$ node set n: name". The materials of PSOLID cards are in `Mesh.stated`, as `MIDn`; elements of a fluid are left
     out. Other cards are counted in `Mesh.skipped`.
@@ -93,7 +99,7 @@ def _read_card(card: Card, parts: Parts, grids: NastranGrids, held: Counter[str]
     if name in _KINDS:
         _read_solid(card, parts)
     elif name.startswith(_OTHER_SOLIDS):
-        raise line.wrong(f"{shown(name)} is a solid element that is not read; the elements must be CTETRA, CPENTA or CHEXA")
+        raise line.wrong(f"{shown(name)} is a solid element that is not read; the elements must be CTETRA, CPYRAM, CPENTA or CHEXA")
     elif name.startswith("INCLUDE"):
         raise line.wrong("the file to include is not given; its name must stand in quotes on the line of INCLUDE")
     elif name == "SPC1":

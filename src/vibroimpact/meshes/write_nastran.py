@@ -20,6 +20,8 @@ _CARDS = {
     "tet10": "CTETRA",
     "wedge6": "CPENTA",
     "wedge15": "CPENTA",
+    "pyramid5": "CPYRAM",
+    "pyramid13": "CPYRAM",
     "hex8": "CHEXA",
     "hex20": "CHEXA",
     "quad8": "CQUAD8",
@@ -33,9 +35,9 @@ def write_nastran(
 ) -> None:
     """Write a mesh as Nastran bulk data in metres, kilograms and seconds.
 
-    27-node bricks become 20-node CHEXA, each plate element four CQUAD8. Solids have property 1, shells property 2, and solids with
-    materials of their own the properties from 3 on, which have the numbers of the materials. Node sets become
-    SETs of case control, named in comments; element sets are omitted.
+    27-node bricks become 20-node CHEXA, 14-node pyramids 13-node CPYRAM, each plate element four CQUAD8. Solids have property 1, shells
+    property 2, and solids with materials of their own the properties from 3 on, which have the numbers of the materials. Node sets
+    become SETs of case control, named in comments; element sets are omitted.
 
     Parameters
     ----------

@@ -20,6 +20,8 @@ Spot = tuple[float, float] | str | None
 
 _NO_SHARE = 1e-9  # least weight of a node in the displacement of a place to which it belongs
 _OUTSIDE = 1e-6  # tolerance of a point beyond the edge of a face, relative to the length of the face
+_FROM_APEX = 1e-9  # by which gradients on faces of pyramids are taken nearer to the middle of the face
+_MIDDLE = 1.0 / 3.0
 _NEWTON_STEPS = 20
 _CONVERGED = 1e-10  # last step of Newton's method in local coordinates: it is quadratic, so that the rest is rounding
 _STARTS = (
@@ -51,6 +53,8 @@ class Faces:
     def shape_functions(self, local: Floats) -> tuple[Floats, Floats]:
         """Return shape functions (points, nodes) and their derivatives in the coordinates of the face (points, 2, nodes)."""
         values, gradients = self.kind.basis(self.reference_points(local))
+        if self.kind.is_pyramid:  # along a face they are continuous up to the apex, if they are taken on the face
+            gradients = self.kind.basis(self.reference_points(local + _FROM_APEX * (_MIDDLE - local)))[1]
         step = (
             0.5 * np.stack([np.eye(2), -np.eye(2)])[:, :, None]
         )  # a difference over one unit is exact, as the map is linear along either axis
