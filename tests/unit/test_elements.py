@@ -9,7 +9,7 @@ import pytest
 import skfem
 from scipy.optimize import brentq
 
-from pyramids import PYRAMIDS, pyramid_box
+from solid_meshes import PYRAMIDS, pyramid_box
 from support import one_in
 from vibroimpact.errors import InputError
 from vibroimpact.materials import Material

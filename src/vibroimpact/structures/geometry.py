@@ -142,7 +142,9 @@ def check_mesh(mesh: Mesh) -> None:
         first += len(block.connectivity)
     parts = len(np.unique(part_of_nodes(mesh)[used_nodes(mesh)]))
     if parts > 1:
-        raise InputError(f"the mesh consists of {parts} loose parts that share no node; a body is one part: merge coincident nodes")
+        raise InputError(
+            f"the mesh consists of {parts} loose parts that share no node and are not joined; a body is one part: merge coincident nodes"
+        )
 
 
 def _smallest_determinants(mesh: Mesh, block: ElementBlock) -> Floats:

@@ -160,7 +160,7 @@ class ElasticSystem:
         if not shape @ (self.stiffness @ shape) > _ROUNDING * highest:
             raise ComputationError(
                 "the stiffness matrix is singular: part of the body can move without resistance, as a hinge does; "
-                "look for elements that share only an edge or a node"
+                "look for elements that share only an edge or a node, or for joints of nodes that lie apart"
             )
 
     def _dense(self, number: int) -> Eigenmodes:

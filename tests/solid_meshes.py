@@ -1,8 +1,9 @@
-"""Boxes of pyramids, six to a brick, whose apexes meet in its middle: for tests of elements and of mesh files."""
+"""Boxes of pyramids, six to a brick, whose apexes meet in its middle; and meshes in one: for tests of elements and of mesh files."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -31,3 +32,20 @@ def pyramids_of(bricks: Mesh, kind: str) -> Mesh:
 def pyramid_box(size: Sequence[float], counts: Sequence[int], kind: str) -> Mesh:
     """A box as `box_mesh` makes it, of pyramids."""
     return pyramids_of(box_mesh(size, counts, "hex27"), kind)
+
+
+def together(*meshes: Mesh) -> Mesh:
+    """Meshes in one, which share no node, with sets of each."""
+    starts = np.cumsum([0, *(len(mesh.nodes) for mesh in meshes)])
+    counts = np.cumsum([0, *(mesh.number_of_elements for mesh in meshes)])
+    blocks = [
+        replace(block, connectivity=block.connectivity + start)
+        for mesh, start in zip(meshes, starts, strict=False)
+        for block in mesh.blocks
+    ]
+    return Mesh(
+        np.concatenate([mesh.nodes for mesh in meshes]),
+        (ElementBlock(blocks[0].kind, np.concatenate([block.connectivity for block in blocks])),),
+        {f"nodes{index}": np.arange(starts[index], starts[index + 1]) for index in range(len(meshes))},
+        {f"part{index}": np.arange(counts[index], counts[index + 1]) for index in range(len(meshes))},
+    )
