@@ -382,7 +382,7 @@ FAULTS: list[tuple[str, str | bytes, str]] = [
     ("mesh.bdf", FREE + "CTETRA,1,1,1,2,3,5\n", ":5: element 1 has the node 5, which the file does not give"),
     ("mesh.bdf", "CTETRA,1,1,1,2,3,5\n", ":1: element 1 has the node 1, which"),
     ("mesh.bdf", FREE + "CTETRA,1,1,1,2,3\n", ":5: CTETRA 1 has 3 nodes; it must have 4 or 10"),
-    ("mesh.bdf", FREE + "CTETRA,1,1,1,2,3,4,1,2\n", ":5: CTETRA 1 has 6 nodes; it must have 4 or 10"),
+    ("mesh.bdf", FREE + "CTETRA,1,1,1,2,,4,1,2\n", ":5: CTETRA 1 has 5 nodes; it must have 4 or 10, and only nodes on edges may be left"),
     ("mesh.bdf", FREE + "CTETRA,1,1,1,2,,4\n", ":5: CTETRA 1 has 3 nodes"),
     (
         "mesh.bdf",

@@ -9,10 +9,12 @@ from pathlib import Path
 
 from vibroimpact.errors import did_you_mean
 from vibroimpact.meshes.abaqus_blocks import Block, abaqus_include, blocks
+from vibroimpact.meshes.abaqus_links import AbaqusLinks
 from vibroimpact.meshes.abaqus_materials import AbaqusMaterials
 from vibroimpact.meshes.left_out import remarks_of
 from vibroimpact.meshes.node_order import ABAQUS
-from vibroimpact.meshes.parsed_mesh import Parts, Selection
+from vibroimpact.meshes.parsed_mesh import Parts
+from vibroimpact.meshes.selection import Selection
 from vibroimpact.meshes.text_files import TextLine, parse_integer, parse_real, read_lines_with_includes
 from vibroimpact.shown import shown
 from vibroimpact.structures.element_kinds import ELEMENT_KINDS
@@ -41,7 +43,7 @@ def read_abaqus(path: str | PathLike[str]) -> Mesh:
 
     The mesh consists of C3D4, C3D5, C3D6, C3D8, C3D10, C3D13, C3D15, C3D20 and C3D27 elements of every formulation, and the sets of
     *NSET, *ELSET, *NODE and *ELEMENT. The materials of *SOLID SECTION are in `Mesh.stated`. Other keywords, and elements that are not
-    solid, are counted in `Mesh.skipped`.
+    solid, are counted in `Mesh.skipped`. Equations, couplings, rigid bodies and tied surfaces are in `Mesh.joints`.
 
     Parameters
     ----------
@@ -76,6 +78,7 @@ class _Reader:
     def __init__(self, path: Path) -> None:
         self.parts = Parts(path, ABAQUS)
         self.materials = AbaqusMaterials()
+        self.links = AbaqusLinks()
         self.names: dict[tuple[str, str], str] = {}
         self.seen: dict[str, TextLine] = {}
         self.open: dict[str, TextLine] = {}
@@ -106,7 +109,7 @@ class _Reader:
             self._elements(block)
         elif keyword in ("NSET", "ELSET") and (not self.in_assembly or "INSTANCE" in block.parameters):
             self._set(block)
-        elif not self.materials.take(block) and keyword not in _QUIET:
+        elif not self.materials.take(block) and not self.links.take(block) and keyword not in _QUIET:
             self.parts.skipped[f"*{keyword}"] += 1
 
     def mesh(self) -> Mesh:
@@ -115,8 +118,9 @@ class _Reader:
             raise line.wrong(f"*{keyword} has no *END {keyword}; the file is cut short")
         sections = self.materials.sections()
         self.parts.sections = [(self._known("ELSET", name, line), material) for line, name, material in sections]
+        self.links.add_to(self.parts, self._set_of)
         mesh = self.parts.mesh()
-        return replace(mesh, remarks=remarks_of(mesh.skipped))
+        return replace(mesh, remarks=(*mesh.remarks, *remarks_of(mesh.skipped)))
 
     def _once(self, block: Block) -> None:
         """Check that there is one part and one instance, and that the instance is not moved or rotated."""
@@ -208,12 +212,17 @@ class _Reader:
                     included.add(text)
                     self.parts.add_members(line, chosen, self._known(kind, text.strip('"'), line))
 
-    def _known(self, kind: str, name: str, line: TextLine) -> Selection:
+    def _set_of(self, kind: str, name: str) -> Selection | None:
+        """Return the set of a name, with or without the instance before it; None if there is none."""
         exact = next((key for key in (name.upper(), name.rpartition(".")[2].upper()) if (kind, key) in self.names), None)
-        if exact is None:
+        return None if exact is None else self._selection(kind, exact)
+
+    def _known(self, kind: str, name: str, line: TextLine) -> Selection:
+        found = self._set_of(kind, name)
+        if found is None:
             suggestion = did_you_mean(name.upper(), [key for of, key in self.names if of == kind and len(key) < 100][:1000])
             raise line.wrong(f"{shown(name)} is neither a number nor a *{kind} before this line; it must be one of them.{suggestion}")
-        return self._selection(kind, exact)
+        return found
 
 
 def _range(texts: list[str], line: TextLine) -> tuple[int, int, int]:

@@ -32,7 +32,7 @@ def write_abaqus(mesh: Mesh, path: str | PathLike[str], material: Material | Non
     """Write a mesh with its sets as an Abaqus input file in metres, kilograms and seconds.
 
     27-node bricks become C3D20, which other programs read too, and 14-node pyramids C3D13, which Abaqus does not have;
-    each plate element becomes four S8R.
+    each plate element becomes four S8R. Joints become *EQUATION.
 
     Parameters
     ----------
@@ -78,6 +78,9 @@ def write_abaqus(mesh: Mesh, path: str | PathLike[str], material: Material | Non
     for keyword, sets in (("NSET", export.node_sets), ("ELSET", export.element_sets)):
         for name, members in sets.items():
             rows += [f"*{keyword}, {keyword}={_quoted(name)}", *_rows(members.tolist())]
+    for equation in export.equations:
+        rows += ["*EQUATION", str(len(equation))]
+        rows += [f"{node}, {axis}, {value!r}" for node, axis, value in equation]
     names: dict[int, str] = {}
     for of, one in export.materials.items():
         names[of] = _quoted(one.name or "material") if _quoted(one.name or "material") not in names.values() else f"material-{of + 1}"
