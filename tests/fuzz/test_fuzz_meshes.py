@@ -128,6 +128,44 @@ TIE, 3, 13
 1, 2
 *RIGID BODY, NSET=R, REF NODE=20
 """
+PLACED_ABAQUS = """\
+*PART, NAME=P
+*NODE
+1, 0., 0., 0.
+2, 1., 0., 0.
+3, 0., 1., 0.
+4, 0., 0., 1.
+*ELEMENT, TYPE=C3D4, ELSET=A
+5, 1, 2, 3, 4
+*NSET, NSET=N, GENERATE
+1, 3, 1
+*END PART
+*ASSEMBLY, NAME=A
+*INSTANCE, NAME=I, PART=P
+*END INSTANCE
+*INSTANCE, NAME=J, PART=P
+1., 0., 0.
+0., 0., 0., 1., 0., 0., 180.
+*END INSTANCE
+*NODE
+1, 0., 0., 3.
+*NSET, NSET=RP
+1
+*ELSET, ELSET=B, INSTANCE=J
+A
+*SURFACE, NAME=S
+I.A, S1
+*SURFACE, NAME=T
+B, S1
+*TIE, NAME=T, POSITION TOLERANCE=2
+S, T
+*EQUATION
+2
+I.4, 1, 1., J.4, 1, 1.
+*COUPLING, CONSTRAINT NAME=C, REF NODE=RP, SURFACE=S
+*KINEMATIC
+*END ASSEMBLY
+"""
 GMSH_2 = """\
 $MeshFormat
 2.2 0 8
@@ -210,7 +248,7 @@ $Elements
 2 2 4 7 1
 $EndElements
 """
-SEEDS = {".bdf": [NASTRAN, LINKED_NASTRAN], ".inp": [ABAQUS, LINKED_ABAQUS], ".msh": [GMSH_2, GMSH_4, GMSH_40]}
+SEEDS = {".bdf": [NASTRAN, LINKED_NASTRAN], ".inp": [ABAQUS, LINKED_ABAQUS, PLACED_ABAQUS], ".msh": [GMSH_2, GMSH_4, GMSH_40]}
 HOSTILE = [
     "1000000000000", "999999999999999999999999", "-1", "0", "1e999", "nan", "inf", "-inf", "1_0", "1.5-3", "1.D+400", "0x10",
     "\u0663", "\x00", "\xff", "\ufeff", "\u2028", "\x0b", "\x1c", "\t", " " * 300, '"', "'", "$", ",", ",,,,,,,,,,,,", "*", "**",

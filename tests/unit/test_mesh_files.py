@@ -374,6 +374,8 @@ def test_written_plates(tmp_path: Path) -> None:
     assert "*DENSITY\n7850.0\n*ELASTIC\n210000000000.0, 0.3\n" in text
 
 
+TET = "*NODE\n1,0,0,0\n2,1,0,0\n3,0,1,0\n4,0,0,1\n*ELEMENT,TYPE=C3D4\n1,1,2,3,4\n"
+TWO_PARTS = f"*PART,NAME=B\n{TET}*END PART\n*INSTANCE,NAME=I,PART=B\n*END INSTANCE\n" + "*INSTANCE,NAME=J,PART=B\n0,0,1\n*END INSTANCE\n"
 FAULTS: list[tuple[str, str | bytes, str]] = [
     ("mesh.bdf", "", ": the file is empty"),
     ("mesh.bdf", b"GRID,1\0", ": this is not a text file"),
@@ -438,13 +440,18 @@ FAULTS: list[tuple[str, str | bytes, str]] = [
     ("mesh.inp", DECK + "*NSET\n1\n", ":9: *NSET has no name"),
     ("mesh.inp", DECK + "*NGEN\n1,2\n", ":9: *NGEN makes nodes or elements by a rule"),
     ("mesh.inp", DECK + "*SYSTEM\n1,0,0\n", ":9: *SYSTEM moves the nodes"),
-    (
-        "mesh.inp",
-        "*PART,NAME=A\n*END PART\n*PART,NAME=B\n",
-        ":3: this is a second *PART, after that in line 1; the file must",
-    ),
+    ("mesh.inp", "*PART,NAME=A\n*END PART\n*PART,NAME=B\n*END PART\n", ":3: the parts of the file are in no assembly"),
+    ("mesh.inp", "*PART,NAME=A\n*END PART\n*PART,NAME=A\n", ':3: a part of the name "A" was given before'),
+    ("mesh.inp", "*PART,NAME=A\n*PART,NAME=B\n", ":1: *PART has no *END PART before the next one"),
+    ("mesh.inp", TWO_PARTS.replace("PART=B", "PART=C"), ':10: the instance is of the part "C", which is not in the file'),
+    ("mesh.inp", TWO_PARTS.replace("NAME=J", "NAME=I"), ':12: the instance has no name of its own, but "I"'),
+    ("mesh.inp", TWO_PARTS.replace("\n0,0,1\n", "\n0,0,1\n0,0,0,0,0,1\n"), ":14: the turn of the instance has 6 numbers"),
+    ("mesh.inp", TWO_PARTS.replace("\n0,0,1\n", "\n0,0,1\n0,0,0,0,0,0,9\n"), ":14: the two points of the axis of the turn are the same"),
+    ("mesh.inp", TWO_PARTS.replace("\n0,0,1\n", "\n0,0,1e999\n"), ":13: the place of the instance is not finite"),
+    ("mesh.inp", TWO_PARTS.replace("2,1,0,0", "2000000000000,1,0,0"), ":4: the number 2000000000000 is too large for a part"),
+    ("mesh.inp", TWO_PARTS + "*ASSEMBLY\n*NSET,NSET=x,INSTANCE=K\n1\n*END ASSEMBLY\n", ':16: there is no instance "K" before'),
     ("mesh.inp", "*PART,NAME=A\n" + DECK, ":1: *PART has no *END PART; the file is cut short"),
-    ("mesh.inp", "*INSTANCE,NAME=A,PART=P\n0,0,1\n*END INSTANCE\n", ":2: the instance is moved or turned"),
+    ("mesh.inp", "*INSTANCE,NAME=A,PART=P\n0,0,1\n*END INSTANCE\n", ':1: the instance is of the part "P", which is not in the file'),
     ("mesh.inp", "*NODE,INPUT=no.inp\n", ":1: the file to include can't be read"),
     ("mesh.msh", "hello\n", ':1: "hello" stands outside a section'),
     (

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 import pytest
@@ -321,6 +322,73 @@ def test_a_hinge_is_refused(tmp_path: Path) -> None:
     joined = read(mesh, ABAQUS["*EQUATION"](pairs(mesh)[:2]), tmp_path, "inp")
     with pytest.raises(ComputationError, match="part of the body can move without resistance"):
         frequencies(joined)
+
+
+def assembly(more: str = "") -> str:
+    """Two instances of one part, of which the second is turned by half a turn about an upright axis: their right ends meet at x = 0."""
+    half = box_mesh(SIZE, (2, 2, 1))
+    with TemporaryDirectory() as folder:
+        write_abaqus(replace(half, node_sets={"corner": np.array([0])}), Path(folder, "half.inp"))
+        body = Path(folder, "half.inp").read_text()
+    right = faces_at(half, 0.1)
+    assert len({label for _, label in right}) == 1
+    numbers = ", ".join(str(number) for number, _ in right)
+    sets = "".join(
+        f"*ELSET, ELSET=_{name}, INTERNAL, INSTANCE={instance}\n{numbers}\n" for name, instance in (("A", "left"), ("B", "Right"))
+    )
+    surfaces = "".join(f"*SURFACE, TYPE=ELEMENT, NAME={name}\n_{name}, {right[0][1]}\n" for name in "AB")
+    return (
+        f"*HEADING\n a test\n*PART, NAME=Half\n{body}*SURFACE, NAME=own\n1, S1\n*END PART\n*ASSEMBLY, NAME=all\n"
+        "*INSTANCE, NAME=left, PART=half\n-0.1, 0, 0\n*END INSTANCE\n"
+        "*INSTANCE, NAME=Right, PART=HALF\n0.2, 0.3, 0\n0.15, 0.15, 0, 0.15, 0.15, 1, 180.\n*END INSTANCE\n"
+        f"{sets}{surfaces}{more}*END ASSEMBLY\n"
+    )
+
+
+def faces_at(mesh: Mesh, where: float) -> list[tuple[int, str]]:
+    """Elements, from 1, and the labels of their faces at an x."""
+    return [
+        (element + 1, label)
+        for element, members in enumerate(mesh.blocks[0].connectivity)
+        for label, face in FACES.items()
+        if np.allclose(mesh.nodes[members[list(face)], 0], where)
+    ]
+
+
+def test_instances_of_an_assembly(tmp_path: Path) -> None:
+    """Each has numbers and sets of its own, whose names are behind that of the instance; tied they are the block in one piece."""
+    (tmp_path / "one.inp").write_text(assembly("*TIE, NAME=T, ADJUST=YES\nA, B\n"))
+    joined = read_mesh(tmp_path / "one.inp")
+    assert joined.joined_by == {"*TIE": 1}
+    assert joined.remarks == ()
+    assert [name for name in joined.node_sets if "corner" in name] == ["left.corner", "Right.corner"]
+    at = np.concatenate([joined.nodes[joined.node_sets[name]] for name in ("left.corner", "Right.corner")])
+    np.testing.assert_allclose(at, [[-0.2, -0.05, -0.025], [0.2, 0.05, -0.025]], atol=1e-12)
+    assert [len(joined.element_sets[name]) for name in ("left", "Right")] == [4, 4]
+    np.testing.assert_allclose(frequencies(joined), frequencies(WHOLE), rtol=1e-10)
+
+
+def test_reference_points_of_an_assembly(tmp_path: Path) -> None:
+    """They have the numbers of nodes of the parts, and are others; an equation names nodes behind their instance."""
+    nodes = "".join(f"2\nleft.{one}, {axis}, 1., Right.{other}, {axis}, -1.\n" for one, other in ends_that_meet() for axis in (1, 2, 3))
+    (tmp_path / "two.inp").write_text(assembly(f"*EQUATION\n{nodes}"))
+    np.testing.assert_allclose(frequencies(read_mesh(tmp_path / "two.inp")), frequencies(WHOLE), rtol=1e-10)
+    point = "*NODE\n1, 0, 0, 0.3\n*NSET, NSET=RP\n1,\n"
+    coupled = "".join(f"*COUPLING, CONSTRAINT NAME=C{name}, REF NODE=RP, SURFACE={name}\n*KINEMATIC\n" for name in "AB")
+    (tmp_path / "three.inp").write_text(assembly(point + coupled))
+    mesh = halves()
+    number = len(mesh.nodes) + 1
+    rigid = many(["RBE2", "900", str(number), "123456", *(str(node) for pair in pairs(mesh) for node in pair)])
+    same = read(mesh, f"GRID,{number},,0.,0.,.3\n{rigid}", tmp_path, "bdf")
+    np.testing.assert_allclose(frequencies(read_mesh(tmp_path / "three.inp")), frequencies(same), rtol=1e-9)
+
+
+def ends_that_meet() -> list[tuple[int, int]]:
+    """Nodes of the right end of a half, from 1, and those that stand there once it is turned."""
+    nodes = box_mesh(SIZE, (2, 2, 1)).nodes
+    right = np.flatnonzero(nodes[:, 0] > 0.1 - 1e-9)
+    turned = nodes[right] * [1.0, -1.0, 1.0]
+    return [(int(node) + 1, int(right[np.linalg.norm(turned - nodes[node], axis=1).argmin()]) + 1) for node in right]
 
 
 @pytest.mark.parametrize(

@@ -44,7 +44,7 @@ class AbaqusLinks:
         if block.keyword not in _KEYWORDS:
             return False
         if block.keyword == "SURFACE":
-            self._surfaces[_plain(block.parameters.get("NAME", ""))] = block
+            self._surfaces[_upper(block.parameters.get("NAME", ""))] = block
         elif block.keyword == "TRANSFORM":
             self._turned.append(block)
         else:
@@ -162,7 +162,7 @@ class _Reader:
             return ["TIE of cyclic symmetry"]
         left_out = []
         for line in block.data:
-            names = [_plain(text) for text in line.text.split(",") if text.strip()]
+            names = [_upper(text) for text in line.text.split(",") if text.strip()]
             surfaces = [self._surface(name) for name in names[:2]]
             if len(surfaces) < 2 or surfaces[0] is None or surfaces[1] is None:
                 left_out.append("TIE")
@@ -197,7 +197,7 @@ class _Reader:
 
     def _coupling(self, block: Block, coupling: Block | None) -> list[str]:
         """Read *KINEMATIC or *DISTRIBUTING, which belongs to the *COUPLING before it."""
-        surface = None if coupling is None else self._surface(_plain(coupling.parameters.get("SURFACE", "")))
+        surface = None if coupling is None else self._surface(_upper(coupling.parameters.get("SURFACE", "")))
         if coupling is None or surface is None or "CYCLIC SYMMETRY" in block.parameters:
             return [block.keyword]
         reference = self._reference(coupling)
@@ -243,7 +243,7 @@ class _Reader:
 
     def _surface(self, name: str) -> MeshSurface | None:
         """Return a surface of faces or nodes; None if it can't be used."""
-        block = self.surfaces.get(name)
+        block = self.surfaces.get(name) or self.surfaces.get(name.rpartition(".")[2])
         if block is None or "COMBINE" in block.parameters or "CROP" in block.parameters:
             return None
         found = MeshSurface()
@@ -276,6 +276,6 @@ def _range(lines: Sequence[Sequence[str]], line: TextLine) -> tuple[int, ...]:
     return tuple(sorted(found & set(_ALL))) or _ALL
 
 
-def _plain(name: str) -> str:
-    """Return a name without quotes and the instance before it, in capitals."""
-    return name.strip().strip('"').rpartition(".")[2].upper()
+def _upper(name: str) -> str:
+    """Return a name without quotes, in capitals."""
+    return name.strip().strip('"').upper()

@@ -8,6 +8,7 @@ from os import PathLike
 from pathlib import Path
 
 from vibroimpact.errors import did_you_mean
+from vibroimpact.meshes.abaqus_assembly import flattened, is_assembly
 from vibroimpact.meshes.abaqus_blocks import Block, abaqus_include, blocks
 from vibroimpact.meshes.abaqus_links import AbaqusLinks
 from vibroimpact.meshes.abaqus_materials import AbaqusMaterials
@@ -39,7 +40,7 @@ _QUIET = {"HEADING", "INCLUDE", "PART", "END PART", "ASSEMBLY", "END ASSEMBLY", 
 
 
 def read_abaqus(path: str | PathLike[str]) -> Mesh:
-    """Read the solid elements of an Abaqus input file with one part.
+    """Read the solid elements of an Abaqus input file, flat or with an assembly of instances of parts.
 
     The mesh consists of C3D4, C3D5, C3D6, C3D8, C3D10, C3D13, C3D15, C3D20 and C3D27 elements of every formulation, and the sets of
     *NSET, *ELSET, *NODE and *ELEMENT. The materials of *SOLID SECTION are in `Mesh.stated`. Other keywords, and elements that are not
@@ -53,7 +54,7 @@ def read_abaqus(path: str | PathLike[str]) -> Mesh:
     Raises
     ------
     InputError
-        If it is not such a file, has unsupported solid elements, or more than one part.
+        If it is not such a file, or has unsupported solid elements.
 
     Examples
     --------
@@ -67,7 +68,8 @@ def read_abaqus(path: str | PathLike[str]) -> Mesh:
     ('tet4', ['all'])
     """
     reader = _Reader(Path(path))
-    for block in blocks(read_lines_with_includes(Path(path), abaqus_include)):
+    found = list(blocks(read_lines_with_includes(Path(path), abaqus_include)))
+    for block in flattened(found) if is_assembly(found) else found:
         reader.take(block)
     return reader.mesh()
 
@@ -80,7 +82,6 @@ class _Reader:
         self.materials = AbaqusMaterials()
         self.links = AbaqusLinks()
         self.names: dict[tuple[str, str], str] = {}
-        self.seen: dict[str, TextLine] = {}
         self.open: dict[str, TextLine] = {}
         self.in_assembly = False
 
@@ -93,8 +94,6 @@ class _Reader:
             raise block.line.wrong(f"*{keyword} makes nodes or elements by a rule, which is not read; write each one out")
         if keyword == "SYSTEM" and block.data:
             raise block.line.wrong("*SYSTEM moves the nodes that follow, which is not read; write their global coordinates")
-        if keyword in ("PART", "INSTANCE"):
-            self._once(block)
         if f"END {keyword}" in _QUIET:
             self.open[keyword] = block.line
         elif keyword.startswith("END "):
@@ -121,16 +120,6 @@ class _Reader:
         self.links.add_to(self.parts, self._set_of)
         mesh = self.parts.mesh()
         return replace(mesh, remarks=(*mesh.remarks, *remarks_of(mesh.skipped)))
-
-    def _once(self, block: Block) -> None:
-        """Check that there is one part and one instance, and that the instance is not moved or rotated."""
-        if block.keyword in self.seen:
-            first = self.seen[block.keyword].number
-            raise block.line.wrong(f"this is a second *{block.keyword}, after that in line {first}; the file must hold one body")
-        self.seen[block.keyword] = block.line
-        moves = [line for line in block.data if any(parse_real(field, line) for field in line.text.split(",") if field.strip())]
-        if moves and block.keyword == "INSTANCE":
-            raise moves[0].wrong("the instance is moved or turned, which is not read; it must stand where the part was drawn")
 
     def _selection(self, kind: str, name: str) -> Selection:
         """Return the set of a name, ignoring case."""
