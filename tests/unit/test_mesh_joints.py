@@ -27,6 +27,7 @@ from vibroimpact.structures.mirrored import elastic_system
 from vibroimpact.structures.parts import number_of_parts
 from vibroimpact.structures.recipe import ImportedMesh, Recipe, computed_model
 from vibroimpact.structures.structure import solid_structure
+from vibroimpact.structures.support_force import computed_support_forces
 from vibroimpact.structures.supports.edge import Edge
 from vibroimpact.structures.supports.support import Support, held_by
 
@@ -288,6 +289,30 @@ def test_supports_on_joined_nodes(tmp_path: Path) -> None:
     np.testing.assert_allclose(frequencies(joined, edges, 0), frequencies(WHOLE, edges, 0), rtol=1e-10)
 
 
+def test_the_force_of_a_support_on_joined_nodes_is_refused(tmp_path: Path) -> None:
+    """What holds such a node is the support and the joint together; the force of an edge away from the joint is known."""
+    joined = read(halves(), tie(halves()), tmp_path, "inp")
+    recipe = Recipe(ImportedMesh("joined", lambda: joined), STEEL.density, STEEL.youngs_modulus, STEEL.poissons_ratio)
+    across, away = replace(recipe, supports=(Edge("y-min", "clamped"),)), replace(recipe, supports=(Edge("x-min", "clamped"),))
+    with pytest.raises(InputError, match="it holds nodes that the mesh file joins to others; leave out its force sensor"):
+        computed_support_forces(across, (0.1, 0.02), "upper", [(0.1, -0.05)])
+    forces = computed_support_forces(away, (0.1, 0.02), "upper", [(-0.2, 0.0)])
+    np.testing.assert_allclose(forces.static[0], [0.0, 0.0, -1.0], atol=1e-6)
+
+
+def test_a_drop_on_joined_parts(tmp_path: Path) -> None:
+    """As on the block in one piece: the force of the contact beside the joint, to rounding."""
+    write_abaqus(WHOLE, tmp_path / "whole.inp")
+    read(halves(), tie(halves()), tmp_path, "inp")
+    peaks = []
+    for name in ("whole.inp", "joined.inp"):
+        plate = {"material": STEEL_TABLE, "model": "elastic", "supports": "free", "modes": 8, "mesh": {"file": str(tmp_path / name)}}
+        drop = {"speed": 1.0, "gravity": 0, "position": [0.03, 0.01]}
+        response = vi.simulate(vi.read_case(plain_case(plate=plate, drop=drop)))
+        peaks.append(float(response.impacts["max_force_N"][0]))
+    assert peaks[1] == pytest.approx(peaks[0], rel=1e-8)
+
+
 def test_a_case_with_joined_parts(tmp_path: Path) -> None:
     """Both parts are the body, whatever the contact point; from the store too, with its joints."""
     mesh = halves()
@@ -314,6 +339,26 @@ def test_joints_that_hold_the_body_are_told(tmp_path: Path) -> None:
     for supports in ((), (Edge("y-min", "clamped"),)):
         remarks = computed_model(replace(recipe, supports=supports)).facts["remarks on the file"]
         assert "the joints of the mesh file resist 1 of the 6 rigid motions of the body" in remarks
+
+
+@pytest.mark.parametrize(("gap", "works"), [(1e-7, True), (1e-4, False)])
+def test_equations_between_nodes_that_are_not_at_one_place(gap: float, works: bool, tmp_path: Path) -> None:
+    """Rounding of coordinates does no harm; beyond it, equal displacements do not turn with the body, and the remedy is told."""
+    mesh = halves()
+    nodes = mesh.nodes.copy()
+    nodes[mesh.node_sets["nodes1"], 0] += gap
+    joined = read(replace(mesh, nodes=nodes), ABAQUS["*EQUATION"](pairs(mesh)), tmp_path, "inp")
+    if works:
+        np.testing.assert_allclose(frequencies(joined), frequencies(WHOLE), rtol=1e-5)
+    else:
+        with pytest.raises(ComputationError, match=r"in place of which \*TIE, or one RBE2 of all of them, turns with the body"):
+            elastic_system(held_by(solid_structure(joined, STEEL)))
+        (one, other), *rest = pairs(mesh)
+        followers = [other, *(node for pair in rest for node in pair)]
+        turning = read(replace(mesh, nodes=nodes), many(["RBE2", "900", str(one), "123456", *map(str, followers)]), tmp_path, "bdf")
+        held = held_by(solid_structure(turning, STEEL))
+        assert held.rigid.shape[1] == 6
+        assert (elastic_system(held).modes(1).angular_frequencies > 1e3).all()
 
 
 def test_a_hinge_is_refused(tmp_path: Path) -> None:

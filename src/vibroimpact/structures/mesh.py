@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,8 +14,10 @@ from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.materials import Material
 from vibroimpact.shown import shown
 from vibroimpact.structures.element_kinds import ELEMENT_KINDS, ElementKind
-from vibroimpact.structures.joints import Joints
 from vibroimpact.structures.stated_materials import StatedMaterials
+
+if TYPE_CHECKING:  # not imported at run time, as a case with rigid bodies does not need scipy.sparse
+    from vibroimpact.structures.joints import Joints
 
 
 @dataclass(frozen=True)
