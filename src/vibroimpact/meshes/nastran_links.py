@@ -15,6 +15,7 @@ _ALL = tuple(range(COMPONENTS))
 _NAMES = ("RBE1", "RBE2", "RBE3", "RBAR", "RROD", "RTRPLT")
 _ASKED = re.compile(r"\s*MPC\s*=\s*(\d{1,18})\s*$", re.IGNORECASE)
 _FIELDS = 8
+_MOST_OF_A_RANGE = 1_000_000  # nodes
 _NODE = "the number of a node"
 
 Members = Sequence[tuple[int, Sequence[int]]]
@@ -127,9 +128,6 @@ def _rbe2(card: Card) -> Rigid:
             nodes.append(parse_integer(words[at], card.line, _NODE))
             at += 1
     return Rigid(card.line, [(leads, _ALL), *((node, components) for node in nodes)])
-
-
-_MOST_OF_A_RANGE = 1_000_000
 
 
 def _rbe1(card: Card) -> Rigid | None:

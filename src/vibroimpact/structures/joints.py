@@ -38,8 +38,8 @@ class Joints:
     Examples
     --------
     >>> joints = solved_joints([{0: 1.0, 3: -1.0}, {3: 1.0, 6: -2.0}], 9)
-    >>> joints.followers.tolist(), joints.weights.toarray()[:, 6].tolist()
-    ([0, 3], [2.0, 2.0])
+    >>> joints.followers.tolist(), joints.weights.toarray()[:, 3].tolist()
+    ([0, 6], [1.0, 0.5])
     """
 
     followers: Integers
