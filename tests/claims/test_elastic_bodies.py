@@ -10,6 +10,7 @@ from stated import says
 from vibroimpact.bodies.elastic import plate_recipe
 from vibroimpact.cases.elastic import modes
 from vibroimpact.materials import find_material
+from vibroimpact.meshes import tied_surfaces
 from vibroimpact.meshes.geometry import GEOMETRY, MOST_SECONDS
 from vibroimpact.meshes.text_files import MESH
 from vibroimpact.structures import frequency_error, stated_materials, static_compliance, store
@@ -49,6 +50,7 @@ def test_limits() -> None:
     says(PAGE, "A mesh may have at most {} GB", MESH.largest / 1e9)
     says(PAGE, "a geometry at most {} MB and {} minutes", GEOMETRY.largest / 1e6, MOST_SECONDS / 60.0)
     says(PAGE, "when it exceeds {} GB", store._LARGEST / 1e9)
+    says(PAGE, "by default {} % of the mean length of edges of the second surface", 100.0 * tied_surfaces._REACH)
 
 
 def test_materials_of_a_mesh_file() -> None:

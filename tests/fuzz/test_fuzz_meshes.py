@@ -65,6 +65,107 @@ some, 4
 A, 6
 *END ASSEMBLY
 """
+LINKED_NASTRAN = """\
+CEND
+MPC = 3
+BEGIN BULK
+GRID,1,,0.,0.,0.
+GRID,2,,1.,0.,0.
+GRID,3,,0.,1.,0.
+GRID,4,,0.,0.,1.
+GRID,11,,0.,0.,0.
+GRID,12,,1.,0.,0.
+GRID,13,,0.,1.,0.
+GRID,14,,0.,0.,-1.
+GRID,20,,.2,.2,0.
+CTETRA,5,7,1,2,3,4,,
+,0
+CTETRA,6,7,11,12,13,14
+RBE2,7,20,123456,1,11,2
+RBE3,8,,12,123,1.,123,2,1
+RBAR,9,3,13,123456,,,123
+RBE1,10,1,123456
+,UM,11,12
+RROD,11,4,3
+MPC,3,13,1,1.,3,1,-.5
+,,1,1,-.5
+ENDDATA
+"""
+LINKED_ABAQUS = """\
+*NODE
+1, 0., 0., 0.
+2, 1., 0., 0.
+3, 0., 1., 0.
+4, 0., 0., 1.
+11, 0., 0., 0.
+12, 1., 0., 0.
+13, 0., 1., 0.
+14, 0., 0., -1.
+20, .2, .2, 0.
+*ELEMENT, TYPE=C3D4, ELSET=A
+5, 1, 2, 3, 4
+*ELEMENT, TYPE=C3D4, ELSET=B
+6, 11, 13, 12, 14
+*SURFACE, NAME=SA
+A, S1
+*SURFACE, NAME=SB
+B,
+*TIE, NAME=T, POSITION TOLERANCE=0.1
+SA, SB
+*EQUATION
+3
+1, 1, 1., 11, 1, -.5
+2, 1, -.5
+*MPC
+LINK, 4, 14
+TIE, 3, 13
+*COUPLING, REF NODE=20, SURFACE=SA, CONSTRAINT NAME=C
+*KINEMATIC
+1, 3
+*COUPLING, REF NODE=20, SURFACE=SB, CONSTRAINT NAME=D
+*DISTRIBUTING
+*NSET, NSET=R
+1, 2
+*RIGID BODY, NSET=R, REF NODE=20
+"""
+PLACED_ABAQUS = """\
+*PART, NAME=P
+*NODE
+1, 0., 0., 0.
+2, 1., 0., 0.
+3, 0., 1., 0.
+4, 0., 0., 1.
+*ELEMENT, TYPE=C3D4, ELSET=A
+5, 1, 2, 3, 4
+*NSET, NSET=N, GENERATE
+1, 3, 1
+*END PART
+*ASSEMBLY, NAME=A
+*INSTANCE, NAME=I, PART=P
+*END INSTANCE
+*INSTANCE, NAME=J, PART=P
+1., 0., 0.
+0., 0., 0., 1., 0., 0., 180.
+*END INSTANCE
+*NODE
+1, 0., 0., 3.
+*NSET, NSET=RP
+1
+*ELSET, ELSET=B, INSTANCE=J
+A
+*SURFACE, NAME=S
+I.A, S1
+*SURFACE, NAME=T
+B, S1
+*TIE, NAME=T, POSITION TOLERANCE=2
+S, T
+*EQUATION
+2
+I.4, 1, 1., J.4, 1, 1.
+*COUPLING, CONSTRAINT NAME=C, REF NODE=RP, SURFACE=S
+*KINEMATIC
+*END ASSEMBLY
+"""
 GMSH_2 = """\
 $MeshFormat
 2.2 0 8
@@ -147,7 +248,7 @@ $Elements
 2 2 4 7 1
 $EndElements
 """
-SEEDS = {".bdf": [NASTRAN], ".inp": [ABAQUS], ".msh": [GMSH_2, GMSH_4, GMSH_40]}
+SEEDS = {".bdf": [NASTRAN, LINKED_NASTRAN], ".inp": [ABAQUS, LINKED_ABAQUS, PLACED_ABAQUS], ".msh": [GMSH_2, GMSH_4, GMSH_40]}
 HOSTILE = [
     "1000000000000", "999999999999999999999999", "-1", "0", "1e999", "nan", "inf", "-inf", "1_0", "1.5-3", "1.D+400", "0x10",
     "\u0663", "\x00", "\xff", "\ufeff", "\u2028", "\x0b", "\x1c", "\t", " " * 300, '"', "'", "$", ",", ",,,,,,,,,,,,", "*", "**",
@@ -157,6 +258,8 @@ HOSTILE = [
     "INCLUDE '" + "a" * 5000 + "'", "CPENTA,1,1,1,2,3,4,5,6", "CHEXA,1,1,1,2,3,4,5,6,7,8", "GRID*", "=,*1,=",
     "*INCLUDE, INPUT=mesh.inp", "*NODE, INPUT=/dev/null", "*NODE", "*NODE, SYSTEM=C", "*ELEMENT, TYPE=C3D6",
     "*ELEMENT, TYPE=C3D20", "*ELEMENT", "*NSET", "*NSET, NSET=x, GENERATE\n1, 999999999999999999, 1", "*ELSET, ELSET=A\nA, A",
+    "RBE2,1,1,123,1,THRU,1000000", "RBE3,1,,1,123,1.-300,123,2,3", "MPC,3,1,1,1.+200,2,1,-1.", "*EQUATION\n1000000000000",
+    "*TIE, NAME=X\nSB, SA", "*SURFACE, NAME=SA, TYPE=NODE\n1", "*TRANSFORM, NSET=R",
     "*PART", "*INSTANCE", "*NGEN", "*ASSEMBLY", "NSET=", "TYPE=", "\x1b[31m", "1e-300", "1e14", "1.0000000001", "9" * 400, "(" * 5000,
     " " * 90_000, "a" * 90_000, "a," * 30_000, '"' * 30_000, "*NODE, " + "INPUT " * 5000, "$Entities", "$PhysicalNames", "\u00b2",
     "*NSET, NSET=" + "a" * 40_000, "*ELSET, ELSET=b\n" + "a" * 40_000, "1, 10, 1\n" * 3000, "SET 9 = " + "1," * 20_000,

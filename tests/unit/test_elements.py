@@ -9,10 +9,11 @@ import pytest
 import skfem
 from scipy.optimize import brentq
 
+from solid_meshes import PYRAMIDS, pyramid_box
 from support import one_in
 from vibroimpact.errors import InputError
 from vibroimpact.materials import Material
-from vibroimpact.structures.element_kinds import ELEMENT_KINDS
+from vibroimpact.structures.element_kinds import ELEMENT_KINDS, ElementKind
 from vibroimpact.structures.geometry import check_mesh, determinants, mass_properties
 from vibroimpact.structures.lattice import SOLID_KINDS, box_mesh
 from vibroimpact.structures.mesh import Mesh
@@ -23,16 +24,21 @@ from vibroimpact.structures.sphere_mesh import sphere_mesh
 from vibroimpact.structures.structure import Structure, plate_structure, solid_structure
 from vibroimpact.structures.supports.edge import EDGES, Edge
 from vibroimpact.structures.supports.support import held_by
-from vibroimpact.structures.surface import lower_nodes, outer_faces, surface_motion
+from vibroimpact.structures.surface import Faces, lower_nodes, outer_faces, surface_motion
 
 STEEL = Material(7850.0, 210e9, 0.3)
-SOLIDS = ("tet4", "tet10", "wedge6", "wedge15", "hex8", "hex20", "hex27")
+BOXES = ("tet4", "tet10", "wedge6", "wedge15", "hex8", "hex20", "hex27")
+SOLIDS = (*BOXES, *PYRAMIDS)
 PLATE = (0.52, 0.42, 0.008)
+
+
+def box(size: tuple[float, float, float], counts: tuple[int, int, int], kind: str) -> Mesh:
+    return (pyramid_box if kind in PYRAMIDS else box_mesh)(size, counts, kind)
 
 
 def bent(kind: str) -> Mesh:
     """A box, its nodes moved smoothly, so that its elements are curved and none like another."""
-    mesh = box_mesh((0.4, 0.3, 0.2), (2, 2, 2), kind)
+    mesh = box((0.4, 0.3, 0.2), (2, 2, 2), kind)
     x, y, z = mesh.nodes.T
     moved = np.stack([x + 0.3 * y * z + 0.2 * z**2, y - 0.2 * x * z + 0.3 * x**2, z + 0.4 * x * y], axis=1)
     return Mesh(moved, mesh.blocks)
@@ -76,8 +82,10 @@ def test_nodes_of_edges_lie_between_their_corners(kind: str) -> None:
         6: [(0, 1), (1, 2), (2, 0), (3, 4), (4, 5), (5, 3), (0, 3), (1, 4), (2, 5)],
         8: [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)],
         4: [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)],
+        5: [(0, 1), (1, 2), (2, 3), (3, 0), (0, 4), (1, 4), (2, 4), (3, 4)],
     }
     element = ELEMENT_KINDS[kind]
+    assert list(element.edges) == edges[element.corners]
     for node, (start, end) in zip(range(element.corners, len(element.reference)), edges[element.corners], strict=False):
         np.testing.assert_allclose(element.reference[node], element.reference[[start, end]].mean(axis=0))
 
@@ -90,7 +98,9 @@ def test_quadrature_is_exact(kind: str) -> None:
     needed = {"tet4": 2, "tet10": 4}.get(kind, element.degree)
     assert (weights > 0).all()
     for powers in np.ndindex(*[needed + 1] * element.dimension):
-        if element.is_brick:
+        if element.is_pyramid:
+            exact = _integral_over_the_pyramid(powers) if sum(powers) <= needed else weights @ np.prod(points**powers, axis=1)
+        elif element.is_brick:
             exact = 1 / np.prod([power + 1 for power in powers])
         elif element.corners == 6 and sum(powers[:2]) <= needed:  # a triangle times an interval
             factorials = [np.prod(np.arange(1.0, power + 1)) for power in (*powers[:2], sum(powers[:2]) + 2)]
@@ -103,6 +113,73 @@ def test_quadrature_is_exact(kind: str) -> None:
         else:
             continue
         assert weights @ np.prod(points**powers, axis=1) == pytest.approx(exact, rel=1e-12)
+
+
+def _integral_over_the_pyramid(powers: tuple[int, ...]) -> float:
+    """The integral of x^a y^b z^c, slice by slice: a square of side 1 - z about (1/2, 1/2)."""
+    along = np.polynomial.Polynomial([0.0, 1.0])
+    across = [((1.0 - 0.5 * along) ** (power + 1) - (0.5 * along) ** (power + 1)) / (power + 1) for power in powers[:2]]
+    whole = (across[0] * across[1] * along ** powers[2]).integ()
+    return float(whole(1.0) - whole(0.0))
+
+
+@pytest.mark.parametrize("kind", PYRAMIDS)
+def test_faces_of_pyramids_are_those_of_tetrahedra_and_bricks(kind: str) -> None:
+    """On a face only its nodes move it, as a triangle or a square of the same order is moved: meshes of several kinds have no gaps."""
+    element = ELEMENT_KINDS[kind]
+    others = {"pyramid5": ("tet4", "hex8"), "pyramid13": ("tet10", "hex20"), "pyramid14": ("tet10", "hex27")}[kind]
+    local = np.random.default_rng(0).random((20, 2)) * 0.5
+    for face in element.faces:
+        other = ELEMENT_KINDS[others[0] if len(face) == 3 else others[1]]
+        same = next(one for one in other.faces if len(one) == len(face))
+        none = np.zeros((0, 0), dtype=np.int64)
+        values = element.basis(Faces(element, face, none).reference_points(local))[0]
+        theirs = Faces(other, same, none).shape_functions(local)[0]
+        seen = np.zeros(len(local))
+        for between in BETWEEN[len(face)]:  # each node of the face, by the corners between which it lies
+            node = node_at(element, [face[corner] for corner in between])
+            if node is not None:
+                expected = theirs[:, node_at(other, [same[corner] for corner in between])]
+                np.testing.assert_allclose(values[:, node], expected, atol=1e-12)
+                seen += expected
+        np.testing.assert_allclose(seen, 1.0, atol=1e-12)
+
+
+BETWEEN = {
+    3: [(0,), (1,), (2,), (0, 1), (1, 2), (2, 0)],
+    4: [(0,), (1,), (2,), (3,), (0, 1), (1, 2), (2, 3), (3, 0), (0, 1, 2, 3)],
+}
+
+
+def node_at(element: ElementKind, corners: list[int]) -> int | None:
+    """The node in the middle of corners, if the element has one there."""
+    apart = np.abs(element.reference - element.reference[corners].mean(axis=0)).max(axis=1)
+    return int(apart.argmin()) if apart.min() < 1e-12 else None
+
+
+def test_slopes_on_a_face_of_a_pyramid_hold_up_to_its_apex() -> None:
+    """There the gradient depends on the direction; on a face it is that of the triangle."""
+    element, triangle = ELEMENT_KINDS["pyramid5"], np.array([[0.0, 1.0]])
+    faces = Faces(element, (1, 2, 4), np.zeros((0, 0), dtype=np.int64))
+    expected = np.zeros((2, 5))
+    expected[:, 1] = -1.0
+    expected[0, 2] = expected[1, 4] = 1.0
+    np.testing.assert_allclose(faces.shape_functions(triangle)[1][0], expected, atol=1e-8)
+
+
+@pytest.mark.parametrize("kind", PYRAMIDS)
+def test_pyramids_between_others_keep_constant_strain(kind: str) -> None:
+    """The patch test: of a bent mesh in a linear motion, the inner nodes are in equilibrium."""
+    mesh = bent(kind)
+    structure = solid_structure(mesh, STEEL)
+    strain = np.random.default_rng(1).standard_normal((3, 3))
+    forces = (structure.stiffness @ (mesh.nodes @ strain).ravel()).reshape(-1, 3)
+    outside = np.zeros(len(mesh.nodes), dtype=bool)
+    for faces in outer_faces(mesh):
+        on_face = np.abs(faces.shape_functions(np.array([[0.31, 0.17]]))[0][0]) > 1e-9
+        outside[faces.connectivity[:, on_face].ravel()] = True
+    assert np.abs(forces[outside]).max() > 1e3 * np.abs(forces[~outside]).max()
+    assert np.abs(forces[~outside]).max() < 1e-12 * np.abs(structure.stiffness).max()
 
 
 @pytest.mark.parametrize("kind", ELEMENT_KINDS)
@@ -129,7 +206,7 @@ def test_mass_of_rigid_motions_is_mass_and_inertia(kind: str) -> None:
 @pytest.mark.parametrize("kind", SOLIDS)
 def test_mass_and_inertia_of_a_box(kind: str) -> None:
     a, b, c = 0.4, 0.3, 0.2
-    mesh = box_mesh((a, b, c), (2, 1, 3), kind)
+    mesh = box((a, b, c), (2, 1, 3), kind)
     moved = Mesh(mesh.nodes + np.array([1.0, 2.0, 3.0]), mesh.blocks)
     found = mass_properties(moved, 7850.0)
     mass = 7850 * a * b * c
@@ -148,7 +225,7 @@ def test_mass_and_inertia_of_a_plate() -> None:
 
 def frequency_of_a_block(kind: str, count: int) -> float:
     """The lowest mode in which a block, its four upright sides as Navier's plate has them, bends [Hz]."""
-    structure = solid_structure(box_mesh((1.0, 1.0, 0.5), (count, count, max(1, count // 2)), kind), STEEL)
+    structure = solid_structure(box((1.0, 1.0, 0.5), (count, count, max(1, count // 2)), kind), STEEL)
     held = held_by(structure, [Edge(edge, "simply-supported") for edge in EDGES])
     modes = ElasticSystem(held.stiffness, held.mass, held.rigid, held.order).modes(6)
     heave = held.expansion @ modes.shapes
@@ -174,7 +251,16 @@ def exact_frequency_of_the_block() -> float:
 @pytest.mark.parametrize(
     ("kind", "counts", "rate"),
     one_in(
-        3, [("hex20", (2, 4, 6), 4), ("hex27", (4, 6, 8), 4), ("tet10", (4, 6, 8), 4), ("tet4", (4, 8, 12), 2), ("hex8", (4, 8, 12), 2)]
+        3,
+        [
+            ("hex20", (2, 4, 6), 4),
+            ("hex27", (4, 6, 8), 4),
+            ("tet10", (4, 6, 8), 4),
+            ("tet4", (4, 8, 12), 2),
+            ("hex8", (4, 8, 12), 2),
+            ("pyramid5", (4, 6, 8), 2),
+            ("pyramid13", (2, 4, 6), 4),
+        ],
     ),
 )
 def test_rate_of_convergence(kind: str, counts: tuple[int, ...], rate: int) -> None:
@@ -200,10 +286,10 @@ def face_area(mesh: Mesh) -> float:
     return float(total)
 
 
-@pytest.mark.parametrize("kind", SOLIDS)
+@pytest.mark.parametrize("kind", BOXES)
 def test_bricks_follow_discs_without_cracks(kind: str) -> None:
     """Volume, and area of all faces that have no neighbour: a crack would add to it. Discs well inside and apart."""
-    random = np.random.default_rng(SOLIDS.index(kind))
+    random = np.random.default_rng(BOXES.index(kind))
     length, width, height = PLATE
     for _ in range(6):
         discs = [Disc(0.13 * (2 * side - 1) + random.uniform(-0.05, 0.05), random.uniform(-0.12, 0.12), 0.02) for side in range(2)]
@@ -268,11 +354,13 @@ def test_a_ball_has_no_cracks(kind: str, grading: float) -> None:
     assert mass_properties(mesh, 1.0).mass == pytest.approx(4 / 3 * np.pi * 0.025**3, rel=3 * tolerance)
 
 
-@pytest.mark.parametrize(("kind", "degree"), [("tet4", 1), ("hex8", 1), ("tet10", 2), ("hex20", 2), ("hex27", 2)])
+@pytest.mark.parametrize(
+    ("kind", "degree"), [("tet4", 1), ("hex8", 1), ("tet10", 2), ("hex20", 2), ("hex27", 2), ("pyramid5", 1), ("pyramid13", 2)]
+)
 @pytest.mark.parametrize("side", ["upper", "lower"])
 def test_places_on_flat_faces(kind: str, degree: int, side: str) -> None:
     """Linear fields, and by elements of second order quadratic ones, are seen as they are; on edges and corners too."""
-    mesh = box_mesh((0.4, 0.3, 0.2), (3, 2, 1), kind)
+    mesh = box((0.4, 0.3, 0.2), (3, 2, 1), kind)
     places = np.concatenate([np.random.default_rng(1).uniform(-0.5, 0.5, (40, 2)), [[0.5, 0.5], [-0.5, 0.0], [1 / 6, 0.5], [0, 0]]])
     places *= [0.4, 0.3]
     motion, positions = surface_motion(mesh, places, side)

@@ -15,7 +15,7 @@ from vibroimpact.cases.elastic.meshes import meshes_of
 from vibroimpact.measurements.header_cells import name_and_unit
 from vibroimpact.measurements.table_file import read_table_file
 from vibroimpact.meshes.mesh_file import read_mesh
-from vibroimpact.meshes.parsed_mesh import Selection
+from vibroimpact.meshes.selection import Selection
 from vibroimpact.runs.case_explained import case_explained
 from vibroimpact.structures.lattice import box_mesh
 

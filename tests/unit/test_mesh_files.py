@@ -24,7 +24,9 @@ from vibroimpact.structures.mesh import ElementBlock, Mesh
 
 STEEL = Material(density=7850.0, youngs_modulus=210e9, poissons_ratio=0.3, name="steel")
 MSH = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{nodes}\n$EndNodes\n$Elements\n{elements}\n$EndElements\n"
-SOLIDS = ["tet4", "tet10", "wedge6", "wedge15", "hex8", "hex20", "hex27"]
+SOLIDS = ["tet4", "tet10", "wedge6", "wedge15", "pyramid5", "pyramid13", "pyramid14", "hex8", "hex20", "hex27"]
+WRITTEN = {"hex27": ("hex20", 20), "pyramid14": ("pyramid13", 13)}
+"""What kinds with nodes on faces become in a deck, and how many nodes these have."""
 
 
 def measures(mesh: Mesh) -> np.ndarray:
@@ -70,8 +72,9 @@ def read_text(text: str | bytes, name: str, folder: Path) -> Mesh:
     return read_mesh(file)
 
 
-def as_hex20(mesh: Mesh) -> Mesh:
-    blocks = tuple(ElementBlock("hex20", block.connectivity[:, :20]) if block.kind == "hex27" else block for block in mesh.blocks)
+def as_written(mesh: Mesh) -> Mesh:
+    kinds = [WRITTEN.get(block.kind, (block.kind, block.connectivity.shape[1])) for block in mesh.blocks]
+    blocks = tuple(ElementBlock(kind, block.connectivity[:, :count]) for (kind, count), block in zip(kinds, mesh.blocks, strict=True))
     return Mesh(mesh.nodes, blocks, mesh.node_sets, mesh.element_sets)
 
 
@@ -79,19 +82,27 @@ def gmsh_text(mesh: Mesh, order: list[int]) -> str:
     """Version 2 in the order that Gmsh documents, with a group of volumes."""
     (block,) = mesh.blocks
     nodes = [f"{number} {x!r} {y!r} {z!r}" for number, (x, y, z) in enumerate(mesh.nodes.tolist(), 1)]
-    number = {"tet4": 4, "tet10": 11, "wedge6": 6, "wedge15": 18, "hex8": 5, "hex20": 17, "hex27": 12}[block.kind]
+    number = GMSH_TYPES[block.kind]
     elements = [
         f"{row} {number} 2 9 1 " + " ".join(map(str, members)) for row, members in enumerate((block.connectivity[:, order] + 1).tolist(), 1)
     ]
     return MSH.format(nodes="\n".join([str(len(nodes)), *nodes]), elements="\n".join([str(len(elements)), *elements]))
 
 
+GMSH_TYPES = {"tet4": 4, "tet10": 11, "wedge6": 6, "wedge15": 18, "hex8": 5, "hex20": 17, "hex27": 12} | {
+    "pyramid5": 7,
+    "pyramid13": 19,
+    "pyramid14": 14,
+}
 # the orders of the nodes as the manuals of the programs print them, in our numbers
 GMSH_ORDER = {
     "tet4": list(range(4)),
     "tet10": [0, 1, 2, 3, 4, 5, 6, 7, 9, 8],
     "wedge6": list(range(6)),
     "wedge15": [*range(6), 6, 8, 12, 7, 13, 14, 9, 11, 10],
+    "pyramid5": list(range(5)),
+    "pyramid13": [*range(5), 5, 8, 9, 6, 10, 7, 11, 12],
+    "pyramid14": [*range(5), 5, 8, 9, 6, 10, 7, 11, 12, 13],
     "hex8": list(range(8)),
     "hex20": [*range(8), 8, 11, 16, 9, 17, 10, 18, 19, 12, 15, 13, 14],
     "hex27": [*range(8), 8, 11, 16, 9, 17, 10, 18, 19, 12, 15, 13, 14, 24, 22, 20, 21, 23, 25, 26],
@@ -105,15 +116,15 @@ def test_round_trips_keep_volume_and_inertia(kind: str, seed: int, tmp_path: Pat
     file = tmp_path / "mesh.inp"
     write_abaqus(mesh, file)
     back = read_abaqus(file)
-    np.testing.assert_allclose(measures(back), measures(as_hex20(mesh)), rtol=1e-14, atol=1e-14)
+    np.testing.assert_allclose(measures(back), measures(as_written(mesh)), rtol=1e-14, atol=1e-14)
     assert back.element_sets["left"].tolist() == [0, 2]
-    assert len(back.nodes) == 3 * len(ELEMENT_KINDS["hex20" if kind == "hex27" else kind].reference)
+    assert len(back.nodes) == 3 * len(ELEMENT_KINDS[WRITTEN.get(kind, (kind,))[0]].reference)
     np.testing.assert_array_equal(np.unique(back.nodes[back.node_sets["one"]]), np.unique(mesh.nodes[mesh.node_sets["one"]]))
 
     file = tmp_path / "mesh.bdf"
     write_nastran(mesh, file, STEEL, title="A title")
     again = read_nastran(file)
-    np.testing.assert_allclose(measures(again), measures(as_hex20(mesh)), rtol=1e-12, atol=1e-12)
+    np.testing.assert_allclose(measures(again), measures(as_written(mesh)), rtol=1e-12, atol=1e-12)
     assert list(again.node_sets) == ["a set, of nodes", "one"]
     for name in again.node_sets:
         np.testing.assert_array_equal(again.node_sets[name], back.node_sets[name])
@@ -132,7 +143,7 @@ def test_elements_may_be_numbered_either_way_round(kind: str, tmp_path: Path) ->
     write_abaqus(left, tmp_path / "mesh.inp")
     back = read_abaqus(tmp_path / "mesh.inp")
     signs = np.array([1, 1, -1, 1, 1, -1, 1, -1, 1, -1, 1, -1, 1])  # of the volume, its moments along x, y, z, and xx to zz
-    np.testing.assert_allclose(measures(back), signs * measures(as_hex20(mesh)), rtol=1e-12, atol=1e-14)
+    np.testing.assert_allclose(measures(back), signs * measures(as_written(mesh)), rtol=1e-12, atol=1e-14)
 
 
 def test_a_brick_of_27_nodes_in_the_order_of_abaqus(tmp_path: Path) -> None:
@@ -363,22 +374,24 @@ def test_written_plates(tmp_path: Path) -> None:
     assert "*DENSITY\n7850.0\n*ELASTIC\n210000000000.0, 0.3\n" in text
 
 
+TET = "*NODE\n1,0,0,0\n2,1,0,0\n3,0,1,0\n4,0,0,1\n*ELEMENT,TYPE=C3D4\n1,1,2,3,4\n"
+TWO_PARTS = f"*PART,NAME=B\n{TET}*END PART\n*INSTANCE,NAME=I,PART=B\n*END INSTANCE\n" + "*INSTANCE,NAME=J,PART=B\n0,0,1\n*END INSTANCE\n"
 FAULTS: list[tuple[str, str | bytes, str]] = [
     ("mesh.bdf", "", ": the file is empty"),
     ("mesh.bdf", b"GRID,1\0", ": this is not a text file"),
-    ("mesh.bdf", FREE, ": the file has no solid element; a mesh is of tetrahedra, wedges or bricks"),
+    ("mesh.bdf", FREE, ": the file has no solid element; a mesh is of tetrahedra, pyramids, wedges or bricks"),
     ("mesh.bdf", FREE + "CQUAD4,1,1,1,2,3,4\n", "bricks; left out: CQUAD4 (1)"),
     ("mesh.bdf", FREE + "CTETRA,1,1,1,2,3,5\n", ":5: element 1 has the node 5, which the file does not give"),
     ("mesh.bdf", "CTETRA,1,1,1,2,3,5\n", ":1: element 1 has the node 1, which"),
     ("mesh.bdf", FREE + "CTETRA,1,1,1,2,3\n", ":5: CTETRA 1 has 3 nodes; it must have 4 or 10"),
-    ("mesh.bdf", FREE + "CTETRA,1,1,1,2,3,4,1,2\n", ":5: CTETRA 1 has 6 nodes; it must have 4 or 10"),
+    ("mesh.bdf", FREE + "CTETRA,1,1,1,2,,4,1,2\n", ":5: CTETRA 1 has 5 nodes; it must have 4 or 10, and only nodes on edges may be left"),
     ("mesh.bdf", FREE + "CTETRA,1,1,1,2,,4\n", ":5: CTETRA 1 has 3 nodes"),
     (
         "mesh.bdf",
-        FREE + "CPYRAM,1,1,1,2,3,4,1\n",
-        '5: "CPYRAM" is a solid element that is not read; the elements must be CTETRA, CPENTA or CHEXA',
+        FREE + "CWEDGE,1,1,1,2,3,4,1\n",
+        '5: "CWEDGE" is a solid element that is not read; the elements must be CTETRA, CPYRAM, CPENTA or CHEXA',
     ),
-    ("mesh.bdf", FREE + "CPYRAM,1,1,1,2,3,4,5\n", ':5: "CPYRAM" is a solid element'),
+    ("mesh.bdf", FREE + "CPYRAM,1,1,1,2,3,4\n", ":5: CPYRAM 1 has 4 nodes; it must have 5 or 13"),
     ("mesh.bdf", TETRA + "GRID,1,,2.\n", ":6: node 1 was given other coordinates in line 1; a node may be given once"),
     ("mesh.bdf", TETRA + "CTETRA,1,1,4,1,2,3\n", ":6: element 1 was given in line 5 already; an element may be given once"),
     ("mesh.bdf", "GRID,1,3\n", ":1: the coordinate system 3 is not in the file; its CORD2R, CORD2C or CORD2S must be"),
@@ -415,7 +428,7 @@ FAULTS: list[tuple[str, str | bytes, str]] = [
     ("mesh.inp", "*NODE\n1 0 0\n", ":2: a node must have a number and up to three coordinates"),
     ("mesh.inp", "*NODE, SYSTEM=C\n1,0,0,0\n", ":1: the nodes are in cylindrical or spherical coordinates"),
     ("mesh.inp", "*NODE\n1,0,0,inf\n", ":2: node 1 has the coordinate inf"),
-    ("mesh.inp", DECK + "*ELEMENT,TYPE=C3D5\n2,1,2,3,4,1\n", ':9: "C3D5" is a solid element that is not read; the part must be of C3D4'),
+    ("mesh.inp", DECK + "*ELEMENT,TYPE=C3D7\n2,1,2,3,4,1\n", ':9: "C3D7" is a solid element that is not read; the part must be of C3D4'),
     ("mesh.inp", DECK + "*ELEMENT,TYPE=C3D15V\n2,1\n", ":10: element 2 has 1 nodes; C3D15V must have 15"),
     ("mesh.inp", DECK + "*ELEMENT\n", ":9: *ELEMENT has no TYPE"),
     ("mesh.inp", NODES + "*ELEMENT,TYPE=C3D4\n1,1,2,3\n", ":8: element 1 has 3 nodes; C3D4 must have 4"),
@@ -427,13 +440,18 @@ FAULTS: list[tuple[str, str | bytes, str]] = [
     ("mesh.inp", DECK + "*NSET\n1\n", ":9: *NSET has no name"),
     ("mesh.inp", DECK + "*NGEN\n1,2\n", ":9: *NGEN makes nodes or elements by a rule"),
     ("mesh.inp", DECK + "*SYSTEM\n1,0,0\n", ":9: *SYSTEM moves the nodes"),
-    (
-        "mesh.inp",
-        "*PART,NAME=A\n*END PART\n*PART,NAME=B\n",
-        ":3: this is a second *PART, after that in line 1; the file must",
-    ),
+    ("mesh.inp", "*PART,NAME=A\n*END PART\n*PART,NAME=B\n*END PART\n", ":3: the parts of the file are in no assembly"),
+    ("mesh.inp", "*PART,NAME=A\n*END PART\n*PART,NAME=A\n", ':3: a part of the name "A" was given before'),
+    ("mesh.inp", "*PART,NAME=A\n*PART,NAME=B\n", ":1: *PART has no *END PART before the next one"),
+    ("mesh.inp", TWO_PARTS.replace("PART=B", "PART=C"), ':10: the instance is of the part "C", which is not in the file'),
+    ("mesh.inp", TWO_PARTS.replace("NAME=J", "NAME=I"), ':12: the instance has no name of its own, but "I"'),
+    ("mesh.inp", TWO_PARTS.replace("\n0,0,1\n", "\n0,0,1\n0,0,0,0,0,1\n"), ":14: the turn of the instance has 6 numbers"),
+    ("mesh.inp", TWO_PARTS.replace("\n0,0,1\n", "\n0,0,1\n0,0,0,0,0,0,9\n"), ":14: the two points of the axis of the turn are the same"),
+    ("mesh.inp", TWO_PARTS.replace("\n0,0,1\n", "\n0,0,1e999\n"), ":13: the place of the instance is not finite"),
+    ("mesh.inp", TWO_PARTS.replace("2,1,0,0", "2000000000000,1,0,0"), ":4: the number 2000000000000 is too large for a part"),
+    ("mesh.inp", TWO_PARTS + "*ASSEMBLY\n*NSET,NSET=x,INSTANCE=K\n1\n*END ASSEMBLY\n", ':16: there is no instance "K" before'),
     ("mesh.inp", "*PART,NAME=A\n" + DECK, ":1: *PART has no *END PART; the file is cut short"),
-    ("mesh.inp", "*INSTANCE,NAME=A,PART=P\n0,0,1\n*END INSTANCE\n", ":2: the instance is moved or turned"),
+    ("mesh.inp", "*INSTANCE,NAME=A,PART=P\n0,0,1\n*END INSTANCE\n", ':1: the instance is of the part "P", which is not in the file'),
     ("mesh.inp", "*NODE,INPUT=no.inp\n", ":1: the file to include can't be read"),
     ("mesh.msh", "hello\n", ':1: "hello" stands outside a section'),
     (
@@ -458,7 +476,7 @@ GMSH_FAULTS = [
         "1\n1 13 2 1 1 1 2 3 4 1 2",
         ":13: the element is a prism of 18 nodes, which is not read; the solids must be tetrahedra, prisms",
     ),
-    (FOUR, "1\n1 7 2 1 1 1 2 3 4 1", ":13: the element is a pyramid"),
+    (FOUR, "1\n1 7 2 1 1 1 2 3 4", ":13: the element has 4 nodes; its type 7 must have 5"),
     (FOUR, "1\n1 29 2 1 1 1 2 3 4 1", ":13: the element is of type 29"),
     (FOUR, "1\n1 4 2 1 1 1 2 3", ":13: the element has 3 nodes; its type 4 must have 4"),
     (FOUR, "1\n1 4 2 1 1 1 2 3 9", ":13: element 1 has the node 9, which the file does not give"),

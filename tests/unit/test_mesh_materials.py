@@ -274,7 +274,7 @@ def test_elements_of_a_fluid_are_left_out(tmp_path: Path) -> None:
 NAMED = {
     "CONM2,100,1,,2.5\n": "CONM2 (1); masses are not part of the body",
     "CELAS2,100,1.+3,1,1\nCBUSH,101,3,1,2\n": "CELAS2 (1), CBUSH (1); springs, dampers and connectors are not part of the body",
-    "RBE2,100,1,123,2,3\nMPC,1,1,1,1.,2,1,-1.\n": "RBE2 (1), MPC (1); constraints between nodes are not applied",
+    "RSPLINE,100,1.,1,2,123,3\nMPC,1,1,1,1.,2,1,-1.\n": "RSPLINE (1), MPC (1); constraints between nodes are not applied",
     "CQUAD4,100,3,1,2,3,4\nCBAR,101,3,1,2\n": "CQUAD4 (1), CBAR (1); beams, shells and membranes are not part of the body",
     "SPC1,7,123,1,2\nSPC,8,1,1\n": "SPC (1), SPC1 (1); nodes that the file holds are not held by it",
     "GRID,900,,1.,1.,1.,,123\n": "PS of GRID (1); nodes that the file holds",
@@ -290,7 +290,7 @@ def test_what_an_abaqus_file_holds_besides_is_named(tmp_path: Path) -> None:
     more = (
         "*ELEMENT, TYPE=MASS, ELSET=lump\n900, 1\n*MASS, ELSET=lump\n2.5\n*ELEMENT, TYPE=SPRINGA, ELSET=springs\n901, 1, 2\n"
         "*SPRING, ELSET=springs\n\n1.\n"
-        "*EQUATION\n2\n1,1,1.,2,1,-1.\n*BOUNDARY\n1,1,3\n*ELEMENT, TYPE=F3D8\n902,1,2,3,4,5,6,7,8\n*STEP\n*STATIC\n*END STEP\n"
+        "*EQUATION\n1\n1,1,1.\n*BOUNDARY\n1,1,3\n*ELEMENT, TYPE=F3D8\n902,1,2,3,4,5,6,7,8\n*STEP\n*STATIC\n*END STEP\n"
     )
     found = doubts_of(abaqus(tmp_path, INP_MM, 1e3, more))
     for words in ("MASS (1), *MASS (1); masses", "SPRINGA (1), *SPRING (1); springs", "*EQUATION (1); constraints", "*BOUNDARY (1); nodes"):

@@ -10,35 +10,19 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
+from solid_meshes import together
 from support import plain_case
 from vibroimpact.cases.elastic.meshes import meshes_of
 from vibroimpact.errors import InputError
 from vibroimpact.materials import Material
 from vibroimpact.structures.geometry import check_mesh
 from vibroimpact.structures.lattice import box_mesh
-from vibroimpact.structures.mesh import ElementBlock, Mesh
+from vibroimpact.structures.mesh import Mesh
 from vibroimpact.structures.parts import number_of_parts, part_at
 from vibroimpact.structures.stated_materials import StatedMaterial, StatedMaterials
 
 SIZE = (0.2, 0.1, 0.01)
 STEEL = {"density": 7850, "youngs_modulus": 210e9, "poissons_ratio": 0.3}
-
-
-def together(*meshes: Mesh) -> Mesh:
-    """Meshes in one, which share no node, with sets of each."""
-    starts = np.cumsum([0, *(len(mesh.nodes) for mesh in meshes)])
-    counts = np.cumsum([0, *(mesh.number_of_elements for mesh in meshes)])
-    blocks = [
-        replace(block, connectivity=block.connectivity + start)
-        for mesh, start in zip(meshes, starts, strict=False)
-        for block in mesh.blocks
-    ]
-    return Mesh(
-        np.concatenate([mesh.nodes for mesh in meshes]),
-        (ElementBlock(blocks[0].kind, np.concatenate([block.connectivity for block in blocks])),),
-        {f"nodes{index}": np.arange(starts[index], starts[index + 1]) for index in range(len(meshes))},
-        {f"part{index}": np.arange(counts[index], counts[index + 1]) for index in range(len(meshes))},
-    )
 
 
 def box(x: float = 0.0, z: float = 0.0, size: tuple[float, float, float] = SIZE) -> Mesh:
@@ -81,10 +65,13 @@ def test_the_part_at_the_contact_is_the_body(name: str, tmp_path: Path) -> None:
     assert not any("parts" in doubt for doubt in alone.doubts)
     [doubt] = [doubt for doubt in here.doubts if "parts" in doubt]
     assert doubt.startswith(
-        "the mesh file holds 3 parts that share no node; the body is the one at the contact point, x -0.1 to 0.1, y -0.05 to 0.05, "
-        "z -0.005 to 0.005 m, and x 0.4 to 0.6"
+        "the mesh file holds 3 parts that share no node and are not joined; the body is the one at the contact point, "
+        "x -0.1 to 0.1, y -0.05 to 0.05, z -0.005 to 0.005 m, and x 0.4 to 0.6"
     )
-    assert "x -0.15 to 0.15, y -0.1 to 0.1, z -0.11 to -0.09 m are left out: to join parts, merge their coincident nodes" in doubt
+    assert (
+        "x -0.15 to 0.15, y -0.1 to 0.1, z -0.11 to -0.09 m are left out: "
+        "to join parts, tie them in the file (*TIE, RBE2) or merge their coincident nodes"
+    ) in doubt
 
 
 def write(mesh: Mesh, file: Path) -> Path:

@@ -147,6 +147,31 @@ def test_prisms(model: None, tmp_path: Path) -> None:
             np.testing.assert_allclose(found.inertia, np.eye(3) / 6.0, atol=1e-9)
 
 
+@pytest.mark.parametrize(("order", "incomplete", "kind"), [(1, False, "pyramid5"), (2, True, "pyramid13"), (2, False, "pyramid14")])
+def test_pyramids(order: int, incomplete: bool, kind: str, model: None, tmp_path: Path) -> None:
+    """The six pyramids of a cube: their nodes in the order of Gmsh, and halfway on edges once they are ours."""
+    tag = gmsh.model.addDiscreteEntity(3)
+    corners = np.array([[x, y, z] for z in (0.0, 1.0) for y in (0.0, 1.0) for x in (0.0, 1.0)])
+    gmsh.model.mesh.addNodes(3, tag, list(range(1, 10)), np.concatenate([corners.ravel(), [0.5] * 3]))
+    faces = [(1, 2, 4, 3), (5, 7, 8, 6), (1, 5, 6, 2), (2, 6, 8, 4), (4, 8, 7, 3), (3, 7, 5, 1)]
+    gmsh.model.mesh.addElementsByType(tag, 7, [], [node for face in faces for node in (*face, 9)])
+    gmsh.option.setNumber("Mesh.SecondOrderIncomplete", incomplete)
+    gmsh.model.mesh.setOrder(order)
+    for version in (2.2, 4.1):
+        gmsh.option.setNumber("Mesh.MshFileVersion", version)
+        gmsh.write(str(tmp_path / "mesh.msh"))
+        mesh = read_mesh(tmp_path / "mesh.msh")
+        (block,) = mesh.blocks
+        assert block.kind == kind
+        check_mesh(mesh)
+        assert mass_properties(mesh, 1.0).mass == pytest.approx(1.0, rel=1e-12)
+        reference = block.element.reference[:, 2]
+        for members in block.connectivity:  # the map of a straight pyramid is linear: heights over the base are those of the reference
+            at = mesh.nodes[members]
+            normal = np.cross(at[1] - at[0], at[3] - at[0])
+            np.testing.assert_allclose((at - at[0]) @ normal, 0.5 * reference, atol=1e-12)
+
+
 def write_geometry(file: Path, *boxes: float) -> None:
     """Write a sphere of 25 mm radius, in millimetres, and boxes beside it."""
     gmsh.model.occ.addSphere(0, 0, 0, 25)

@@ -74,6 +74,16 @@ def test_elements(agrees: Agrees, kind: str, suffix: str, tmp_path: Path) -> Non
         assert read.point_sets["some"].tolist() == [0, 2, 3]
 
 
+@pytest.mark.parametrize("suffix", ["bdf", "vtu"])
+def test_pyramids(suffix: str, tmp_path: Path) -> None:
+    """Of five nodes; meshio does not read its own cells of 13."""
+    mesh, file = bent("pyramid5"), tmp_path / f"mesh.{suffix}"
+    (write_nastran if suffix == "bdf" else write_vtu)(mesh, file)
+    (cells,) = meshio.read(file).cells
+    assert cells.type == "pyramid"
+    np.testing.assert_array_equal(cells.data, mesh.blocks[0].connectivity)
+
+
 def test_bricks_of_27_nodes_stand_as_vtk_has_them() -> None:
     np.testing.assert_array_equal(ELEMENT_KINDS["hex27"].reference[20:], VTK_HEX27)
 

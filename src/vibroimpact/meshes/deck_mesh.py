@@ -11,6 +11,7 @@ from vibroimpact.arrays import Floats, Integers
 from vibroimpact.errors import InputError
 from vibroimpact.materials import Material
 from vibroimpact.structures.element_kinds import PLATE_ORDER
+from vibroimpact.structures.joints import AXES
 from vibroimpact.structures.mesh import ElementBlock, Mesh
 
 # local node order of a 9-node quadrilateral on a 3 x 3 lattice, as (row, column): corners, mid-edge nodes, centre
@@ -21,8 +22,10 @@ _SQUARE = np.array([(0, 0), (0, 2), (2, 2), (2, 0), (0, 1), (1, 2), (2, 1), (1, 
 class DeckMesh:
     """Nodes in use, and element shapes with connectivity, numbered from 1.
 
-    The shape is the element kind of the block, except for "hex20" in place of hex27 and "quad8" in place of quad25. `materials` are
-    those of the elements, by number, and of the body if some elements have none of their own: number -1.
+    The shape is the element kind of the block, except for "hex20" in place of hex27, "pyramid13" in place of pyramid14, and "quad8" in
+    place of quad25. `materials` are
+    those of the elements, by number, and of the body if some elements have none of their own: number -1. `equations` are the joints: node,
+    axis from 1 and coefficient of each term, the first of which is the displacement that follows.
     """
 
     points: Floats
@@ -31,6 +34,7 @@ class DeckMesh:
     element_sets: Mapping[str, Integers]
     materials: Mapping[int, Material]
     element_materials: Integers
+    equations: list[list[tuple[int, int, float]]]
 
 
 def deck_mesh(mesh: Mesh, material: Material | None = None) -> DeckMesh:
@@ -69,7 +73,23 @@ def deck_mesh(mesh: Mesh, material: Material | None = None) -> DeckMesh:
         _without_empty({name: np.flatnonzero(np.isin(owner, elements)) + 1 for name, elements in mesh.element_sets.items()}),
         materials,
         numbers[owner],
+        _equations(mesh, used),
     )
+
+
+def _equations(mesh: Mesh, used: Integers) -> list[list[tuple[int, int, float]]]:
+    """Return the joints of a mesh as equations between nodes in use, numbered from 1."""
+    if mesh.joints is None:
+        return []
+    place = np.full(len(mesh.nodes), 0)
+    place[used] = np.arange(1, len(used) + 1)
+    found = []
+    for follower, weights in mesh.joints.rows():
+        terms = [(follower, 1.0), *((unknown, -value) for unknown, value in weights.items())]
+        numbered = [(int(place[unknown // AXES]), unknown % AXES + 1, value) for unknown, value in terms]
+        if all(node for node, _, _ in numbered):  # a node that the shapes of the deck lack is joined to nothing there
+            found.append(numbered)
+    return found
 
 
 def nine_node_shells(connectivity: Integers) -> Integers:
@@ -115,6 +135,8 @@ def _shape(block: ElementBlock) -> tuple[str, Integers]:
         return "quad8", nine_node_shells(block.connectivity)[:, :8]
     if block.kind == "hex27":
         return "hex20", block.connectivity[:, :20]
+    if block.kind == "pyramid14":
+        return "pyramid13", block.connectivity[:, :13]
     return block.kind, block.connectivity
 
 

@@ -34,7 +34,8 @@ _EFFECTS = (
         "springs, dampers and connectors are not part of the body, whose frequencies are lower without their stiffness",
     ),
     _effect(
-        r"RBE[123]|RBAR\w*|RROD|RTRPLT\w*|RSPLINE|RSSCON|MPC\w*|\*EQUATION|\*MPC|\*TIE|\*COUPLING|\*KINEMATIC|\*DISTRIBUTING\w*( COUPLING)?"
+        r"RBE[123]|RBAR\w*|RROD|RTRPLT\w*|RSPLINE|RSSCON|MPC\w*|\*EQUATION|\*MPC|\*TIE( of cyclic symmetry)?|\*COUPLING|\*KINEMATIC"
+        r"|\*DISTRIBUTING\w*( COUPLING)?"
         r"|\*RIGID BODY|\*KINEMATIC COUPLING|\*SHELL TO SOLID COUPLING|\*CYCLIC SYMMETRY MODEL|\*PRE-TENSION SECTION|\*EMBEDDED ELEMENT",
         "constraints between nodes are not applied: what they tie together moves freely",
     ),

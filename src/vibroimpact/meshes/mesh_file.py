@@ -49,7 +49,8 @@ def read_mesh(
     materials : mapping of str to Material, optional
         Materials in place of those of the file, by the name of a material or an element set; see `with_element_materials`.
     contact : tuple of a spot and a side, optional
-        Of several parts that share no node the one there, such as `((0.0, 0.0), "upper")`; see `part_at`. By default all are returned.
+        Of several parts that share no node and are not joined the one there, such as `((0.0, 0.0), "upper")`; see `part_at`. By default
+        all are returned.
 
     Raises
     ------

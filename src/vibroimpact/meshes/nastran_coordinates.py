@@ -70,6 +70,8 @@ class NastranGrids:
         self._given: dict[int, _Given] = {}
         self._made: dict[int, _System] = {0: _BASIC}
         self._default = 0
+        self._default_of_motion = ""
+        self._of_motion: dict[int, str] = {}
 
     def take(self, card: Card) -> bool:
         """Read a card if it is one of these; return whether it was.
@@ -84,6 +86,7 @@ class NastranGrids:
             self._grid(line, fields, len(card.fields))
         elif name == "GRDSET":
             self._default = _number(fields[1], line)
+            self._default_of_motion = fields[5]
         elif name in _OF_NUMBERS:
             values = [nastran_real(field, line) for field in fields[2:11]]
             points = tuple((values[at], values[at + 1], values[at + 2]) for at in (0, 3, 6))
@@ -104,6 +107,16 @@ class NastranGrids:
         x, y, z = (nastran_real(field, line) for field in fields[2:5])
         system = _number(fields[1], line) if fields[1] else None
         self._grids.append(_Grid(line, number, system, (x, y, z)))
+        if fields[5]:
+            self._of_motion[number] = fields[5]
+
+    @property
+    def turned(self) -> set[int]:
+        """The points whose components of motion are along axes other than those of the basic system."""
+        default = (
+            [grid.number for grid in self._grids if grid.number not in self._of_motion] if self._default_of_motion not in ("", "0") else []
+        )
+        return {number for number, system in self._of_motion.items() if system != "0"} | set(default)
 
     def add_to(self, parts: Parts) -> None:
         """Add the grid points in the basic system.

@@ -7,7 +7,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from vibroimpact.meshes.nastran_cards import Card, nastran_real
-from vibroimpact.meshes.parsed_mesh import FLUID, Selection
+from vibroimpact.meshes.parsed_mesh import FLUID
+from vibroimpact.meshes.selection import Selection
 from vibroimpact.meshes.text_files import TextLine, parse_integer
 from vibroimpact.structures.stated_materials import StatedMaterial
 

@@ -9,11 +9,14 @@ from vibroimpact.structures.element_kinds import ELEMENT_KINDS
 
 _HEX_BOTTOM, _HEX_TOP, _HEX_UP = "01 12 23 30", "45 56 67 74", "04 15 26 37"
 _HEX20_GMSH = "0 1 2 3 4 5 6 7 01 03 04 12 15 23 26 37 45 47 56 67"
+_PYRAMID13_GMSH = "0 1 2 3 4 01 03 04 12 14 23 24 34"
 
 GMSH = {
     "tet10": "0 1 2 3 01 12 02 03 23 13",
     "hex20": _HEX20_GMSH,
     "wedge15": "0 1 2 3 4 5 01 02 03 12 14 25 34 35 45",
+    "pyramid13": _PYRAMID13_GMSH,
+    "pyramid14": f"{_PYRAMID13_GMSH} 0123",
     "hex27": f"{_HEX20_GMSH} 0123 0154 0374 1265 2376 4567 01234567",
 }
 NASTRAN = {

@@ -4,20 +4,26 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 
 from vibroimpact.arrays import Floats, Integers
 from vibroimpact.errors import InputError
+from vibroimpact.meshes.edge_nodes import EdgeNodes, with_edge_nodes
+from vibroimpact.meshes.links import Equation, Links
 from vibroimpact.meshes.node_order import to_ours
+from vibroimpact.meshes.selection import Selection
 from vibroimpact.meshes.text_files import TextLine
+from vibroimpact.meshes.tied_surfaces import MeshSurface, Tie, tied_nodes
 from vibroimpact.shown import shown
 from vibroimpact.structures.element_kinds import ELEMENT_KINDS
 from vibroimpact.structures.geometry import renumbered_by_volume
+from vibroimpact.structures.joints import AXES
 from vibroimpact.structures.mesh import ElementBlock, Mesh
 from vibroimpact.structures.stated_materials import StatedMaterial, StatedMaterials
+from vibroimpact.structures.surface import Faces
 
 LARGEST_COORDINATE = 1e15
 MOST_MEMBERS = 10_000_000
@@ -30,46 +36,6 @@ FLUID_ELEMENTS = "elements of a fluid"
 """Name of these among the items that a reader skipped."""
 
 EMPTY_SET = "set without solid elements or their nodes"
-
-
-@dataclass
-class Selection:
-    """A selection of node or element numbers: single numbers, and ranges (first, last, step).
-
-    Ranges are expanded only against the existing numbers, so that "1 to 10^12" costs nothing.
-
-    Examples
-    --------
-    >>> Selection({7}, {(2, 10**12, 2)}).places(np.array([1, 2, 3, 4, 7])).tolist()
-    [1, 3, 4]
-    """
-
-    numbers: set[int] = field(default_factory=set)
-    ranges: set[tuple[int, int, int]] = field(default_factory=set)
-
-    def places(self, known: Integers) -> Integers:
-        """Return the indices of the selected numbers in `known`, which is sorted."""
-        numbers = np.fromiter(self.numbers, np.int64, len(self.numbers))
-        places = np.minimum(np.searchsorted(known, numbers), len(known) - 1).astype(np.int64)
-        places = np.sort(places[known[places] == numbers])
-        if not self.ranges:  # avoid arrays of the size of `known`: there may be many small sets
-            return places
-        ranges = np.array(list(self.ranges), dtype=np.int64)
-        starts, stops = np.searchsorted(known, ranges[:, 0]), np.searchsorted(known, ranges[:, 1], side="right")
-        unit_step = ranges[:, 2] == 1
-        # ranges of step 1 by the cumulative sum of their starts and ends: thousands cost as much as one
-        ends = np.bincount(starts[unit_step], minlength=len(known) + 1) - np.bincount(stops[unit_step], minlength=len(known) + 1)
-        chosen = np.cumsum(ends[:-1]) > 0
-        chosen[places] = True
-        others = (part[~unit_step].tolist() for part in (ranges, starts, stops))
-        for (first, _, step), start, stop in zip(*others, strict=True):
-            chosen[start:stop] |= (known[start:stop] - first) % step == 0
-        return np.flatnonzero(chosen)
-
-    def update(self, other: Selection) -> None:
-        """Add another selection."""
-        self.numbers |= other.numbers
-        self.ranges |= other.ranges
 
 
 @dataclass
@@ -96,6 +62,10 @@ class Parts:
     ----------
     sections : list of (Selection, StatedMaterial)
         Materials of elements; of several for one element the last one counts.
+    links : Links
+        Links between nodes, such as rigid elements and equations.
+    ties : list of Tie
+        Surfaces that are tied to one another.
     """
 
     path: Path
@@ -105,6 +75,8 @@ class Parts:
     skipped: Counter[str] = field(default_factory=Counter)
     materials: dict[str, StatedMaterial] = field(default_factory=dict)
     sections: list[tuple[Selection, StatedMaterial]] = field(default_factory=list)
+    links: Links = field(default_factory=Links)
+    ties: list[Tie] = field(default_factory=list)
     _copied: int = 0
     _node_lines: list[TextLine] = field(default_factory=list)
     _node_numbers: list[int] = field(default_factory=list)
@@ -140,11 +112,39 @@ class Parts:
         chosen.update(more)
 
     def add_element(self, line: TextLine, kind: str, number: int, nodes: Sequence[int]) -> None:
-        """Add an element of a kind, its nodes in the order of the file; their number must be that of the kind."""
+        """Add an element of a kind, its nodes in the order of the file; their number must be that of the kind.
+
+        Nodes in the middle of edges may be `edge_nodes.OMITTED`.
+        """
         found = self._elements[kind]
         found.lines.append(line)
         found.numbers.append(number)
         found.nodes.append(nodes)
+
+    def node_numbers(self, chosen: Selection) -> list[int]:
+        """Return the numbers of chosen nodes that the file gives, ascending."""
+        known = np.unique(np.array(self._node_numbers, dtype=np.int64))
+        return [int(number) for number in known[chosen.places(known)]] if len(known) else []
+
+    def nodes_of_elements(self, chosen: Selection) -> set[int]:
+        """Return the numbers of the nodes of chosen elements."""
+        found: set[int] = set()
+        for elements in self._elements.values():
+            for row in _chosen_rows(elements, chosen):
+                found.update(elements.nodes[row])
+        return found
+
+    def nodes_of_surface(self, surface: MeshSurface) -> set[int]:
+        """Return the numbers of the nodes of a surface; of faces without a label, those of none."""
+        found = set(self.node_numbers(surface.nodes))
+        for chosen, by_corners in surface.faces:
+            for kind, elements in self._elements.items():
+                corners = by_corners.get(ELEMENT_KINDS[kind].corners)
+                order = to_ours(kind, self.orders[kind]) if kind in self.orders else np.arange(len(ELEMENT_KINDS[kind].reference))
+                if corners is not None:
+                    on_face = order[Faces(ELEMENT_KINDS[kind], corners, np.zeros((0, 0), dtype=np.int64)).has_node].tolist()
+                    found.update(elements.nodes[row][node] for row in _chosen_rows(elements, chosen) for node in on_face)
+        return found
 
     def mesh(self) -> Mesh:
         """Return the mesh, numbered from 0, without nodes that no element uses.
@@ -158,11 +158,14 @@ class Parts:
         if not self._elements:
             left_out = ", ".join(f"{shown(name)[1:-1]} ({count})" for name, count in self.skipped.most_common(5))
             raise InputError(
-                f"{self.path}: the file has no solid element; a mesh is of tetrahedra, wedges or bricks"
+                f"{self.path}: the file has no solid element; a mesh is of tetrahedra, pyramids, wedges or bricks"
                 f"{left_out and '; left out: ' + left_out}"
             )
-        numbers, points = self._distinct_nodes()
-        blocks = {kind: self._places_of_nodes(kind, numbers) for kind in ELEMENT_KINDS if kind in self._elements}
+        complete = with_edge_nodes(
+            {kind: self._nodes_of(kind) for kind in ELEMENT_KINDS if kind in self._elements}, *self._distinct_nodes()
+        )
+        numbers, points = complete.numbers, complete.points
+        blocks = {kind: self._places_of_nodes(kind, nodes, numbers) for kind, nodes in complete.elements.items()}
         used, places = np.unique(np.concatenate([places.ravel() for places in blocks.values()]), return_inverse=True)
         ends = np.cumsum([places.size for places in blocks.values()])[:-1]
         renumbered = zip(blocks, np.split(places, ends), blocks.values(), strict=True)
@@ -175,7 +178,25 @@ class Parts:
             dict(self.skipped),
             stated=self._stated(*elements),
         )
-        return renumbered_by_volume(mesh)
+        return renumbered_by_volume(self._joined(mesh, complete, used, elements))
+
+    def _joined(self, mesh: Mesh, complete: EdgeNodes, used: Integers, elements: tuple[Integers, Integers]) -> Mesh:
+        """Return the mesh with the joints that the file states, and remarks on them and on nodes that were made."""
+        tied = tied_nodes(mesh, self.ties, complete.numbers[used], elements)
+        line = TextLine(self.path, 0, "")
+        halves = [
+            Equation(line, [((node, axis), 1.0), ((first, axis), -0.5), ((second, axis), -0.5)])
+            for node, first, second in complete.linear
+            for axis in range(AXES)
+        ]
+        points = complete.points.copy()
+        points[used] = tied.nodes
+        joints = self.links.joints(complete.numbers, points, used, [*halves, *tied.equations])
+        joined_by = {**self.links.names(complete.numbers[used]), **({"*TIE": len(self.ties)} if tied.equations else {})}
+        made = [_made_text(complete)] if complete.made else []
+        return replace(
+            mesh, nodes=tied.nodes, joints=joints, joined_by=joined_by if joints else {}, remarks=(*mesh.remarks, *made, *tied.remarks)
+        )
 
     def _leave_out_fluids(self) -> None:
         """Remove the elements of fluids, and count them as skipped."""
@@ -223,10 +244,14 @@ class Parts:
         once = np.append(~again, True) if len(numbers) else np.ones(0, dtype=bool)
         return numbers[once], points[once]
 
-    def _places_of_nodes(self, kind: str, numbers: Integers) -> Integers:
-        """Return the connectivity as indices into `numbers`, in our node order."""
+    def _nodes_of(self, kind: str) -> Integers:
+        """Return the numbers of the nodes of the elements of a kind, in our node order."""
+        nodes = np.array(self._elements[kind].nodes, dtype=np.int64)
+        return nodes[:, to_ours(kind, self.orders[kind])] if kind in self.orders else nodes
+
+    def _places_of_nodes(self, kind: str, wanted: Integers, numbers: Integers) -> Integers:
+        """Return the connectivity as indices into `numbers`."""
         found = self._elements[kind]
-        wanted = np.array(found.nodes, dtype=np.int64)
         places = np.minimum(np.searchsorted(numbers, wanted), max(len(numbers) - 1, 0)).astype(np.int64)
         missing = numbers[places] != wanted if len(numbers) else np.ones(wanted.shape, dtype=bool)
         if missing.any():
@@ -235,7 +260,7 @@ class Parts:
                 f"element {found.numbers[row]} has the node {wanted[row, column]}, which the file does not give; "
                 "every node of an element must be in the file"
             )
-        return places[:, to_ours(kind, self.orders[kind])] if kind in self.orders else places
+        return places
 
     def _distinct_elements(self, kinds: list[str]) -> tuple[Integers, Integers]:
         """Return the element numbers, sorted, and their indices counted through all blocks."""
@@ -260,6 +285,22 @@ class Parts:
         empty = [name for name, members in found.items() if len(members) == 0]
         self.skipped.update({EMPTY_SET: len(empty)} if empty else {})
         return {name: members for name, members in found.items() if len(members)}
+
+
+def _chosen_rows(elements: _Elements, chosen: Selection) -> list[int]:
+    """Return the rows of chosen elements of a kind."""
+    numbers = np.array(elements.numbers, dtype=np.int64)
+    order = np.argsort(numbers, kind="stable")
+    return [int(row) for row in order[chosen.places(numbers[order])]]
+
+
+def _made_text(complete: EdgeNodes) -> str:
+    """Return what nodes were made, as a remark."""
+    straight = f", of which {len(complete.linear)} move as the straight edges of neighbours of first order" if complete.linear else ""
+    return (
+        f"the mesh file leaves out nodes in the middle of edges of elements of second order: {complete.made} were made halfway "
+        f"between the corners{straight}; a curved edge is straight there"
+    )
 
 
 def _too_many_members() -> str:

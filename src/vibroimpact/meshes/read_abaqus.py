@@ -8,17 +8,30 @@ from os import PathLike
 from pathlib import Path
 
 from vibroimpact.errors import did_you_mean
+from vibroimpact.meshes.abaqus_assembly import flattened, is_assembly
 from vibroimpact.meshes.abaqus_blocks import Block, abaqus_include, blocks
+from vibroimpact.meshes.abaqus_links import AbaqusLinks
 from vibroimpact.meshes.abaqus_materials import AbaqusMaterials
 from vibroimpact.meshes.left_out import remarks_of
 from vibroimpact.meshes.node_order import ABAQUS
-from vibroimpact.meshes.parsed_mesh import Parts, Selection
+from vibroimpact.meshes.parsed_mesh import Parts
+from vibroimpact.meshes.selection import Selection
 from vibroimpact.meshes.text_files import TextLine, parse_integer, parse_real, read_lines_with_includes
 from vibroimpact.shown import shown
 from vibroimpact.structures.element_kinds import ELEMENT_KINDS
 from vibroimpact.structures.mesh import Mesh
 
-_KINDS = {"4": "tet4", "6": "wedge6", "8": "hex8", "10": "tet10", "15": "wedge15", "20": "hex20", "27": "hex27"}
+_KINDS = {
+    "4": "tet4",
+    "5": "pyramid5",
+    "6": "wedge6",
+    "8": "hex8",
+    "10": "tet10",
+    "13": "pyramid13",
+    "15": "wedge15",
+    "20": "hex20",
+    "27": "hex27",
+}
 _SOLID = re.compile(r"C3D(\d+)[A-Z]*")
 _OTHER_SOLID = re.compile(r"E?C3D|SC[68]|CSS8|CCL\d|Q3D")
 _MAKES_MESH = {"NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "SYMMETRIC MODEL GENERATION"}
@@ -27,11 +40,11 @@ _QUIET = {"HEADING", "INCLUDE", "PART", "END PART", "ASSEMBLY", "END ASSEMBLY", 
 
 
 def read_abaqus(path: str | PathLike[str]) -> Mesh:
-    """Read the solid elements of an Abaqus input file with one part.
+    """Read the solid elements of an Abaqus input file, flat or with an assembly of instances of parts.
 
-    The mesh consists of C3D4, C3D6, C3D8, C3D10, C3D15, C3D20 and C3D27 elements of every formulation, and the sets of *NSET, *ELSET,
-    *NODE and *ELEMENT. The materials of *SOLID SECTION are in `Mesh.stated`. Other keywords, and elements that are not solid, are
-    counted in `Mesh.skipped`.
+    The mesh consists of C3D4, C3D5, C3D6, C3D8, C3D10, C3D13, C3D15, C3D20 and C3D27 elements of every formulation, and the sets of
+    *NSET, *ELSET, *NODE and *ELEMENT. The materials of *SOLID SECTION are in `Mesh.stated`. Other keywords, and elements that are not
+    solid, are counted in `Mesh.skipped`. Equations, couplings, rigid bodies and tied surfaces are in `Mesh.joints`.
 
     Parameters
     ----------
@@ -41,7 +54,7 @@ def read_abaqus(path: str | PathLike[str]) -> Mesh:
     Raises
     ------
     InputError
-        If it is not such a file, has unsupported solid elements, or more than one part.
+        If it is not such a file, or has unsupported solid elements.
 
     Examples
     --------
@@ -55,7 +68,8 @@ def read_abaqus(path: str | PathLike[str]) -> Mesh:
     ('tet4', ['all'])
     """
     reader = _Reader(Path(path))
-    for block in blocks(read_lines_with_includes(Path(path), abaqus_include)):
+    found = list(blocks(read_lines_with_includes(Path(path), abaqus_include)))
+    for block in flattened(found) if is_assembly(found) else found:
         reader.take(block)
     return reader.mesh()
 
@@ -66,8 +80,8 @@ class _Reader:
     def __init__(self, path: Path) -> None:
         self.parts = Parts(path, ABAQUS)
         self.materials = AbaqusMaterials()
+        self.links = AbaqusLinks()
         self.names: dict[tuple[str, str], str] = {}
-        self.seen: dict[str, TextLine] = {}
         self.open: dict[str, TextLine] = {}
         self.in_assembly = False
 
@@ -80,8 +94,6 @@ class _Reader:
             raise block.line.wrong(f"*{keyword} makes nodes or elements by a rule, which is not read; write each one out")
         if keyword == "SYSTEM" and block.data:
             raise block.line.wrong("*SYSTEM moves the nodes that follow, which is not read; write their global coordinates")
-        if keyword in ("PART", "INSTANCE"):
-            self._once(block)
         if f"END {keyword}" in _QUIET:
             self.open[keyword] = block.line
         elif keyword.startswith("END "):
@@ -96,7 +108,7 @@ class _Reader:
             self._elements(block)
         elif keyword in ("NSET", "ELSET") and (not self.in_assembly or "INSTANCE" in block.parameters):
             self._set(block)
-        elif not self.materials.take(block) and keyword not in _QUIET:
+        elif not self.materials.take(block) and not self.links.take(block) and keyword not in _QUIET:
             self.parts.skipped[f"*{keyword}"] += 1
 
     def mesh(self) -> Mesh:
@@ -105,18 +117,9 @@ class _Reader:
             raise line.wrong(f"*{keyword} has no *END {keyword}; the file is cut short")
         sections = self.materials.sections()
         self.parts.sections = [(self._known("ELSET", name, line), material) for line, name, material in sections]
+        self.links.add_to(self.parts, self._set_of)
         mesh = self.parts.mesh()
-        return replace(mesh, remarks=remarks_of(mesh.skipped))
-
-    def _once(self, block: Block) -> None:
-        """Check that there is one part and one instance, and that the instance is not moved or rotated."""
-        if block.keyword in self.seen:
-            first = self.seen[block.keyword].number
-            raise block.line.wrong(f"this is a second *{block.keyword}, after that in line {first}; the file must hold one body")
-        self.seen[block.keyword] = block.line
-        moves = [line for line in block.data if any(parse_real(field, line) for field in line.text.split(",") if field.strip())]
-        if moves and block.keyword == "INSTANCE":
-            raise moves[0].wrong("the instance is moved or turned, which is not read; it must stand where the part was drawn")
+        return replace(mesh, remarks=(*mesh.remarks, *remarks_of(mesh.skipped)))
 
     def _selection(self, kind: str, name: str) -> Selection:
         """Return the set of a name, ignoring case."""
@@ -144,7 +147,7 @@ class _Reader:
                 where = " in the assembly" if self.in_assembly else ""
                 raise block.line.wrong(
                     f"{shown(given)}{where} is a solid element that is not read; "
-                    "the part must be of C3D4, C3D6, C3D8, C3D10, C3D15, C3D20 or C3D27"
+                    "the part must be of C3D4, C3D5, C3D6, C3D8, C3D10, C3D13, C3D15, C3D20 or C3D27"
                 )
             if not given:
                 raise block.line.wrong("*ELEMENT has no TYPE; it must have one, such as TYPE=C3D10")
@@ -198,12 +201,17 @@ class _Reader:
                     included.add(text)
                     self.parts.add_members(line, chosen, self._known(kind, text.strip('"'), line))
 
-    def _known(self, kind: str, name: str, line: TextLine) -> Selection:
+    def _set_of(self, kind: str, name: str) -> Selection | None:
+        """Return the set of a name, with or without the instance before it; None if there is none."""
         exact = next((key for key in (name.upper(), name.rpartition(".")[2].upper()) if (kind, key) in self.names), None)
-        if exact is None:
+        return None if exact is None else self._selection(kind, exact)
+
+    def _known(self, kind: str, name: str, line: TextLine) -> Selection:
+        found = self._set_of(kind, name)
+        if found is None:
             suggestion = did_you_mean(name.upper(), [key for of, key in self.names if of == kind and len(key) < 100][:1000])
             raise line.wrong(f"{shown(name)} is neither a number nor a *{kind} before this line; it must be one of them.{suggestion}")
-        return self._selection(kind, exact)
+        return found
 
 
 def _range(texts: list[str], line: TextLine) -> tuple[int, int, int]:

@@ -16,8 +16,19 @@ from vibroimpact.shown import shown
 from vibroimpact.structures.element_kinds import ELEMENT_KINDS
 from vibroimpact.structures.mesh import Mesh
 
-_SOLIDS = {4: "tet4", 11: "tet10", 6: "wedge6", 18: "wedge15", 5: "hex8", 17: "hex20", 12: "hex27"}
-_PRISMS = {13: "prism of 18 nodes", 7: "pyramid", 14: "pyramid", 19: "pyramid"}
+_SOLIDS = {
+    4: "tet4",
+    11: "tet10",
+    6: "wedge6",
+    18: "wedge15",
+    7: "pyramid5",
+    19: "pyramid13",
+    14: "pyramid14",
+    5: "hex8",
+    17: "hex20",
+    12: "hex27",
+}
+_PRISM18 = 13
 # elements of points, lines and surfaces: dimension and number of nodes
 _SKINS = {15: (0, 1), 1: (1, 2), 8: (1, 3), 2: (2, 3), 9: (2, 6), 3: (2, 4), 16: (2, 8), 10: (2, 9)}
 _MOST_GROUPS = 100  # per entity: each of its elements is added to all of them
@@ -39,7 +50,7 @@ def read_gmsh(path: str | PathLike[str]) -> Mesh:
     Raises
     ------
     InputError
-        If it is not such a file, is binary, or has prisms of 18 nodes, pyramids or elements of higher than second order.
+        If it is not such a file, is binary, or has prisms of 18 nodes or elements of higher than second order.
 
     Examples
     --------
@@ -178,9 +189,9 @@ class _Reader:
 
     def _element(self, line: TextLine, gmsh_type: int, number: str, words: list[str], tags: list[int]) -> None:
         if gmsh_type not in _SOLIDS and gmsh_type not in _SKINS:
-            what = f"is a {_PRISMS[gmsh_type]}" if gmsh_type in _PRISMS else f"is of type {gmsh_type}"
+            what = "is a prism of 18 nodes" if gmsh_type == _PRISM18 else f"is of type {gmsh_type}"
             raise line.wrong(
-                f"the element {what}, which is not read; the solids must be tetrahedra, prisms or bricks of first or second order"
+                f"the element {what}, which is not read; the solids must be tetrahedra, prisms, pyramids or bricks of first or second order"
             )
         solid = _SOLIDS.get(gmsh_type)
         dimension, count = (3, len(ELEMENT_KINDS[solid].reference)) if solid else _SKINS[gmsh_type]

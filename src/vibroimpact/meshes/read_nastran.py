@@ -10,17 +10,26 @@ from os import PathLike
 from pathlib import Path
 
 from vibroimpact.errors import InputError
+from vibroimpact.meshes.edge_nodes import OMITTED
 from vibroimpact.meshes.left_out import remarks_of
 from vibroimpact.meshes.nastran_cards import Card, cards, nastran_include
 from vibroimpact.meshes.nastran_coordinates import NastranGrids
+from vibroimpact.meshes.nastran_links import NastranLinks
 from vibroimpact.meshes.nastran_materials import NastranMaterials
 from vibroimpact.meshes.node_order import NASTRAN
-from vibroimpact.meshes.parsed_mesh import Parts, Selection
+from vibroimpact.meshes.parsed_mesh import Parts
+from vibroimpact.meshes.selection import Selection
 from vibroimpact.meshes.text_files import TextLine, parse_integer, read_lines_with_includes
 from vibroimpact.shown import shown
 from vibroimpact.structures.mesh import Mesh
 
-_KINDS = {"CTETRA": {4: "tet4", 10: "tet10"}, "CPENTA": {6: "wedge6", 15: "wedge15"}, "CHEXA": {8: "hex8", 20: "hex20"}}
+_KINDS = {
+    "CTETRA": {4: "tet4", 10: "tet10"},
+    "CPYRAM": {5: "pyramid5", 13: "pyramid13"},
+    "CPYRA": {5: "pyramid5", 13: "pyramid13"},
+    "CPENTA": {6: "wedge6", 15: "wedge15"},
+    "CHEXA": {8: "hex8", 20: "hex20"},
+}
 _OTHER_SOLIDS = ("CTETRA", "CHEX", "CPENT", "CPYR", "CWEDGE")
 _BEGIN = re.compile(r"\s*BEGIN[\s,]+(\w*)", re.IGNORECASE)
 _SET = re.compile(r"\s*SET\s+(\d{1,18})\s*=(.*)", re.IGNORECASE)
@@ -30,10 +39,11 @@ _SET_NAME = re.compile(r"\$ node set (\d{1,18}): (\S.*)")
 def read_nastran(path: str | PathLike[str]) -> Mesh:
     """Read the solid elements of a Nastran file (bulk data, with or without executive and case control).
 
-    The mesh consists of CTETRA, CPENTA, CHEXA and GRID cards, also in coordinate systems of CORD1 and CORD2 cards. The elements of
+    The mesh consists of CTETRA, CPYRAM, CPENTA, CHEXA and GRID cards, also in coordinate systems of CORD1 and CORD2 cards. The elements of
     property n form the set `PIDn`, the nodes of SPC1 cards the set `SPCn`, and those of `SET n` in case control the set `SETn`, or the
     name in a comment "$ node set n: name". The materials of PSOLID cards are in `Mesh.stated`, as `MIDn`; elements of a fluid are left
-    out. Other cards are counted in `Mesh.skipped`.
+    out. Rigid elements and multipoint constraints are in `Mesh.joints`. Nodes in the middle of edges that are left blank are those of
+    neighbours, or new ones halfway. Other cards are counted in `Mesh.skipped`.
 
     Parameters
     ----------
@@ -58,23 +68,26 @@ def read_nastran(path: str | PathLike[str]) -> Mesh:
     """
     path = Path(path)
     parts = Parts(path, NASTRAN)
+    links = NastranLinks()
     lines = list(read_lines_with_includes(path, nastran_include))
     begin = next((index for index, line in enumerate(lines) if _BEGIN.match(line.text)), None)
     if begin is not None:
         _check_begin(lines[begin])
         _read_sets(lines[:begin], parts)
+        links.control(lines[:begin])
         lines = lines[begin + 1 :]
     ended, grids, materials, held = False, NastranGrids(), NastranMaterials(), Counter[str]()
     for card in cards(lines):
         ended = card.name == "ENDDATA"
-        if not ended and not materials.take(card):
+        if not ended and not materials.take(card) and not links.take(card):
             _read_card(card, parts, grids, held)
     if begin is not None and not ended:
         raise InputError(f"{path}: there is a BEGIN BULK but no ENDDATA; the file is cut short")
     grids.add_to(parts)
+    links.add_to(parts, grids.turned)
     parts.sections = materials.sections(parts.element_sets)
     mesh = parts.mesh()
-    return replace(mesh, remarks=remarks_of({**mesh.skipped, **held}))
+    return replace(mesh, remarks=(*mesh.remarks, *remarks_of({**mesh.skipped, **held})))
 
 
 def _check_begin(line: TextLine) -> None:
@@ -93,7 +106,7 @@ def _read_card(card: Card, parts: Parts, grids: NastranGrids, held: Counter[str]
     if name in _KINDS:
         _read_solid(card, parts)
     elif name.startswith(_OTHER_SOLIDS):
-        raise line.wrong(f"{shown(name)} is a solid element that is not read; the elements must be CTETRA, CPENTA or CHEXA")
+        raise line.wrong(f"{shown(name)} is a solid element that is not read; the elements must be CTETRA, CPYRAM, CPENTA or CHEXA")
     elif name.startswith("INCLUDE"):
         raise line.wrong("the file to include is not given; its name must stand in quotes on the line of INCLUDE")
     elif name == "SPC1":
@@ -113,10 +126,13 @@ def _read_solid(card: Card, parts: Parts) -> None:
     while nodes and nodes[-1] == 0:
         nodes.pop()
     kinds = _KINDS[name]
-    if len(nodes) not in kinds or 0 in nodes:
-        takes = " or ".join(map(str, kinds))
-        raise line.wrong(f"{name} {number} has {len(nodes) - nodes.count(0)} nodes; it must have {takes}, with none left blank")
-    parts.add_element(line, kinds[len(nodes)], number, nodes)
+    corners, most = kinds
+    if not corners <= len(nodes) <= most or 0 in nodes[:corners]:
+        given = len(nodes) - nodes.count(0)
+        raise line.wrong(f"{name} {number} has {given} nodes; it must have {corners} or {most}, and only nodes on edges may be left blank")
+    count = corners if len(nodes) == corners else most
+    nodes = [node or OMITTED for node in [*nodes, *[0] * (count - len(nodes))]]
+    parts.add_element(line, kinds[count], number, nodes)
     pid = parse_integer(fields[1], line, "the number of a property") if fields[1] else number
     parts.element_sets[f"PID{pid}"].numbers.add(number)
 

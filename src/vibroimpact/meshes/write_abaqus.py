@@ -13,7 +13,17 @@ from vibroimpact.materials import Material
 from vibroimpact.meshes.deck_mesh import check_shell_thickness, deck_mesh
 from vibroimpact.structures.mesh import Mesh
 
-_TYPES = {"tet4": "C3D4", "tet10": "C3D10", "wedge6": "C3D6", "wedge15": "C3D15", "hex8": "C3D8", "hex20": "C3D20", "quad8": "S8R"}
+_TYPES = {
+    "tet4": "C3D4",
+    "tet10": "C3D10",
+    "wedge6": "C3D6",
+    "wedge15": "C3D15",
+    "pyramid5": "C3D5",
+    "pyramid13": "C3D13",
+    "hex8": "C3D8",
+    "hex20": "C3D20",
+    "quad8": "S8R",
+}
 _A_LINE = 16
 """Largest number of entries on a line."""
 
@@ -21,7 +31,8 @@ _A_LINE = 16
 def write_abaqus(mesh: Mesh, path: str | PathLike[str], material: Material | None = None, thickness: float | None = None) -> None:
     """Write a mesh with its sets as an Abaqus input file in metres, kilograms and seconds.
 
-    27-node bricks become C3D20, which other programs read too; each plate element becomes four S8R.
+    27-node bricks become C3D20, which other programs read too, and 14-node pyramids C3D13, which Abaqus does not have;
+    each plate element becomes four S8R. Joints become *EQUATION.
 
     Parameters
     ----------
@@ -67,6 +78,9 @@ def write_abaqus(mesh: Mesh, path: str | PathLike[str], material: Material | Non
     for keyword, sets in (("NSET", export.node_sets), ("ELSET", export.element_sets)):
         for name, members in sets.items():
             rows += [f"*{keyword}, {keyword}={_quoted(name)}", *_rows(members.tolist())]
+    for equation in export.equations:
+        rows += ["*EQUATION", str(len(equation))]
+        rows += [f"{node}, {axis}, {value!r}" for node, axis, value in equation]
     names: dict[int, str] = {}
     for of, one in export.materials.items():
         names[of] = _quoted(one.name or "material") if _quoted(one.name or "material") not in names.values() else f"material-{of + 1}"

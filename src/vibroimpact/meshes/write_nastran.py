@@ -20,10 +20,14 @@ _CARDS = {
     "tet10": "CTETRA",
     "wedge6": "CPENTA",
     "wedge15": "CPENTA",
+    "pyramid5": "CPYRAM",
+    "pyramid13": "CPYRAM",
     "hex8": "CHEXA",
     "hex20": "CHEXA",
     "quad8": "CQUAD8",
 }
+_JOINTS = 1
+"""Set of the multipoint constraints."""
 _SOLIDS, _SHELLS, _OWN = 1, 2, 3
 """Property of solids of the body's material, of shells, and the first one of solids with materials of their own."""
 
@@ -33,9 +37,9 @@ def write_nastran(
 ) -> None:
     """Write a mesh as Nastran bulk data in metres, kilograms and seconds.
 
-    27-node bricks become 20-node CHEXA, each plate element four CQUAD8. Solids have property 1, shells property 2, and solids with
-    materials of their own the properties from 3 on, which have the numbers of the materials. Node sets become
-    SETs of case control, named in comments; element sets are omitted.
+    27-node bricks become 20-node CHEXA, 14-node pyramids 13-node CPYRAM, each plate element four CQUAD8. Solids have property 1, shells
+    property 2, and solids with materials of their own the properties from 3 on, which have the numbers of the materials. Node sets
+    become SETs of case control, named in comments; element sets are omitted. Joints become MPC.
 
     Parameters
     ----------
@@ -73,6 +77,8 @@ def write_nastran(
         rows.append(f"TITLE = {_one_line(title)[:60]}")
     for number, (name, nodes) in enumerate(export.node_sets.items(), 1):
         rows += [f"$ node set {number}: {_one_line(name)}", *_set(number, nodes)]
+    if export.equations:
+        rows.append(f"MPC = {_JOINTS}")
     rows.append("BEGIN BULK")
     shapes = {shape for shape, _ in export.blocks}
     for number, one in export.materials.items():
@@ -93,6 +99,8 @@ def write_nastran(
             own = int(export.element_materials[number])
             number += 1
             rows += _card(_CARDS[shape], [number, _SHELLS if shape == "quad8" else _SOLIDS if own < 0 else _OWN + own, *members])
+    for equation in export.equations:
+        rows += _constraint(equation)
     write_text_file(path, "\n".join([*rows, "ENDDATA", ""]))
 
 
@@ -124,6 +132,14 @@ def nastran_number(value: float) -> str:
 def _card(name: str, numbers: Sequence[int]) -> Iterator[str]:
     for start in range(0, len(numbers), 8):
         yield f"{name if start == 0 else '+':8}" + "".join(f"{number:8d}" for number in numbers[start : start + 8])
+
+
+def _constraint(equation: Sequence[tuple[int, int, float]]) -> Iterator[str]:
+    """Yield the lines of a multipoint constraint in large fields, two terms to each pair of lines."""
+    for start in range(0, len(equation), 2):
+        terms = [f"{node:16d}{axis:16d}{nastran_number(value):>16}" for node, axis, value in equation[start : start + 2]]
+        yield f"MPC*    {_JOINTS:16d}{terms[0]}" if start == 0 else f"*       {'':16}{terms[0]}"
+        yield f"*       {terms[1]}" if len(terms) > 1 else "*"
 
 
 def _set(number: int, nodes: Integers) -> Iterator[str]:

@@ -14,9 +14,23 @@ from vibroimpact.arrays import Floats, Integers
 from vibroimpact.errors import InputError
 from vibroimpact.files.atomic_write import write_text_file
 from vibroimpact.meshes.deck_mesh import nine_node_shells
-from vibroimpact.structures.mesh import Mesh
+from vibroimpact.structures.mesh import ElementBlock, Mesh
 
-_CELLS = {"tet4": 10, "tet10": 24, "wedge6": 13, "wedge15": 26, "hex8": 12, "hex20": 25, "hex27": 29, "quad25": 28}
+_CELLS = {
+    "tet4": 10,
+    "tet10": 24,
+    "wedge6": 13,
+    "wedge15": 26,
+    "pyramid5": 14,
+    "pyramid13": 27,
+    "pyramid14": 27,
+    "hex8": 12,
+    "hex20": 25,
+    "hex27": 29,
+    "quad25": 28,
+}
+_PYRAMID_NODES = 13
+"""Of the pyramid of VTK that ParaView draws for that of 14 nodes."""
 _TYPES = {"float64": "Float64", "float32": "Float32", "int64": "Int64", "int32": "Int32", "uint8": "UInt8"}
 
 
@@ -56,14 +70,18 @@ def write_vtu(mesh: Mesh, path: str | PathLike[str], point_data: Mapping[str, Ar
 
 def cells_of(mesh: Mesh) -> tuple[Integers, Integers, NDArray[np.uint8]]:
     """Return the cells of a mesh as VTK arrays: connectivity, offsets and cell types."""
-    cells: list[tuple[int, Integers]] = [
-        (_CELLS[block.kind], nine_node_shells(block.connectivity) if block.kind == "quad25" else block.connectivity)
-        for block in mesh.blocks
-    ]
+    cells: list[tuple[int, Integers]] = [(_CELLS[block.kind], _cell_nodes(block)) for block in mesh.blocks]
     sizes = np.concatenate([np.zeros(0, dtype=np.int64), *(np.full(len(nodes), nodes.shape[1]) for _, nodes in cells)])
     nodes = np.concatenate([np.zeros(0, dtype=np.int64), *(nodes.ravel() for _, nodes in cells)])
     types = np.concatenate([np.zeros(0, dtype=np.uint8), *(np.full(len(nodes), cell, dtype=np.uint8) for cell, nodes in cells)])
     return nodes, np.cumsum(sizes), types
+
+
+def _cell_nodes(block: ElementBlock) -> Integers:
+    """Return the nodes of the cells of a block."""
+    if block.kind == "quad25":
+        return nine_node_shells(block.connectivity)
+    return block.connectivity[:, :_PYRAMID_NODES] if block.kind == "pyramid14" else block.connectivity
 
 
 def grid_text(points: NDArray[np.floating], nodes: NDArray[np.integer], ends: NDArray[np.integer], types: NDArray[np.uint8]) -> str:

@@ -19,7 +19,7 @@ def assemble_solid(mesh: Mesh, material: Material) -> tuple[csr_array, csr_array
     Parameters
     ----------
     mesh : Mesh
-        Mesh of tetrahedra, wedges and bricks, with the materials of its elements if there are several.
+        Mesh of tetrahedra, wedges, pyramids and bricks, with the materials of its elements if there are several.
     material : Material
         Density, Young's modulus and Poisson's ratio of the elements that have no material of their own.
 

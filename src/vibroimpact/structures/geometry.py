@@ -12,7 +12,7 @@ from vibroimpact.structures.element_kinds import ElementKind
 from vibroimpact.structures.mesh import ElementBlock, Mesh
 from vibroimpact.structures.parts import part_of_nodes, used_nodes
 
-_TETRAHEDRON = 4  # corners
+_MIRRORED_ALONG_X_Y = (4, 5)  # corners of tetrahedra and pyramids
 _INERTIA_DEGREE = 9  # exact for the product of two coordinates and the Jacobian of a second-order brick
 
 
@@ -112,9 +112,9 @@ def renumbered_by_volume(mesh: Mesh) -> Mesh:
 
 
 def _other_way_round(element: ElementKind) -> Integers:
-    """Return the numbering of a mirrored element: a tetrahedron in the plane of two edges, a wedge or brick from top to bottom."""
+    """Return the numbering of a mirrored element: a tetrahedron or pyramid with x and y exchanged, a wedge or brick from top to bottom."""
     mirrored = element.reference.copy()
-    if element.corners == _TETRAHEDRON:
+    if element.corners in _MIRRORED_ALONG_X_Y:
         mirrored[:, :2] = element.reference[:, 1::-1]
     else:
         mirrored[:, 2] = 1.0 - element.reference[:, 2]
@@ -142,7 +142,9 @@ def check_mesh(mesh: Mesh) -> None:
         first += len(block.connectivity)
     parts = len(np.unique(part_of_nodes(mesh)[used_nodes(mesh)]))
     if parts > 1:
-        raise InputError(f"the mesh consists of {parts} loose parts that share no node; a body is one part: merge coincident nodes")
+        raise InputError(
+            f"the mesh consists of {parts} loose parts that share no node and are not joined; a body is one part: merge coincident nodes"
+        )
 
 
 def _smallest_determinants(mesh: Mesh, block: ElementBlock) -> Floats:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,6 +15,9 @@ from vibroimpact.materials import Material
 from vibroimpact.shown import shown
 from vibroimpact.structures.element_kinds import ELEMENT_KINDS, ElementKind
 from vibroimpact.structures.stated_materials import StatedMaterials
+
+if TYPE_CHECKING:  # not imported at run time, as a case with rigid bodies does not need scipy.sparse
+    from vibroimpact.structures.joints import Joints
 
 
 @dataclass(frozen=True)
@@ -59,6 +63,10 @@ class Mesh:
         Number of each element's material in `materials`, through all blocks in their order; -1 is the material of the body.
     stated : StatedMaterials, optional
         Materials as a mesh file states them, whether they are used or not.
+    joints : Joints, optional
+        Displacements that follow others, by which parts that share no node are joined.
+    joined_by : mapping of str to int
+        Items of a mesh file that made the joints, and how many of each.
     remarks : tuple of str
         What a mesh file holds that is not in the mesh and what that does to the body, one sentence each, without a full stop.
 
@@ -77,6 +85,8 @@ class Mesh:
     materials: tuple[Material, ...] = ()
     element_materials: Integers = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     stated: StatedMaterials | None = None
+    joints: Joints | None = None
+    joined_by: Mapping[str, int] = field(default_factory=dict)
     remarks: tuple[str, ...] = ()
 
     @property

@@ -160,7 +160,8 @@ class ElasticSystem:
         if not shape @ (self.stiffness @ shape) > _ROUNDING * highest:
             raise ComputationError(
                 "the stiffness matrix is singular: part of the body can move without resistance, as a hinge does; "
-                "look for elements that share only an edge or a node"
+                "look for elements that share only an edge or a node, or for equations between nodes that lie apart, "
+                "in place of which *TIE, or one RBE2 of all of them, turns with the body"
             )
 
     def _dense(self, number: int) -> Eigenmodes:

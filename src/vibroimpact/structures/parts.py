@@ -1,4 +1,4 @@
-"""Parts of a mesh that share no node, and the one of them at a place."""
+"""Parts of a mesh that share no node and are not joined, and the one of them at a place."""
 
 from __future__ import annotations
 
@@ -16,12 +16,14 @@ _MOST_NAMED = 3
 
 
 def part_of_nodes(mesh: Mesh) -> Integers:
-    """Return a number for each node, equal for nodes that elements connect."""
+    """Return a number for each node, equal for nodes that elements or joints connect."""
     from scipy.sparse.csgraph import connected_components  # imported late: modes that are stored do not need it
 
     pairs = [
         (np.repeat(block.connectivity[:, 0], block.connectivity.shape[1] - 1), block.connectivity[:, 1:].ravel()) for block in mesh.blocks
     ]
+    if mesh.joints is not None:
+        pairs.append(mesh.joints.pairs)
     start, end = (np.concatenate(side) for side in zip(*pairs, strict=True))
     number = len(mesh.nodes)
     found = connected_components(coo_array((np.ones(len(start)), (start, end)), shape=(number, number)), directed=False)[1]
@@ -34,7 +36,7 @@ def used_nodes(mesh: Mesh) -> Integers:
 
 
 def number_of_parts(mesh: Mesh) -> int:
-    """Return the number of parts of a mesh that share no node.
+    """Return the number of parts of a mesh that share no node and are not joined.
 
     Examples
     --------
@@ -51,7 +53,7 @@ def part_at(mesh: Mesh, spot: Spot, side: Side) -> Mesh:
     Parameters
     ----------
     mesh : Mesh
-        A mesh of one or several parts that share no node.
+        A mesh of one or several parts that share no node and are not joined.
     spot : tuple of two floats, str or None
         x and y [m], the name of a set, or None for the highest or lowest node.
     side : str
@@ -76,9 +78,9 @@ def part_at(mesh: Mesh, spot: Spot, side: Side) -> Mesh:
     others = [extent_text(mesh, labels == part) for part in parts if part != labels[touched]]
     more = f" and {len(others) - _MOST_NAMED} more" if len(others) > _MOST_NAMED else ""
     remark = (
-        f"the mesh file holds {len(parts)} parts that share no node; the body is the one at the contact point, "
+        f"the mesh file holds {len(parts)} parts that share no node and are not joined; the body is the one at the contact point, "
         f"{extent_text(mesh, chosen)}, and {', '.join(others[:_MOST_NAMED])}{more} are left out: "
-        "to join parts, merge their coincident nodes"
+        "to join parts, tie them in the file (*TIE, RBE2) or merge their coincident nodes"
     )
     found = _with_nodes(mesh, chosen)
     return replace(found, remarks=(*found.remarks, remark))
@@ -121,4 +123,5 @@ def _with_nodes(mesh: Mesh, chosen: Bools) -> Mesh:
         element_sets=element_sets,
         element_materials=materials,
         stated=stated,
+        joints=None if mesh.joints is None else mesh.joints.of_nodes(chosen),
     )

@@ -38,7 +38,7 @@ from vibroimpact.structures.stated_materials import contradictions
 from vibroimpact.structures.store import key_of, load_model, save_model, store_folder
 from vibroimpact.structures.structure import Structure, plate_structure, solid_structure
 from vibroimpact.structures.supports.constraints import HeldStructure
-from vibroimpact.structures.supports.support import Support, held_by
+from vibroimpact.structures.supports.support import Support, held_by, joint_remarks
 from vibroimpact.structures.surface import Side, Spot, place_of, surface_motion
 
 Place = tuple[Spot, Side]
@@ -317,8 +317,11 @@ def computed_model(recipe: Recipe, progress: Progress | None = None) -> ModalMod
         "elements": ", ".join(f"{len(block.connectivity)} {block.kind}" for block in structure.mesh.blocks),
         "degrees of freedom": f"{held.stiffness.shape[0]}",
         "materials": structure.mesh.materials_text,
+        "joined by": ", ".join(f"{name} ({count})" for name, count in structure.mesh.joined_by.items()),
         "left out of the file": ", ".join(f"{name} ({count})" for name, count in structure.mesh.skipped.items()),
-        REMARKS: "\n".join([*structure.mesh.remarks, *contradictions(structure.mesh.stated, material)]),
+        REMARKS: "\n".join(
+            [*structure.mesh.remarks, *joint_remarks(held, recipe.supports), *contradictions(structure.mesh.stated, material)]
+        ),
         MAIN_CAUSE: main_cause(parts),
         "processor time": f"{time.process_time() - begun:.2f} s",
     }

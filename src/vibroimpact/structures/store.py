@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any, BinaryIO, TypeVar
 
 import numpy as np
+from scipy.sparse import coo_array, csr_array
 
 from vibroimpact._version import __version__
 from vibroimpact.errors import InputError
@@ -27,11 +28,12 @@ from vibroimpact.files.json_reading import parse_json
 from vibroimpact.files.recover import clear
 from vibroimpact.materials import Material
 from vibroimpact.structures.geometry import MassProperties
+from vibroimpact.structures.joints import Joints
 from vibroimpact.structures.memory_cache import MemoryCache
 from vibroimpact.structures.mesh import ElementBlock, Mesh
 from vibroimpact.structures.modal_model import ModalModel
 
-FORMAT = 5
+FORMAT = 6
 """Part of every key: to be increased when the stored data, or their computation, change; earlier entries are then not found."""
 
 PLACE = "VIBROIMPACT_STORE"
@@ -293,6 +295,10 @@ def _parts(model: ModalModel) -> dict[str, Any]:
     if model.mesh.materials:
         table = [[one.name, one.density, one.youngs_modulus, one.poissons_ratio] for one in model.mesh.materials]
         parts |= {"materials": _text_array(table), "element_materials": model.mesh.element_materials}
+    joints = model.mesh.joints
+    if joints is not None:
+        entries = joints.weights.tocoo()
+        parts |= {"followers": joints.followers, "movers": np.stack([entries.row, entries.col]), "weights": entries.data}
     for index, block in enumerate(model.mesh.blocks):
         parts[f"block:{index}:{block.kind}"] = block.connectivity
     for name, nodes in model.mesh.node_sets.items():
@@ -324,6 +330,10 @@ def _model(entry: Mapping[str, Any]) -> ModalModel:
         rows = parse_json(entry["materials"].tobytes())
         materials = tuple(Material(density, modulus, ratio, name=name) for name, density, modulus, ratio in rows)
         mesh = dataclasses.replace(mesh, materials=materials, element_materials=entry["element_materials"])
+    if "followers" in entry:
+        shape = (len(entry["followers"]), mesh.nodes.size)
+        weights = csr_array(coo_array((entry["weights"], tuple(entry["movers"])), shape=shape))
+        mesh = dataclasses.replace(mesh, joints=Joints(entry["followers"], weights))
     mass, thickness = entry["numbers"].tolist()
     return ModalModel(
         mesh,

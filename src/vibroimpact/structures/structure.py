@@ -15,6 +15,7 @@ from vibroimpact.structures.bed import bed_stiffness, end_compliance
 from vibroimpact.structures.elasticity import assemble_solid
 from vibroimpact.structures.factor import check_factor_memory, factor_entries, nested_dissection
 from vibroimpact.structures.geometry import MassProperties, check_mesh, mass_properties
+from vibroimpact.structures.joints import hubs, joined_adjacency
 from vibroimpact.structures.mesh import Mesh
 from vibroimpact.structures.plate_element import assemble_plate
 
@@ -58,8 +59,15 @@ class Structure:
         InputError
             If the factors would not fit into the free memory.
         """
-        adjacency = node_adjacency(self.mesh)
-        parts = nested_dissection(self.mesh.nodes, adjacency)
+        adjacency, joints = node_adjacency(self.mesh), self.mesh.joints
+        last = np.zeros(len(self.mesh.nodes), dtype=bool)
+        if joints is not None:
+            adjacency = joined_adjacency(adjacency, joints)
+            last = hubs(joints, len(self.mesh.nodes))
+        first = np.flatnonzero(~last)
+        parts = [first[part] for part in nested_dissection(self.mesh.nodes[first], adjacency[first][:, first])]
+        if last.any():
+            parts.append(np.flatnonzero(last))
         check_factor_memory(self.stiffness.shape[0], self.mesh.dofs_per_node**2 * factor_entries(parts, adjacency))
         return (self.mesh.dofs_per_node * np.concatenate(parts)[:, None] + np.arange(self.mesh.dofs_per_node)).ravel()
 

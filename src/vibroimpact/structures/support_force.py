@@ -97,6 +97,7 @@ def support_force_key(recipe: Recipe, place: tuple[float, float], side: Side, sp
 def computed_support_forces(recipe: Recipe, place: tuple[float, float], side: Side, spots: Sequence[Spot]) -> SupportForces:
     """Return the forces of supports, computed anew; parameters and errors are those of `support_forces`."""
     structure, _, displacements = responses_to_spread_forces(recipe, [place], side, lambda _, thickness: spread_at_face(recipe, thickness))
+    _refuse_joints(structure, recipe.supports)
     shares = _shares(structure, recipe.supports)
     rows = [shares[support_at(structure, recipe.supports, spot)] for spot in spots]
     stiffness, mass = (np.array([(row @ matrix).toarray() for row in rows]) for matrix in (structure.stiffness, structure.mass))
@@ -130,6 +131,25 @@ def _nodes(structure: Structure, support: Support) -> Integers:
     support.hold(constraints)
     dofs = constraints.touched
     return np.unique(dofs[dofs < structure.stiffness.shape[0]] // structure.mesh.dofs_per_node)
+
+
+def _refuse_joints(structure: Structure, supports: Sequence[Support]) -> None:
+    """Raise if a support holds a node that is joined to others.
+
+    Raises
+    ------
+    InputError
+        If one does: what holds the node is then the support and the joint together.
+    """
+    joints = structure.mesh.joints
+    if joints is None:
+        return
+    for one in supports:
+        if np.isin(_nodes(structure, one), joints.nodes).any():
+            raise InputError(
+                f"the force of {one.description} is not known: it holds nodes that the mesh file joins to others; "
+                "leave out its force sensor, or move the support"
+            )
 
 
 def _shares(structure: Structure, supports: Sequence[Support]) -> list[csr_array]:

@@ -19,7 +19,10 @@ Spot = tuple[float, float] | str | None
 """x and y [m]; or the name of a set of nodes, for its centre; or None, for the highest or lowest node."""
 
 _NO_SHARE = 1e-9  # least weight of a node in the displacement of a place to which it belongs
+_ON_FACE = 1e-9  # distance of a node of the reference element from a face
 _OUTSIDE = 1e-6  # tolerance of a point beyond the edge of a face, relative to the length of the face
+_FROM_APEX = 1e-9  # by which gradients on faces of pyramids are taken nearer to the middle of the face
+_MIDDLE = 1.0 / 3.0
 _NEWTON_STEPS = 20
 _CONVERGED = 1e-10  # last step of Newton's method in local coordinates: it is quadratic, so that the rest is rounding
 _STARTS = (
@@ -39,6 +42,13 @@ class Faces:
     corners: tuple[int, ...]
     connectivity: Integers
 
+    @property
+    def has_node(self) -> Bools:
+        """Which nodes of the element lie on the face."""
+        corner = self.kind.reference[list(self.corners)]
+        normal = np.cross(corner[1] - corner[0], corner[2] - corner[0])
+        return np.asarray(np.abs((self.kind.reference - corner[0]) @ normal) < _ON_FACE)
+
     def reference_points(self, local: Floats) -> Floats:
         """Return the points of the reference element (points, dimension) at local coordinates of the face (points, 2)."""
         a, b = local[:, :1], local[:, 1:]
@@ -51,6 +61,8 @@ class Faces:
     def shape_functions(self, local: Floats) -> tuple[Floats, Floats]:
         """Return shape functions (points, nodes) and their derivatives in the coordinates of the face (points, 2, nodes)."""
         values, gradients = self.kind.basis(self.reference_points(local))
+        if self.kind.is_pyramid:  # along a face they are continuous up to the apex, if they are taken on the face
+            gradients = self.kind.basis(self.reference_points(local + _FROM_APEX * (_MIDDLE - local)))[1]
         step = (
             0.5 * np.stack([np.eye(2), -np.eye(2)])[:, :, None]
         )  # a difference over one unit is exact, as the map is linear along either axis
@@ -100,12 +112,7 @@ def lower_nodes(mesh: Mesh) -> Integers:
     """Return the nodes of the faces with a normal downwards; for plate elements all nodes."""
     if mesh.is_flat:
         return np.arange(len(mesh.nodes))
-    found = []
-    for faces in facing(mesh, "lower"):
-        corner = faces.kind.reference[list(faces.corners)]
-        normal = np.cross(corner[1] - corner[0], corner[2] - corner[0])
-        on_face = np.abs((faces.kind.reference - corner[0]) @ normal) < 1e-9
-        found.append(faces.connectivity[:, on_face].ravel())
+    found = [faces.connectivity[:, faces.has_node].ravel() for faces in facing(mesh, "lower")]
     return np.unique(np.concatenate(found)) if found else np.zeros(0, dtype=np.int64)
 
 

@@ -68,7 +68,7 @@ class BroughtMeshTable(Section):
     def brought(self, contact: Spot, side: Side) -> ImportedMesh:
         """Return the mesh, which is identified by the checksum of its file and of those it includes, and read when it is first used.
 
-        Of a file with several parts that share no node it is the part at the contact, and identified by its nodes too.
+        Of a file with several parts that are not joined it is the part at the contact, and identified by its nodes too.
 
         Parameters
         ----------
@@ -96,7 +96,7 @@ class BroughtMeshTable(Section):
         return ImportedMesh(digest, read)
 
     def _number_of_parts(self, digest: str) -> int:
-        """Return the number of parts of the file that share no node, from the store if it is there."""
+        """Return the number of parts of the file that are not joined, from the store if it is there."""
         from vibroimpact.meshes.mesh_file import mesh_of_file
         from vibroimpact.structures.parts import number_of_parts
         from vibroimpact.structures.store import hold_entry, key_of, load_entry, save_entry
@@ -118,7 +118,7 @@ class BroughtMeshTable(Section):
         return table
 
     def read(self, contact: tuple[Spot, Side] | None = None) -> Mesh:
-        """Read the mesh, with coordinates in metres; of several parts that share no node the one at the contact, or all."""
+        """Read the mesh, with coordinates in metres; of several parts that are not joined the one at the contact, or all."""
         from vibroimpact.meshes.mesh_file import read_mesh
 
         return self._with_keys(lambda: read_mesh(self.file, self.unit, self.element_size, self.materials, contact))

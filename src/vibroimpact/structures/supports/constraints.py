@@ -10,8 +10,10 @@ from scipy.sparse import block_diag, coo_array, csr_array, diags_array, kron
 from vibroimpact.arrays import Floats, Integers
 from vibroimpact.errors import InputError
 from vibroimpact.structures.bed import area_products, elements_within, patch_bed
+from vibroimpact.structures.joints import Joints
 from vibroimpact.structures.structure import Structure, rotation_columns
 
+_NONE = 1e-9  # of the largest coefficient of a row: what is left of one that follows from others is rounding
 _STILL = 1e-12  # relative energy or displacement of a rigid motion that counts as rounding
 
 
@@ -97,9 +99,25 @@ class Constraints:
                     waiting += [(other, value * share) for other, share in self._ties[dof].items()]
                 else:
                     weights[dof] = weights.get(dof, 0.0) + value
-            if any(weights.values()):
+            size = float(np.abs(part.data).max(initial=0.0))
+            if max(map(abs, weights.values()), default=0.0) > _NONE * size:
                 largest = max(weights, key=lambda dof: abs(weights[dof]))
                 self._ties[largest] = {dof: -value / weights[largest] for dof, value in weights.items() if dof != largest}
+
+    def join(self, joints: Joints) -> None:
+        """Let displacements follow others, by the joints of the mesh; supports come before, as what they hold does not follow."""
+        supported = self._ties.keys() | {other for tie in self._ties.values() for other in tie}
+        touched = []
+        for follower, weights in joints.rows():
+            if follower in supported or not supported.isdisjoint(weights):
+                touched.append((follower, weights))
+            else:
+                self._ties[follower] = weights
+        for follower, weights in touched:
+            columns = np.array([follower, *weights], dtype=np.int64)
+            values = np.array([-1.0, *weights.values()])
+            row = coo_array((values, (np.zeros(len(columns), dtype=np.int64), columns)), shape=(1, self._size))
+            self.hold_motion(csr_array(row))
 
     def attach(self, nodes: Integers, radius: float, body: tuple[Integers, Floats] | None = None) -> None:
         """Hold the lower face at nodes, or attach it to a rigid body; through a bed if the structure has one.
@@ -240,9 +258,7 @@ class Constraints:
         rows, columns = np.concatenate([free, rows]), np.concatenate([free, columns])
         values = np.concatenate([np.ones(len(free)), values])
         whole = csr_array(coo_array((values, (rows, columns)), shape=(self._size, self._size)))
-        for _ in range(4):  # substitute ties to degrees of freedom that are tied themselves
-            if whole[:, tied].nnz == 0:
-                break
+        while whole[:, tied].nnz:  # substitute ties to degrees of freedom that are tied themselves
             whole = csr_array(whole @ whole)
             whole.eliminate_zeros()
         return csr_array(whole[:, free]), free

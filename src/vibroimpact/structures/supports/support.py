@@ -14,6 +14,8 @@ from vibroimpact.structures.structure import Structure
 from vibroimpact.structures.supports.constraints import Constraints, HeldStructure
 from vibroimpact.structures.surface import lower_nodes
 
+_RIGID = 6  # motions of a free body
+
 
 @dataclass(frozen=True)
 class Support:
@@ -69,7 +71,20 @@ def held_by(structure: Structure, supports: Sequence[Support] = ()) -> HeldStruc
     constraints = Constraints(structure)
     for support in supports:
         support.hold(constraints)
+    if structure.mesh.joints is not None:
+        constraints.join(structure.mesh.joints)
     return constraints.held()
+
+
+def joint_remarks(held: HeldStructure, supports: Sequence[Support]) -> list[str]:
+    """Return a remark if the joints of a mesh file hold the body as supports do."""
+    structure = held.structure
+    if structure.mesh.joints is None:
+        return []
+    free = held_by(structure) if supports else held
+    missing = _RIGID - len(free.rigid_coefficients)
+    words = f"the joints of the mesh file resist {missing} of the {_RIGID} rigid motions of the body, as supports do"
+    return [f"{words}: their equations are not those of bodies that move freely, or join nodes that are apart"] if missing else []
 
 
 def nodes_within(structure: Structure, x: float, y: float, reach: Floats | float, what: str) -> Integers:

@@ -1,0 +1,281 @@
+"""Equations, couplings, rigid bodies and tied surfaces of an Abaqus input file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from vibroimpact.meshes.abaqus_blocks import Block
+from vibroimpact.meshes.links import COMPONENTS, Distance, Equation, Mean, Rigid
+from vibroimpact.meshes.parsed_mesh import Parts
+from vibroimpact.meshes.selection import Selection
+from vibroimpact.meshes.text_files import TextLine, parse_integer, parse_real
+from vibroimpact.meshes.tied_surfaces import MeshSurface, Tie
+from vibroimpact.structures.joints import AXES
+
+_ALL = tuple(range(COMPONENTS))
+_DISPLACEMENTS = tuple(range(AXES))
+_TERMS = 3  # entries of a term of an equation
+_KEYWORDS = {"EQUATION", "MPC", "COUPLING", "KINEMATIC", "DISTRIBUTING", "KINEMATIC COUPLING", "RIGID BODY", "TIE", "SURFACE", "TRANSFORM"}
+_CYCLIC = ("CYCLIC SYMMETRY", "MULTISTAGE")
+_FACES: dict[str, dict[int, tuple[int, ...]]] = {
+    "S1": {4: (0, 1, 2), 5: (0, 1, 2, 3), 6: (0, 1, 2), 8: (0, 1, 2, 3)},
+    "S2": {4: (0, 3, 1), 5: (0, 1, 4), 6: (3, 4, 5), 8: (4, 5, 6, 7)},
+    "S3": {4: (1, 3, 2), 5: (1, 2, 4), 6: (0, 1, 4, 3), 8: (0, 1, 5, 4)},
+    "S4": {4: (2, 3, 0), 5: (2, 3, 4), 6: (1, 2, 5, 4), 8: (1, 2, 6, 5)},
+    "S5": {5: (3, 0, 4), 6: (2, 0, 3, 5), 8: (2, 3, 7, 6)},
+    "S6": {8: (3, 0, 4, 7)},
+}
+"""Corners of the faces of elements, by their label and the number of corners of the element."""
+
+Known = Callable[[str, str], Selection | None]
+"""From "NSET" or "ELSET" and a name or number to its members; None if there is no such set."""
+
+
+class AbaqusLinks:
+    """Collected blocks that link nodes; they are read at the end, as the sets that they name may come later."""
+
+    def __init__(self) -> None:
+        self._blocks: list[Block] = []
+        self._surfaces: dict[str, Block] = {}
+        self._turned: list[Block] = []
+
+    def take(self, block: Block) -> bool:
+        """Keep a block if it is one of these; return whether it is."""
+        if block.keyword not in _KEYWORDS:
+            return False
+        if block.keyword == "SURFACE":
+            self._surfaces[_upper(block.parameters.get("NAME", ""))] = block
+        elif block.keyword == "TRANSFORM":
+            self._turned.append(block)
+        else:
+            self._blocks.append(block)
+        return True
+
+    def add_to(self, parts: Parts, known: Known) -> None:
+        """Add the links to the parts, and count those that can't be used as skipped.
+
+        Raises
+        ------
+        InputError
+            If a number can't be read.
+        """
+        reader = _Reader(parts, known, self._surfaces, self._turned)
+        coupling: Block | None = None
+        for block in self._blocks:
+            if block.keyword == "COUPLING":
+                coupling = block
+                continue
+            used = reader.use(block, coupling)
+            for name in used:
+                parts.skipped[f"*{name}"] += 1
+        if self._turned:
+            parts.skipped["*TRANSFORM"] += len(self._turned)
+
+
+class _Reader:
+    """Reader of the blocks, which knows the sets and surfaces."""
+
+    def __init__(self, parts: Parts, known: Known, surfaces: dict[str, Block], turned: Sequence[Block]) -> None:
+        self.parts, self.known, self.surfaces = parts, known, surfaces
+        self.turned = Selection()
+        for block in turned:
+            name = block.parameters.get("NSET", "")
+            self.turned.update(known("NSET", name) or Selection())
+
+    def use(self, block: Block, coupling: Block | None) -> list[str]:
+        """Add the links of a block; return the names of those that can't be used."""
+        keyword = block.keyword
+        if keyword == "EQUATION":
+            return self._equations(block)
+        if keyword == "MPC":
+            return self._mpc(block)
+        if keyword == "TIE":
+            return self._tie(block)
+        if keyword == "RIGID BODY":
+            return self._rigid_body(block)
+        if keyword == "KINEMATIC COUPLING":
+            return self._kinematic_coupling(block)
+        return self._coupling(block, coupling)
+
+    def _equations(self, block: Block) -> list[str]:
+        """Read "n" and n terms, of nodes or sets of nodes, one after the other."""
+        if "REMOVE" in block.parameters:
+            return ["EQUATION"]
+        left_out = []
+        lines = [(line, [text.strip() for text in line.text.split(",")]) for line in block.data]
+        at = 0
+        while at < len(lines):
+            first, head = lines[at]
+            count = parse_integer(head[0], first, "the number of terms")
+            at += 1
+            entries: list[str] = []
+            while at < len(lines) and len(entries) < _TERMS * count:
+                texts = lines[at][1]
+                entries += texts[: len(texts) - len(texts) % _TERMS] if len(texts) > 1 else texts
+                at += 1
+            if len(entries) < _TERMS * count:
+                raise first.wrong(f"the equation has {len(entries) // _TERMS} of the {count} terms that it states; all must follow it")
+            equations = self._equation(first, entries[: _TERMS * count])
+            if equations is None:
+                left_out.append("EQUATION")
+            for equation in equations or ():
+                self.parts.links.add("*EQUATION", equation)
+        return left_out
+
+    def _equation(self, line: TextLine, entries: Sequence[str]) -> list[Equation] | None:
+        """Return the equations of terms: several if the terms are of sets; None if one can't be used."""
+        terms = []
+        for start in range(0, len(entries), _TERMS):
+            nodes = self._nodes(entries[start], line)
+            component = parse_integer(entries[start + 1], line, "a component of motion") - 1
+            value = parse_real(entries[start + 2], line, "a coefficient")
+            if not nodes or component not in _ALL or not abs(value) < float("inf") or any(self._is_turned(node) for node in nodes):
+                return None
+            terms.append((nodes, component, value))
+        counts = {len(nodes) for nodes, _, _ in terms} - {1}
+        if len(terms) < 2 or len(counts) > 1:
+            return None  # of one term it is a support
+        number = max(counts, default=1)
+        return [
+            Equation(line, [((nodes[min(index, len(nodes) - 1)], component), value) for nodes, component, value in terms])
+            for index in range(number)
+        ]
+
+    def _mpc(self, block: Block) -> list[str]:
+        left_out = []
+        for line in block.data:
+            kind, *texts = [text.strip() for text in line.text.split(",") if text.strip()]
+            sets = [self._nodes(text, line) for text in texts]
+            if kind.upper() not in ("TIE", "PIN", "LINK") or len(sets) != 2 or len(sets[0]) != len(sets[1]) or not sets[0]:
+                left_out.append("MPC")
+                continue
+            for first, second in zip(*sets, strict=True):
+                if kind.upper() == "LINK":
+                    self.parts.links.add("*MPC", Distance(line, (first, second)))
+                    continue
+                for component in _DISPLACEMENTS if kind.upper() == "PIN" else _ALL:
+                    self.parts.links.add("*MPC", Equation(line, [((first, component), 1.0), ((second, component), -1.0)]))
+        return left_out
+
+    def _tie(self, block: Block) -> list[str]:
+        if any(word in block.parameters for word in _CYCLIC):
+            return ["TIE of cyclic symmetry"]
+        left_out = []
+        for line in block.data:
+            names = [_upper(text) for text in line.text.split(",") if text.strip()]
+            surfaces = [self._surface(name) for name in names[:2]]
+            if len(surfaces) < 2 or surfaces[0] is None or surfaces[1] is None:
+                left_out.append("TIE")
+                continue
+            given = block.parameters.get("POSITION TOLERANCE")
+            reach = parse_real(given, block.line, "a position tolerance") if given else None
+            if reach is not None and not 0.0 <= reach < float("inf"):
+                raise block.line.wrong(f"the position tolerance is {reach:g}; it must be 0 or greater, and finite")
+            self.parts.ties.append(Tie(line, (names[0], names[1]), surfaces[0], surfaces[1], reach))
+        return left_out
+
+    def _rigid_body(self, block: Block) -> list[str]:
+        reference = self._reference(block)
+        nodes = sorted(
+            {node for key in ("NSET", "TIE NSET", "PIN NSET") for node in self._nodes(block.parameters.get(key, ""), block.line)}
+        )
+        elements = self.known("ELSET", block.parameters["ELSET"]) if block.parameters.get("ELSET") else None
+        nodes = sorted({*nodes, *(self.parts.nodes_of_elements(elements) if elements else ())})
+        return self._add_rigid("*RIGID BODY", block.line, reference, nodes, _DISPLACEMENTS)
+
+    def _kinematic_coupling(self, block: Block) -> list[str]:
+        reference = self._reference(block)
+        left_out = []
+        for line in block.data:
+            texts = [text.strip() for text in line.text.split(",")]
+            components = _range([texts[1:]], line)
+            if "ORIENTATION" in block.parameters and not set(_DISPLACEMENTS) <= set(components):
+                left_out.append("KINEMATIC COUPLING")
+            else:
+                left_out += self._add_rigid("*KINEMATIC COUPLING", line, reference, self._nodes(texts[0], line), components)
+        return left_out
+
+    def _coupling(self, block: Block, coupling: Block | None) -> list[str]:
+        """Read *KINEMATIC or *DISTRIBUTING, which belongs to the *COUPLING before it."""
+        surface = None if coupling is None else self._surface(_upper(coupling.parameters.get("SURFACE", "")))
+        if coupling is None or surface is None or "CYCLIC SYMMETRY" in block.parameters:
+            return [block.keyword]
+        reference = self._reference(coupling)
+        nodes = sorted(self.parts.nodes_of_surface(surface))
+        lines = [[text.strip() for text in line.text.split(",")] for line in block.data]
+        components = _range(lines, block.line)
+        turned = "ORIENTATION" in coupling.parameters
+        if reference is None or not nodes or (turned and not set(_DISPLACEMENTS) <= set(components)):
+            return [block.keyword]
+        if block.keyword == "KINEMATIC":
+            return self._add_rigid("*KINEMATIC", block.line, reference, nodes, components)
+        if block.parameters.get("WEIGHTING METHOD", "UNIFORM").upper() != "UNIFORM":
+            return [block.keyword]
+        self.parts.links.add("*DISTRIBUTING", Mean(block.line, reference, components, [(node, 1.0, _DISPLACEMENTS) for node in nodes]))
+        return []
+
+    def _add_rigid(self, name: str, line: TextLine, reference: int | None, nodes: Sequence[int], components: Sequence[int]) -> list[str]:
+        partly = set(components) & set(_DISPLACEMENTS) != set(_DISPLACEMENTS)
+        if reference is None or not nodes or (partly and any(self._is_turned(node) for node in nodes)):
+            return [name[1:]]
+        followers = [(node, components) for node in nodes if node != reference]
+        self.parts.links.add(name, Rigid(line, [(reference, _ALL), *followers]))
+        return []
+
+    def _reference(self, block: Block) -> int | None:
+        """Return the reference node, a number or a set of one node; None if it can't be found."""
+        text = block.parameters.get("REF NODE", "") or block.parameters.get("REFNODE", "")
+        nodes = self._nodes(text, block.line)
+        return nodes[0] if len(nodes) == 1 else None
+
+    def _nodes(self, text: str, line: TextLine) -> list[int]:
+        """Return the nodes of a set, or the one of a number; none if there is no such set."""
+        text = text.strip().strip('"')
+        if text.isdigit():
+            return [parse_integer(text, line, "the number of a node")]
+        found = self.known("NSET", text) if text else None
+        return [] if found is None else self.parts.node_numbers(found)
+
+    def _is_turned(self, node: int) -> bool:
+        return node in self.turned.numbers or any(
+            first <= node <= last and (node - first) % step == 0 for first, last, step in self.turned.ranges
+        )
+
+    def _surface(self, name: str) -> MeshSurface | None:
+        """Return a surface of faces or nodes; None if it can't be used."""
+        block = self.surfaces.get(name) or self.surfaces.get(name.rpartition(".")[2])
+        if block is None or "COMBINE" in block.parameters or "CROP" in block.parameters:
+            return None
+        found = MeshSurface()
+        for line in block.data:
+            texts = [text.strip() for text in line.text.split(",")]
+            if block.parameters.get("TYPE", "ELEMENT").upper() == "NODE":
+                nodes = self._nodes(texts[0], line)
+                if not nodes:
+                    return None
+                found.nodes.numbers.update(nodes)
+                continue
+            label = texts[1].upper() if len(texts) > 1 else ""
+            if texts[0].isdigit():
+                chosen: Selection | None = Selection({parse_integer(texts[0], line, "the number of an element")})
+            else:
+                chosen = self.known("ELSET", texts[0].strip('"'))
+            if chosen is None or (label and label not in _FACES):
+                return None
+            found.faces.append((chosen, _FACES[label] if label else {}))
+        return found
+
+
+def _range(lines: Sequence[Sequence[str]], line: TextLine) -> tuple[int, ...]:
+    """Return the components of lines "first, last", from 0; all of none."""
+    found: set[int] = set()
+    for texts in lines:
+        numbers = [parse_integer(text, line, "a component of motion") for text in texts[:2] if text]
+        if numbers:
+            found.update(range(numbers[0] - 1, numbers[-1]))
+    return tuple(sorted(found & set(_ALL))) or _ALL
+
+
+def _upper(name: str) -> str:
+    """Return a name without quotes, in capitals."""
+    return name.strip().strip('"').upper()
