@@ -115,9 +115,9 @@ def evaluate_pulses(time: Floats, seen: DetectedPulses, runs: list[tuple[int, in
     segments = itertools.pairwise(between)
     pulses = [_pulse(time, seen, run, segment) for run, segment in zip(seen.runs, segments, strict=True) if run in runs]
     # one pulse shows what lies between its samples or not, by their place in it: all have it in the mean
-    between = float(np.sqrt(np.mean([pulse.between_samples**2 for pulse in pulses])))
+    mean = float(np.sqrt(np.mean([pulse.between_samples**2 for pulse in pulses])))
     return [
-        pulse._replace(impulse_deviation=float(np.hypot(pulse.impulse_deviation, between * pulse.impulse)), between_samples=between)
+        pulse._replace(impulse_deviation=float(np.hypot(pulse.impulse_deviation, mean * pulse.impulse)), between_samples=mean)
         for pulse in pulses
     ]
 
@@ -187,9 +187,9 @@ def _edge(time: Floats, force: Floats, largest: float, noise: float, lasting: fl
     first = int(below[-1]) + 1 if below.size else 0
     flank = np.arange(first, len(force))[force[first:] < _SHOULDER * largest]
     if len(flank) < 2:
-        place, slope = (float(part) for part in hertz_rise(np.clip(force[first] / largest, 0.0, _SHOULDER)))
+        risen, per_part = (float(part) for part in hertz_rise(np.clip(force[first] / largest, 0.0, _SHOULDER)))
         step = 0.0 if len(flank) else float(np.median(np.diff(time))) / np.sqrt(12.0)  # anywhere between two samples
-        return float(time[first]) - lasting * place, float(np.hypot(lasting * slope * noise / largest, step))
+        return float(time[first]) - lasting * risen, float(np.hypot(lasting * per_part * noise / largest, step))
     place, slope = hertz_rise(force[flank] / largest)
     middle, weights = float(time[flank].mean()), 1.0 / slope
     across = np.stack([np.ones(len(flank)), time[flank] - middle], axis=1)
