@@ -8,13 +8,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.stats import chi2
 
 import vibroimpact as vi
 from heard import heard
 from oblique_measured import ALL, ALUMINA, ANGLES, FRICTION, GLASS, MEASURED, SLIPPING, fitted_friction
 from stated import says
 from support import blocks, module_at, plain_case
-from vibroimpact.calibration import bounce_record, force_pulses, force_record, joint_flights, position_record
+from vibroimpact.calibration import bounce_record, force_record, joint_flights, position_record
 from vibroimpact.calibration.calibrated_drops import MOST_IMPACTS
 from vibroimpact.calibration.evaluate_measurement import _MATTERS
 from vibroimpact.calibration.inputs import BRIEF, EARTH
@@ -92,7 +93,11 @@ def test_drifting_forces() -> None:
 
 
 def test_edges_of_forces() -> None:
-    says(PAGE, "by noise, sampling and {} % of the contact", 100.0 * force_pulses._EDGE)
+    rise, release = 100.0 * force_record.RISE, 100.0 * force_record.RELEASE
+    says(PAGE, "off by at most {} % of the part of the speed that is lost", rise)
+    says(PAGE, "(for a restitution of {} by {} % of the contact)", 0.7, 0.3 * rise)
+    says(PAGE, "as a dent remains or follows late, by at most {} % of that part", release)
+    says(PAGE, "for restitutions from {} on; as standard deviations they are divided by √{}", 0.6, 3.0)
     says(PAGE, "fewer than {} samples in a contact", force_record._COARSE)
 
 
@@ -100,6 +105,8 @@ def test_zero_of_a_record_of_positions() -> None:
     says(PAGE, "an elastic Hertzian impact within {} %", 100.0 * joint_flights._CONTACT_DEVIATION)
     says(PAGE, "or a clock by more than {} %, is refused", 100.0 * position_record._CLOCK_OFF)
     says(PAGE, "a tenth of the radius, the clock by more than {} %", 100.0 * position_record._LARGE_CLOCK)
+    says(PAGE, "(a likelihood ratio of {} %), fast", 95.0)
+    assert pytest.approx(chi2.ppf(0.95, 1), abs=0.005) == joint_flights._TIMES_SCATTER
     says(PAGE, "about a line by more than noise and {} % of the lowest rebound", 100.0 * position_record._LARGE_SCATTER)
     assert position_record._LARGE_ZERO == 0.1
     assert position_record._SURE == 3.0

@@ -82,8 +82,8 @@ def samples_of_flights(
     every, selected = _beside_impacts(ends), {}
     for number, top, when in zip(kept, joint.tops, joint.times, strict=True):
         inside = every[number]
-        height = top - flying.depth_at((time[inside] - when) / joint.clock)[0]
-        selected[number] = inside[height > radius + ABOVE_NOISE * joint.noise]
+        fallen, downwards = flying.depth_at((time[inside] - when) / joint.clock)
+        selected[number] = inside[top - fallen > radius + ABOVE_NOISE * joint.deviation(downwards)]
     return selected
 
 

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
 from vibroimpact.arrays import Floats
+from vibroimpact.calibration.fitting import misfits
 from vibroimpact.calibration.flights import EndSpeeds, Flights, VacuumFlights
 from vibroimpact.calibration.force_pulses import Pulse, evaluate_pulses, find_pulses
-from vibroimpact.calibration.noise import of_the_impact_before, own_noise, scaled
+from vibroimpact.calibration.noise import of_the_impact_before, own_noise, scaled, with_common_source
 from vibroimpact.calibration.observations import Observations, Record
 from vibroimpact.calibration.record_noise import sample_label
 from vibroimpact.errors import InputError
@@ -20,6 +22,14 @@ _FEWEST = 5
 
 _COARSE = 10
 """Number of samples of a contact below which the largest force is doubted."""
+
+RISE, RELEASE, _LEAST = 0.24, 0.8, 0.01
+"""Bounds of what the contact law, which is unknown, may change, as fractions of a contact and of the part of the speed that is lost: of the
+time between begin and end, which are extrapolated as if the force rose and fell as Hertz's; and of the time by which a contact ends before
+its indentation has vanished, since a dent remains or follows late, which lowers the speed of separation and raises that of the next
+approach. They hold for restitutions from 0.6 on, and all contacts of a record have them in common: as deviations they are divided by the
+root of 3. Last the deviation of the former without any loss.
+"""
 
 _MOST, _GAIN = 1.2, 0.03
 """Restitution above which a record is rejected, and the deviation of impulses from times of flight above which a warning is given."""
@@ -103,9 +113,15 @@ def impacts_in_force(
     if gravity == 0.0 and len(gaps):
         raise InputError(f"without gravity the sphere does not come back, and the record shows {len(runs) + len(cut)} impacts")
     flown = (flights or VacuumFlights(gravity)).end_speeds(gaps)
-    separation, deviation, doubts = _separations(pulses, flown, unsure, mass, gravity, first_speed)
     number = len(pulses)
     speeds = np.append(first_speed, flown.end)[:number]
+    lost = 1.0 - flown.start / speeds[: len(flown.start)]
+    by_law = np.hypot(RISE / np.sqrt(3.0) * lost, _LEAST)
+    # of one edge a part of a step, whose place on the flank differs from contact to contact
+    sampling = step * float(by_law.max(initial=_LEAST))
+    ends = np.hypot(sampling, [pulse.end_deviation for pulse in pulses])
+    edges = Edges(ends, np.hypot(sampling, unsure))
+    separation, deviation, doubts = _separations(pulses, flown, edges, mass, gravity, first_speed)
     for row, (before, after) in enumerate(zip(speeds, separation, strict=True)):
         if not 0.0 < after <= _MOST * before:
             raise InputError(
@@ -123,22 +139,36 @@ def impacts_in_force(
             f"{100.0 * fewest.largest_deviation / fewest.largest:.1g} % (one standard deviation); sample faster",
         )
     wanted = {"separation_speed": separation, "max_force": np.array([pulse.largest for pulse in pulses])}
-    noises = own_noise({"separation_speed": deviation, "max_force": np.array([pulse.largest_deviation for pulse in pulses])})
+    own = own_noise({"separation_speed": deviation, "max_force": np.array([pulse.largest_deviation for pulse in pulses])})
+    per_contact = flown.start_slope * [pulse.duration for pulse in pulses[: len(flown.start)]]
+    longer, release = np.zeros(number), np.zeros(number)
+    longer[: len(lost)] = by_law * per_contact
+    release[: len(lost)] = RELEASE / np.sqrt(3.0) * lost * per_contact
+    by_rise = with_common_source(own, {"separation_speed": longer})
+    noises = with_common_source(by_rise, {"separation_speed": -release})
     if clipped:
         del wanted["max_force"], noises["max_force"]
     back = np.zeros(number)
     back[:-1] = (flown.end_slope / flown.start_slope)[: number - 1]  # an error of the duration of a flight changes both of its speeds
-    before_noise = of_the_impact_before(scaled(back, noises["separation_speed"]))
+    after_release = with_common_source(by_rise, {"separation_speed": release})
+    before_noise = of_the_impact_before(scaled(back, after_release["separation_speed"]))
     labels = tuple(f"impact {row + 1}, {at(begin)}" for row, (begin, _) in enumerate(runs))
     record = Record("force", tuple(pulse.samples for pulse in pulses))
     found = Observations(speeds, wanted, before_noise, noises, True, labels, noise_from="the noise of the record", doubts=doubts)
     return replace(found, flights=flights, record=record)
 
 
+class Edges(NamedTuple):
+    """Standard deviations of the ends of contacts, and of the begins, of which there may be one more [s]."""
+
+    ends: Floats
+    begins: Floats
+
+
 def _separations(
-    pulses: list[Pulse], flown: EndSpeeds, begins: Floats, mass: float, gravity: float, first_speed: float
+    pulses: list[Pulse], flown: EndSpeeds, edges: Edges, mass: float, gravity: float, first_speed: float
 ) -> tuple[Floats, Floats, tuple[str, ...]]:
-    """Return separation speeds [m/s], their standard deviations, and warnings; `begins` are the standard deviations of the touches [s].
+    """Return separation speeds [m/s], their standard deviations by noise, and warnings.
 
     A speed before another impact follows from the time of flight, the last one from its impulse.
     """
@@ -146,12 +176,10 @@ def _separations(
     timed = len(flown.start)  # equal to the number of impacts if the record ends within a further one
     before, pairs = np.append(first_speed, flown.end)[:number], list(zip(pulses, flown.start, strict=False))
     expected = np.array([mass * (came + left + gravity * pulse.duration) for (pulse, left), came in zip(pairs, before, strict=False)])
-    ends = np.array([pulse.end_deviation for pulse in pulses])
+    ends, begins = edges
     doubts, scale, unsure = [], 1.0, 0.0
     if timed:
-        scales = np.array([come / pulse.impulse for come, (pulse, _) in zip(expected, pairs, strict=True) if not pulse.clipped] or [1.0])
-        scale = float(scales.mean())
-        unsure = float(scales.std(ddof=1)) / np.sqrt(len(scales)) if len(scales) > 1 else 0.0
+        scale, unsure = _scale([(come, pulse) for come, (pulse, _) in zip(expected, pairs, strict=True) if not pulse.clipped])
         if abs(scale - 1.0) > _GAIN:
             words = f"the impulses are {100.0 * (1.0 / scale - 1.0):+.1f} % off from those computed from the times of flight"
             more = "" if timed == number else " (the rebound of the last impact is corrected)"
@@ -175,3 +203,20 @@ def _separations(
             f"{last.impulse_deviation / mass:.2g} m/s of the rebound uncertain"
         )
     return np.append(flown.start, after), np.append(deviation, np.hypot(of_last, gravity * ends[-1])), tuple(doubts)
+
+
+def _scale(pairs: list[tuple[float, Pulse]]) -> tuple[float, float]:
+    """Return the factor between impulses and those expected from the times of flight, and its standard deviation; 1 without any.
+
+    It is the mean, weighted by what is known of each impulse. Where they differ by more than that, their scatter is its deviation.
+    """
+    if not pairs:
+        return 1.0, 0.0
+    scales = np.array([expected / pulse.impulse for expected, pulse in pairs])
+    deviations = scales * np.array([pulse.impulse_deviation / pulse.impulse for _, pulse in pairs])
+    weights = deviations**-2.0
+    scale = float(weights @ scales / weights.sum())
+    freedom = len(scales) - 1
+    scatter = float(np.sqrt(weights @ (scales - scale) ** 2 / freedom)) if freedom else 1.0
+    wider = scatter if freedom and misfits(scatter, freedom) else 1.0
+    return scale, wider / float(np.sqrt(weights.sum()))

@@ -32,6 +32,12 @@ _HARD = 1e-3  # tolerance with which successive flights meet, as a fraction of t
 _NOT_NOISE = 0.999  # quantile of chi squared above which the levels scatter by more than noise
 _HALVINGS, _PASSES = 60, 3
 
+_LEAST_RATIO, _MOST_RATIO, _RATIOS = 1e-2, 1e6, 81
+"""Variance of a fast sample by its time over that by its position: what is tried."""
+
+_TIMES_SCATTER = 3.84
+"""Twice the logarithm of the likelihood by which times have to explain the scatter better, the 95 % quantile of chi squared."""
+
 
 class Meetings(NamedTuple):
     """What is known of the meetings of successive flights: radius of the sphere, the height at which they meet, and the scatter about it
@@ -68,6 +74,8 @@ class JointFlights:
         Contribution of each independent source of unit variance to each free unknown.
     noise, scatter : float
         Standard deviation of a sample, and of the level of one impact about the line of the zero [m].
+    timing : float
+        Standard deviation of the time of a sample [s], by which it scatters the more the faster the sphere is; 0 where none shows.
     misfit : float
         Sum of squares of the normalized residuals.
     """
@@ -84,10 +92,15 @@ class JointFlights:
     noise: float = 1.0
     scatter: float = 0.0
     misfit: float = 0.0
+    timing: float = 0.0
 
     def level(self, time: Floats) -> Floats:
         """Return the offset of positions at times of the record [m]."""
         return self.zero + self.drift * (time - self.middle)
+
+    def deviation(self, speed: Floats) -> Floats:
+        """Return the standard deviation of samples at vertical speeds [m/s]: that of positions, and that of times."""
+        return np.asarray(np.hypot(self.noise, self.timing * speed / self.clock))
 
     def noise_of_tops(self) -> Floats:
         """Return the contribution of each source to the height of each apex [m], (n, m)."""
@@ -118,11 +131,48 @@ def separate_flights(pieces: Sequence[tuple[Floats, Floats]], start: JointFlight
         Lower bound of the noise [m].
     """
     freedom = max(sum(len(time) for time, _ in pieces) - 2 * len(pieces) - 1, 1)
-    found, noise = replace(start, zero=0.0, drift=0.0), start.noise
+    found, noise = replace(start, zero=0.0, drift=0.0, timing=0.0), start.noise
     for _ in range(_PASSES):  # the weight of what is known of the clock depends on the noise
         found = _solved(pieces, found, flying, (_CLOCK,), noise)
         noise = float(np.hypot(noise * np.sqrt(found.misfit / freedom), least))
-    return _solved(pieces, found, flying, (_CLOCK,), noise)
+    found = _solved(pieces, found, flying, (_CLOCK,), noise)
+    for _ in range(_PASSES):
+        noise, timing = _noise_and_timing(pieces, found, flying)
+        if not timing:
+            break
+        found = _solved(pieces, replace(found, timing=timing), flying, (_CLOCK,), max(noise, least))
+    return found
+
+
+def _noise_and_timing(pieces: Sequence[tuple[Floats, Floats]], at: JointFlights, flying: Flights) -> tuple[float, float]:
+    """Return the standard deviations of positions [m] and of times [s] by which the samples scatter about the flights.
+
+    By maximum likelihood: the variance of a sample is that of positions, and that of times by the square of the speed. Where that is not
+    significantly better than positions alone, the times are exact.
+    """
+    squares, speeds = [], []
+    for flight, (time, position) in enumerate(pieces):
+        fallen, downwards = flying.depth_at((time - at.times[flight]) / at.clock)
+        own = np.stack([np.ones_like(time), downwards], axis=1) / at.deviation(downwards)[:, None]
+        fitted = (np.linalg.qr(own)[0] ** 2).sum(axis=1)  # part of its variance that the fit takes from a sample
+        left = position - (at.level(time) + at.tops[flight] - fallen)
+        squares.append(left**2 / np.maximum(1.0 - fitted, 0.1))
+        speeds.append((downwards / at.clock) ** 2)
+    square, speed = np.concatenate(squares), np.concatenate(speeds)
+
+    def cost(ratio: float) -> float:
+        """Return minus twice the logarithm of the likelihood, with the variance of positions that is most likely."""
+        shape = 1.0 + ratio * speed
+        return float(len(square) * np.log(np.mean(square / shape)) + np.log(shape).sum())
+
+    ratios = np.geomspace(_LEAST_RATIO, _MOST_RATIO, _RATIOS) / speed.max()
+    ratio = float(ratios[int(np.argmin([cost(one) for one in ratios]))])
+    if not cost(0.0) - cost(ratio) > _TIMES_SCATTER:
+        return at.noise, 0.0
+    variance = float(np.mean(square / (1.0 + ratio * speed)))
+    timing = float(np.sqrt(ratio * variance))
+    # to second order a time that is off moves the apex, too
+    return float(np.hypot(np.sqrt(variance), flying.gravity * timing**2 / np.sqrt(2.0))), timing
 
 
 def meeting_flights(
@@ -242,7 +292,8 @@ def _sample_rows(piece: tuple[Floats, Floats], flight: int, at: JointFlights, fl
     fallen, downwards = flying.depth_at(since)
     left = position - (at.level(time) + at.tops[flight] - fallen)
     own = [np.ones_like(time), time - at.middle, downwards * since / at.clock, np.ones_like(time), downwards / at.clock, left]
-    reduced = np.linalg.qr(np.stack(own, axis=1) / noise, mode="r")
+    deviation = np.hypot(noise, at.timing * downwards / at.clock)
+    reduced = np.linalg.qr(np.stack(own, axis=1) / deviation[:, None], mode="r")
     rows = np.zeros((len(reduced), _SHARED + 2 * number + 1))
     apex = _SHARED + 2 * flight
     rows[:, [_ZERO, _DRIFT, _CLOCK, apex, apex + 1, -1]] = reduced

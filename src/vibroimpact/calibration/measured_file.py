@@ -34,6 +34,7 @@ from vibroimpact.measurements.table_layout import Layout
 from vibroimpact.signals.bounces.find import find_bounces
 from vibroimpact.signals.one_record import one_record
 from vibroimpact.signals.reading.coded_sound import FORMATS as CODED_SOUND
+from vibroimpact.signals.reading.equal_steps import behind_decimals
 
 _MATCHABLE = {name: quantity.unit for name, quantity in MATCHABLE.items()}
 _COLUMNS = {
@@ -205,10 +206,16 @@ def _record_measurement(case: Case, record: Recorded, by_rebound: bool) -> Measu
             raise InputError("without gravity a sphere rises for ever; a record of its position does not determine a rebound")
         radius, position, pair = case.sphere.radius, values["position"], contact_pair(case)
         depth = (1.25 * pair.effective_mass / pair.hertz_stiffness) ** 0.4  # of an elastic impact at 1 m/s
+        doubts: tuple[str, ...] = ()
+        if (rounded := behind_decimals(time)) is not None:
+            time, last = rounded
+            doubts = (f"the times are rounded to {last:g} s: the equal steps behind them are taken",)
         sphere = {"radius": radius, "gravity": case.drop.gravity, "contact_duration": HERTZ_TIME * float(depth)}
 
         def in_position(flights: Flights | None) -> Observations:
-            return impacts_in_position(time, position, **sphere, first_speed=speed_at_touch(case, flights), lines=lines, flights=flights)
+            first_speed = speed_at_touch(case, flights)
+            found = impacts_in_position(time, position, **sphere, first_speed=first_speed, lines=lines, flights=flights)
+            return replace(found, doubts=(*doubts, *found.doubts))
 
         return Measurement(in_position, float(np.ptp(position)))
     mass = float(contact_pair(case).effective_mass)

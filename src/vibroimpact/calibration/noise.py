@@ -48,6 +48,20 @@ def own_noise(deviations: Mapping[str, Floats]) -> dict[str, Noise]:
     return noise
 
 
+def with_common_source(noise: Mapping[str, Noise], contributions: Mapping[str, Floats]) -> dict[str, Noise]:
+    """Return noise with one more source that all impacts have in common, by what it contributes to each (n,); to others nothing.
+
+    Examples
+    --------
+    >>> own = own_noise({"duration": np.array([0.1, 0.2])})
+    >>> with_common_source(own, {"duration": np.array([0.3, 0.4])})["duration"].toarray().tolist()
+    [[0.1, 0.0, 0.3], [0.0, 0.2, 0.4]]
+    """
+    return {
+        name: csr_array(hstack([own, csr_array(contributions.get(name, np.zeros(own.shape[0]))[:, None])])) for name, own in noise.items()
+    }
+
+
 def scaled(factors: Floats, noise: Noise) -> Noise:
     """Return noise with the contributions to each impact multiplied by a factor, (n,)."""
     return csr_array(diags_array(factors) @ noise)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy import fft
 
-from vibroimpact.arrays import Floats, Indices
+from vibroimpact.arrays import Bools, Floats, Indices
 
 _BEFORE, _AFTER, _ASIDE = 0.5e-3, 3e-3, 1e-3
 """What of a touch is compared, before and after it, and how far its time may move at least [s]."""
@@ -15,13 +15,13 @@ _FINE = 400e3
 
 _ROUNDS = 6
 
-_RESOLVED = 0.003
-"""Standard deviation of what interpolation between samples can tell, in samples."""
+_RESOLVED = 1e-4
+"""Standard deviation of what interpolation between samples can tell of sounds below half the rate, in samples."""
 
 _TINY = 1e-300
 
 
-def aligned(value: Floats, rate: float, sample: Indices, blur: float = 0.0) -> tuple[Floats, Floats]:
+def aligned(value: Floats, rate: float, sample: Indices, blur: float = 0.0, clipped: Bools | None = None) -> tuple[Floats, Floats]:
     r"""Return the times of touches, and their standard deviations.
 
     The sounds of bounces are alike: each is shifted to where it correlates best with the mean of the others, s (Woody 1967, Med. Biol. Eng.
@@ -39,6 +39,8 @@ def aligned(value: Floats, rate: float, sample: Indices, blur: float = 0.0) -> t
         Where each touch begins, within 1 ms or `blur`; three of them at least.
     blur : float, default 0
         Time over which a coder spread what begins suddenly [s].
+    clipped : array of bool, shape (samples,), optional
+        Which samples are clipped: by how much is no noise, and does not tell its variance.
 
     Returns
     -------
@@ -70,6 +72,11 @@ def aligned(value: Floats, rate: float, sample: Indices, blur: float = 0.0) -> t
         return np.asarray(np.roll(fine, aside * more)[: len(lags)])
 
     number = len(parts)
+    known = np.ones((number, 2 * length))
+    if clipped is not None:
+        whole = np.pad(clipped, length)
+        pieces = [whole[at + length - before - aside : at + 2 * length - before - aside] for at in sample]
+        known[:, :length] = 1.0 - np.stack(pieces)
     shift, deviation = np.zeros(number), np.zeros(number)
     sounds = np.pad(parts, ((0, 0), (0, length)))
     common = sounds[int(np.argmax(sounds**2 @ window))]  # at first the loudest
@@ -80,7 +87,8 @@ def aligned(value: Floats, rate: float, sample: Indices, blur: float = 0.0) -> t
                 common = _mean(sounds, np.where(np.arange(number) == one, 0.0, size))
             energy = np.maximum(correlation(window, common**2), _TINY)
             match = np.maximum(correlation(window * sounds[one], common), 0.0)
-            noise = _noise(sounds, size, one, fft.irfft(1j * omega * fft.rfft(common), 2 * length), window)
+            unclipped = window * np.prod([_moved(own, by) for own, by in zip(known, shift, strict=True)], axis=0)
+            noise = _noise(sounds, size, one, fft.irfft(1j * omega * fft.rfft(common), 2 * length), unclipped)
             chance = match**2 / energy / (2.0 * noise) - 0.5 * ((shift[one] + lags) / (0.5 * aside)) ** 2
             top = int(np.clip(np.argmax(chance), 1, len(lags) - 2))
             left, middle, right = chance[top - 1 : top + 2]
@@ -106,6 +114,14 @@ def _multiple(sound: Floats, common: Floats, window: Floats) -> float:
 def _mean(sounds: Floats, size: Floats) -> Floats:
     """Return the common sound of least squares, of which each sound is a multiple."""
     return np.asarray(size @ sounds / max(float(size @ size), _TINY))
+
+
+def _moved(known: Floats, shift: float) -> Floats:
+    """Return which samples of a sound are known once it is shifted between its samples."""
+    if known.all():
+        return known
+    first = int(np.floor(shift))
+    return np.asarray(np.roll(known, -first) * np.roll(known, -first - 1))
 
 
 def _noise(sounds: Floats, size: Floats, one: int, slope: Floats, window: Floats) -> float:

@@ -13,6 +13,7 @@ from vibroimpact.signals.baseline import without_baseline
 from vibroimpact.signals.bounces.alignment import aligned
 from vibroimpact.signals.bounces.chain import HIGHEST, LOWEST, longest_chain
 from vibroimpact.signals.bounces.touches import FEWEST, WINDOW, Touches, find_touches, without_hum
+from vibroimpact.signals.clipped import clipped_samples
 from vibroimpact.signals.record import Record
 from vibroimpact.signals.record_table import record_table
 
@@ -157,7 +158,7 @@ def find_bounces(record: Record, contact: float = 0.0) -> Bounces:
     reasons = _reasons(found, time, chain, others)
     strange = time[others[[reason == _ELSE for reason in reasons]]]
     doubts += _chance_doubts(time[chain], strange, record.duration)
-    at, deviation = aligned(value, record.rate, found.sample[chain], record.blur)
+    at, deviation = aligned(value, record.rate, found.sample[chain], record.blur, clipped_samples(record))
     if not np.all(np.diff(at) > max(contact * record.rate, 0.0)):
         raise InputError(f"the last bounces follow each other within {'the contact' if contact else 'their sounds'}; end the record sooner")
     window = max(FEWEST, round(WINDOW * record.rate))

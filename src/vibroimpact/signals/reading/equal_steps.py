@@ -163,6 +163,32 @@ def at_equal_steps(time: Floats, values: Sequence[Floats], lines: Sequence[int] 
     return _resampled(time, values)
 
 
+def behind_decimals(time: Floats) -> tuple[Floats, float] | None:
+    """Return the equal steps behind times that are rounded to some decimals, and the last of these [s]; None if they are not.
+
+    Examples
+    --------
+    >>> exact = 0.0013 + np.arange(200) / 240.0
+    >>> found, last = behind_decimals(np.round(exact, 3))
+    >>> last, bool(np.abs(found - exact).max() < 1e-4)
+    (0.001, True)
+    >>> behind_decimals(exact) is None
+    True
+    """
+    if len(time) < _FEWEST:
+        return None
+    place = np.arange(len(time))
+    slope, begin = np.polyfit(place, time, 1).tolist()
+    regular = begin + slope * place
+    off = float(np.abs(time - regular).max())
+    for decimals in range(_MOST_DIGITS):
+        last = 10.0**-decimals
+        if np.abs(time / last - np.round(time / last)).max() < _WHOLE:
+            # what is off by less than that is equal steps already
+            return (regular, last) if _WHOLE * last < off < _ROUNDED * last else None
+    return None
+
+
 def _to_significant_digits(time: Floats, regular: Floats) -> tuple[int, float] | None:
     """Return to how many digits times are rounded, as programs do that write %.6g, and the largest step of this; None if they are not."""
     power = np.floor(np.log10(np.where(time == 0.0, 1.0, np.abs(time))))
