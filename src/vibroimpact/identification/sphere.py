@@ -41,8 +41,8 @@ _NUDGE, _LEAP, _RATIO = 1e-4, 0.02, 2e-3
 """Steps of derivatives: along the plate [m], in time [samples], in radius and speed [-]."""
 _RESTITUTION = 0.6
 """Restitution that the start is made with."""
-_ROUNDS, _SETTLED = 6, 0.7
-"""Most fits with the noise of the fit before, and the part of that noise that the last one leaves at least."""
+_ROUNDS, _SETTLED = 6, 0.95
+"""Most fits with the noise of the fit before, and the part of that noise that the last one leaves at least: within its scatter."""
 _EXACT = 1e-4
 """Error of the responses of the model itself, over the rms value of a record: the least noise that a fit can have."""
 _NEXT_OCTAVE = 0.3
