@@ -15,3 +15,4 @@ def test_constants() -> None:
     says(PAGE, "found if the best pulse leaves more than {} % of the energy of the records", 100.0 * polarity._POOR)
     says(PAGE, "with the opposite sign at most {} % of that", 100.0 * polarity._BETTER)
     says(PAGE, "where the fit leaves more than {} times the noise before first touch", doubts._LEFT)
+    says(PAGE, "the fit is repeated until the noise falls by less than {} %", 100.0 * (1.0 - sphere._SETTLED))

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,7 +14,7 @@ from vibroimpact.cases.rigid import rigid_problem
 from vibroimpact.cases.schema import CaseTable
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.response import Response
-from vibroimpact.dynamics.simulate import simulate
+from vibroimpact.dynamics.simulate import simulate_together
 
 _NODES = np.polynomial.legendre.leggauss(96)
 """Nodes on [-1, 1] and weights of the quadrature of a force."""
@@ -40,32 +42,67 @@ class ContactForce:
     facts: Floats
 
 
+class Spheres(NamedTuple):
+    """Spheres that hit a plate at one place.
+
+    `case`: material and mean density of the sphere, contact law. `plate`: its problem with the contact at the place. `radius`, `speed`:
+    radius [m] and approach speed [m/s] of each sphere, (n,).
+    """
+
+    case: CaseTable
+    plate: Problem
+    radius: Floats
+    speed: Floats
+
+    @property
+    def problem(self) -> Problem:
+        """The problem of their impacts."""
+        case, radius, speed = self.case, self.radius, self.speed
+        drop = case.drop.model_copy(update={"speed": speed, "height": None, "velocity": None, "air": None})
+        rigid = rigid_problem(case.model_copy(update={"sphere": resized(case.sphere, radius), "drop": drop}))
+        return replace(
+            self.plate,
+            sphere=rigid.sphere,
+            laws=rigid.laws,
+            height=None,
+            velocity=0.0,
+            speed=speed,
+            air=None,
+            sensors=(),
+            sensitivity=False,
+        )
+
+
 def contact_forces(case: CaseTable, plate: Problem, radius: Floats, speed: Floats) -> list[ContactForce]:
     """Return the contact forces of spheres, from first touch until they first leave the plate.
 
-    A sphere that leaves the plate more slowly than the plate follows it touches again within one impact. These touches come and go with
-    the parameters, and the records that are used end before the next touch.
-
     Parameters
     ----------
-    case : CaseTable
-        The case: material and mean density of the sphere, contact law.
-    plate : Problem
-        Its problem with the contact at a place.
-    radius, speed : array, shape (n,)
-        Radius [m] and approach speed [m/s] of each sphere.
+    case, plate, radius, speed
+        Those of `Spheres`.
     """
-    sphere = resized(case.sphere, radius)
-    drop = case.drop.model_copy(update={"speed": speed, "height": None, "velocity": None, "air": None})
-    rigid = rigid_problem(case.model_copy(update={"sphere": sphere, "drop": drop}))
-    response = simulate(
-        replace(
-            plate, sphere=rigid.sphere, laws=rigid.laws, height=None, velocity=0.0, speed=speed, air=None, sensors=(), sensitivity=False
-        )
-    )
+    return contact_forces_of([Spheres(case, plate, radius, speed)])
+
+
+def contact_forces_of(several: Sequence[Spheres]) -> list[ContactForce]:
+    """Return the contact forces of spheres that hit different plates, computed side by side, in order.
+
+    A sphere that leaves the plate more slowly than the plate follows it touches again within one impact. These touches come and go with
+    the parameters, and the records that are used end before the next touch.
+    """
+    found = []
+    for spheres, response in zip(several, simulate_together([spheres.problem for spheres in several]), strict=True):
+        if isinstance(response, Exception):
+            raise response
+        found += _forces_in(response, len(spheres.radius))
+    return found
+
+
+def _forces_in(response: Response, number_of_drops: int) -> list[ContactForce]:
+    """Return the contact forces of the drops of a response."""
     nodes, weights = _NODES
     found = []
-    for number in range(len(radius)):
+    for number in range(number_of_drops):
         one = response.drop(number)
         duration, peak = (float(one.impacts[name][0]) for name in ("duration_s", "max_force_N"))
         time = 0.5 * duration * (1.0 + nodes)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, lru_cache, partial
 
 import numpy as np
 from scipy.stats.qmc import Halton
@@ -37,6 +37,8 @@ _DETUNED = 1e-5
 """Relative step of a frequency in derivatives."""
 _ALIKE = 1e-4
 """Largest relative difference of frequencies between plates that share these derivatives."""
+_TOUCHED = 4
+"""Number of places of the contact that are kept."""
 _LEFT_OUT = 16
 """Number of modes that stand for those left out: so dense that they do not swing back during a contact."""
 _FINER, _PLACES, _MIDDLE = 1.5, 32, 0.6
@@ -68,6 +70,8 @@ class Plate:
         this same model.
     setup : Setup, optional
         How the plate and its sensors differ from the case.
+    stated : Plate, optional
+        The plate as the case states it, of one that differs.
     responses : dict
         Responses that were computed, by the names of sensors.
     detunings : dict
@@ -81,6 +85,7 @@ class Plate:
     errors: SetupErrors = field(default_factory=SetupErrors)
     model_error: float = 1.0
     setup: Setup | None = None
+    stated: Plate | None = None
     responses: dict[tuple[str, ...], PlaceResponses] = field(default_factory=dict)
     detunings: dict[tuple[str, ...], tuple[Floats, Floats]] = field(default_factory=dict)
 
@@ -113,6 +118,8 @@ class Plate:
 
         It is what a finer mesh adds, which is most of it: near a point force the error falls with the square of the element size or faster.
         """
+        if self.stated is not None:  # it is relative to what changes
+            return self.stated.lacking
         recipe = elastic_bodies(self.case)["plate"].recipe
         if not isinstance(recipe.shape, PlateOfPlates | PlateOfSolids):
             return 0.0, 0.0
@@ -153,11 +160,7 @@ class Plate:
         sensors = tuple(with_resonance(sensor, resonances.get(sensor.name, 0.0)) for sensor in self.problem.sensors)
         modes = replace(self.modes, points={**self.modes.points, **moved})
         problem = replace(self.problem, plate=replace(self.problem.plate, modes=modes), sensors=sensors)
-        found = replace(self, problem=stretched(problem, setup, self.thickness_exponents), setup=setup, responses={})
-        x, y, shapes = self.grid
-        # both are relative to what changes, and take seconds
-        vars(found).update(lacking=self.lacking, grid=(x, y, (1.0 + setup.thickness) ** -0.5 * shapes))
-        return found
+        return replace(self, problem=stretched(problem, setup, self.thickness_exponents), setup=setup, stated=self, responses={})
 
     def _at_sensor(self, name: str, by: Place) -> Floats:
         """Return the mode shapes at a sensor that is moved along x and y [m], (modes, 3); those of supports are not moved."""
@@ -188,13 +191,18 @@ class Plate:
 
     def at(self, place: Place) -> Problem:
         """Return the problem with the contact at a place."""
-        there = at_place(self.case, self.problem, place)
-        if self.setup is None:
-            return there
-        there = stretched(there, self.setup, self.thickness_exponents)
+        if self.setup is None or self.stated is None:
+            return self._touched(place)
+        touched = self.stated._touched(place)
+        there = stretched(self.problem.on_plate(touched.plate, touched.quasi_static), self.setup, self.thickness_exponents)
         assert there.plate.modes is not None  # as those of the plate
         modes = replace(there.plate.modes, points=self.modes.points)
         return there.on_plate(replace(there.plate, modes=modes), there.quasi_static)
+
+    @cached_property
+    def _touched(self) -> Callable[[Place], Problem]:
+        """The problem with the contact at a place; the last ones are kept, as plates in similar set-ups are touched at one place."""
+        return lru_cache(maxsize=_TOUCHED)(partial(at_place, self.case, self.problem))
 
     def sensors(self, names: Sequence[str]) -> list[Sensor]:
         """Return the sensors of some names."""

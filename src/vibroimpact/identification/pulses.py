@@ -35,7 +35,7 @@ _RATIO = 1e-3  # of derivatives in the duration
 class Candidate:
     """A place [m] with the Hertzian pulse that fits the records best there: impulse [N s], duration and first touch [s].
 
-    `spread`: standard deviation of the logarithm of the duration. `stretch`: by what part all frequencies of the plate are higher.
+    `spread`: standard deviation of the logarithm of the duration.
     """
 
     place: Place
@@ -43,7 +43,6 @@ class Candidate:
     duration: float
     touch: float
     spread: float
-    stretch: float = 0.0
 
 
 @dataclass(frozen=True)

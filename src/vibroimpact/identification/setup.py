@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -94,18 +93,6 @@ class SetupErrors:
     def is_none(self) -> bool:
         """Whether all is taken as certain."""
         return len(self.certain) == len(_MEANINGS)
-
-    @property
-    def stretch(self) -> float:
-        """Standard deviation of the common relative error of the frequencies of a thin plate [-]."""
-        return math.hypot(self.thickness, 0.5 * self.modulus)
-
-    def split(self, stretch: float) -> tuple[float, float]:
-        """Return the likeliest errors of thickness and modulus, in their deviations, that make all frequencies higher by a part."""
-        if not self.stretch:
-            return 0.0, 0.0
-        share = stretch / self.stretch**2
-        return share * self.thickness, share * 0.5 * self.modulus
 
     def deviations(self, sensors: int) -> Floats:
         """Return the standard deviations of the numbers of a `Setup` of S sensors, (2 + 4 S,)."""

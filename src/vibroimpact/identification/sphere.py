@@ -26,7 +26,7 @@ from vibroimpact.arrays import Floats
 from vibroimpact.cases.pair import contact_pair, sphere_density
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.sensors.place_responses import sampled_responses
-from vibroimpact.identification.contact import ContactForce, contact_forces
+from vibroimpact.identification.contact import ContactForce, Spheres, contact_forces_of
 from vibroimpact.identification.measured import Measured
 from vibroimpact.identification.model_errors import model_error_signals
 from vibroimpact.identification.plate import Place, Plate, compliance_error, compliances_of, shapes_of, with_compliance, with_modes_left_out
@@ -41,8 +41,8 @@ _NUDGE, _LEAP, _RATIO = 1e-4, 0.02, 2e-3
 """Steps of derivatives: along the plate [m], in time [samples], in radius and speed [-]."""
 _RESTITUTION = 0.6
 """Restitution that the start is made with."""
-_ROUNDS, _SETTLED = 6, 0.7
-"""Most fits with the noise of the fit before, and the part of that noise that the last one leaves at least."""
+_ROUNDS, _SETTLED = 6, 0.95
+"""Most fits with the noise of the fit before, and the part of that noise that the last one leaves at least: within its scatter."""
 _EXACT = 1e-4
 """Error of the responses of the model itself, over the rms value of a record: the least noise that a fit can have."""
 _NEXT_OCTAVE = 0.3
@@ -133,8 +133,6 @@ def fit_sphere(plate: Plate, measured: Measured, start: Candidate, place: Place 
     deviations = plate.errors.deviations(sensors)
     unknowns = _OF_CONTACT + sensors + len(plate.frequency_errors) + len(deviations)  # in their deviations
     expected = np.append([1.0 / _NEXT_OCTAVE, 1.0, lacking / deviation if deviation else 0.0], np.zeros(unknowns - _OF_CONTACT))
-    begin = expected.copy()
-    begin[-len(deviations) :][:2] = plate.errors.split(start.stretch)
     farthest = np.concatenate([_FARTHEST[:2], np.repeat(_FARTHEST[2:], sensors)])
     in_deviations = np.divide(farthest, deviations, out=np.full(len(deviations), np.inf), where=deviations > 0.0)
     of_model = np.full(unknowns - len(deviations), np.inf)
@@ -156,7 +154,7 @@ def fit_sphere(plate: Plate, measured: Measured, start: Candidate, place: Place 
         slopes = weighted(fit.parameters, noise)[1][: measured.value.size]
         return noise_left(explained(fit.parameters.tobytes()).left, measured.heard, slopes, fit.covariance)
 
-    fit = gauss_newton(partial(weighted, noise=measured.noise), np.append(parameters, begin), most)
+    fit = gauss_newton(partial(weighted, noise=measured.noise), np.append(parameters, expected), most)
     exact = _EXACT * measured.rms
     noise = np.maximum(left_by(fit, measured.noise), exact)
     for _ in range(_ROUNDS):
@@ -193,9 +191,16 @@ def _explained(plate: Plate, measured: Measured, parameters: Floats) -> _Explain
     answers = heard.at(shapes_of(there), compliances_of(there, names))
     nudged = here.deflections(place + _NUDGE * np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]))
     radii, speeds = np.exp(radius + _RATIO * np.array([0, 1, 0])), np.exp(speed + _RATIO * np.array([0, 0, 1]))
-    force, *others = contact_forces(here.touched, there, radii, speeds)
     softer = with_compliance(there, compliance_error(here, there)[1])
-    changed = [contact_forces(here.touched, one, radii[:1], speeds[:1])[0] for one in (*with_modes_left_out(there), softer)]
+    uncertain = np.flatnonzero(deviations[:OF_PLATE]).tolist()
+    others = [plate.under(Setup.of(numbers + STEPS[number] * numbers_of(number, sensors)), names) for number in uncertain]
+    spheres = [
+        Spheres(here.touched, there, radii, speeds),
+        *(Spheres(here.touched, one, radii[:1], speeds[:1]) for one in (*with_modes_left_out(there), softer)),
+        *(Spheres(other.touched, other.at(at), radii[:1], speeds[:1]) for other in others),
+    ]
+    force, larger, faster, *rest = contact_forces_of(spheres)
+    changed, on_others = rest[:_OF_CONTACT], rest[_OF_CONTACT:]
     gains = 1.0 + setup.gain[:, None]
 
     def signals(of_sensors: Floats, of: ContactForce = force, later: float = 0.0) -> Floats:
@@ -206,23 +211,20 @@ def _explained(plate: Plate, measured: Measured, parameters: Floats) -> _Explain
     of_setup, facts_of_setup = np.zeros((len(deviations), *bare.shape)), np.zeros((len(force.facts), len(deviations)))
     if not plate.errors.is_none:
         of_setup = setup_slopes(plate, here, numbers, names, at, lambda of: signals(of) / gains)
-    for number in np.flatnonzero(deviations[:OF_PLATE]):
-        step = STEPS[number]
-        other = plate.under(Setup.of(numbers + step * numbers_of(int(number), sensors)), names)
-        (of,) = contact_forces(other.touched, other.at(at), radii[:1], speeds[:1])
-        of_setup[number] += (signals(answers, of) - bare) / step
-        facts_of_setup[:, number] = (of.facts - force.facts) / step
+    for number, of in zip(uncertain, on_others, strict=True):
+        of_setup[number] += (signals(answers, of) - bare) / STEPS[number]
+        facts_of_setup[:, number] = (of.facts - force.facts) / STEPS[number]
     of_model = model_error_signals(here, there, names, measured.rate, touch + force.time, force.impulse, samples)
     of_contact = here.model_error * np.array([_NEXT_OCTAVE, 1.0, 1.0])
     errors = np.concatenate([of_contact[:, None, None] * [signals(answers, one) - bare for one in changed], gains * of_model])
     none = np.zeros(len(names))
     slopes = [
         *(signals(heard.at((one - nudged[0]) / _NUDGE, none)) for one in nudged[1:]),
-        *((signals(answers, one) - bare) / _RATIO for one in others),
+        *((signals(answers, one) - bare) / _RATIO for one in (larger, faster)),
         (signals(answers, later=later) - bare) / later,
     ]
     facts_of_contact = of_contact * np.stack([one.facts - force.facts for one in changed], axis=1)
-    facts_of_radius_and_speed = np.stack([(one.facts - force.facts) / _RATIO for one in others], axis=1)
+    facts_of_radius_and_speed = np.stack([(one.facts - force.facts) / _RATIO for one in (larger, faster)], axis=1)
     nothing = np.zeros((len(force.facts), len(errors) - _OF_CONTACT))
     facts = [np.zeros((3, 2)), facts_of_radius_and_speed, np.zeros((3, 1)), facts_of_contact, nothing, facts_of_setup * deviations]
     return _Explained(

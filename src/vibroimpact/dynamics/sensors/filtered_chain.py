@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
@@ -45,16 +45,18 @@ class FilteredChain:
         The chain before the filter.
     rate : float
         Samples per second [Hz].
-    outputs : array, shape (2, S, n)
-        Weights of displacements and velocities of the oscillators in the outputs `HALF_LENGTH` samples later.
     answers : array, shape (P, S, points)
         Response to an impulse of minus the force at each port, `FINENESS` points per sample, from `HALF_LENGTH` samples before it on.
     """
 
     chain: MeasuringChain
     rate: float
-    outputs: Floats
     answers: Floats
+
+    @cached_property
+    def outputs(self) -> Floats:
+        """Weights of displacements and velocities of the oscillators in the outputs `HALF_LENGTH` samples later, (2, S, n)."""
+        return self.chain.pairs.product(self.chain.outputs, filter_gains(self.chain.oscillators, self.rate))
 
     def add(self, values: Floats, port: int, times: Floats, impulses: Floats, last: int, origin: int = 0) -> None:
         """Add the response to impulses at a port [N s] to `values` (S, samples) from sample `origin` on, for samples before `last`."""
@@ -104,48 +106,69 @@ def filtered_chain(chain: MeasuringChain, rate: float, beyond: float) -> Filtere
     beyond : float
         Length of the impulse response after the filter's reach [s].
     """
-    oscillators, pairs = chain.oscillators, chain.pairs
     derivatives = kernel_derivatives()
     points, more = derivatives.shape[1], math.ceil(beyond * FINENESS * rate) + len(STENCIL)
-    weights = [np.concatenate(list(chain.outputs * shape), axis=-1).T for shape in oscillators.shape]  # (2 n, S) of each port
     answers = np.zeros((*chain.direct.shape[:2], points + more))
-    parts = (oscillators.angular_frequency.tobytes(), oscillators.damping_ratio.tobytes(), rate)
-    kept = 2 * oscillators.number * (points + more) <= _KEPT
-    for begin, states in _kept_states(*parts, points + _rounded(more)) if kept else _states(*parts, points + more):
-        rows = min(len(states), points + more - begin)
-        if rows > 0:
-            for answer, weight in zip(answers, weights, strict=True):
-                answer[:, begin : begin + rows] = (states[:rows] @ weight).T
+    own = [chain.instrument_of(port) for port in range(len(answers))]
+    of_plate = chain.outputs[:, None, :, : chain.modes] * chain.plate.shape[:, None]
+    of_instrument = np.stack([chain.outputs[:, :, chain.modes :][:, :, one] for one in own], axis=1)
+    _add_oscillators(answers, chain.plate, of_plate, rate, points + _rounded(more))
+    # each port drives poles of its own, and all of these move alike
+    _add_oscillators(answers, chain.instrument.pick(own[0]), of_instrument, rate, points + _rounded(more))
     scaled = derivatives * rate ** np.arange(1.0, 4.0)[:, None]
     answers[:, :, :points] += chain.direct @ scaled
-    return FilteredChain(chain, rate, pairs.product(chain.outputs, filter_gains(oscillators, rate)), answers)
+    return FilteredChain(chain, rate, answers)
+
+
+def _add_oscillators(answers: Floats, oscillators: Oscillators, weights: Floats, rate: float, count: int) -> None:
+    """Add outputs of oscillators to answers (P, S, points), by the weights of displacements and velocities in them, (2, P, S, n).
+
+    Where they are few enough, the states at the first `count` points are kept, for longer responses of the same oscillators.
+    """
+    if not oscillators.number:
+        return
+    parts = (oscillators.angular_frequency.tobytes(), oscillators.damping_ratio.tobytes(), rate)
+    kept, points = 2 * oscillators.number * answers.shape[2] <= _KEPT, answers.shape[2]
+    of_ports = np.concatenate(list(weights), axis=-1)  # (P, S, 2 n)
+    # a port that a single mode sees needs that alone
+    seen = [np.flatnonzero(one) for one in np.asarray(of_ports.any(axis=1))]
+    for begin, states in _kept_states(*parts, count) if kept else _states(*parts, points):
+        rows = min(states.shape[1], points - begin)
+        for answer, weight, which in zip(answers, of_ports, seen, strict=True):
+            answer[:, begin : begin + rows] += weight[:, which] @ states[which, :rows]
 
 
 def _states(frequencies: bytes, ratios: bytes, rate: float, count: int) -> Iterator[tuple[int, Floats]]:
-    """Yield the states (rows, 2 n), displacements then velocities, of oscillators of shape one driven by a converter's kernel.
+    """Yield the states (2 n, points), displacements then velocities, of oscillators of shape one driven by a converter's kernel.
 
     They are given at `FINENESS` points per sample from the beginning of the kernel on, in blocks with the index of the first point.
     """
     oscillators = Oscillators(np.frombuffer(frequencies), np.frombuffer(ratios), np.ones(len(frequencies) // 8))
     step, kernel_cells = 1.0 / (FINENESS * rate), 2 * HALF_LENGTH * FINENESS
-    later, drives = oscillators.transition(np.array(step)), _drives(oscillators, rate, step, kernel_cells)
-    state = np.zeros((2, len(oscillators.shape)))
+    drives = _drives(oscillators, rate, step, kernel_cells)
+    later = oscillators.transition(step * np.arange(1.0, _ROWS + 1.0))  # (2, 2, rows, n)
+    state = np.zeros((2, oscillators.number))
     for begin in range(0, count, _ROWS):
-        states = np.empty((min(_ROWS, count - begin), 2 * len(oscillators.shape)))
-        for row in range(len(states)):
-            cell = begin + row - 1
-            if cell >= 0:
-                state = later[:, 0] * state[0] + later[:, 1] * state[1]
-                if cell < kernel_cells:
-                    state += drives[cell]
-            states[row] = state.ravel()
-        yield begin, states
+        rows = min(_ROWS, count - begin)
+        if begin > kernel_cells:  # the kernel has passed
+            states = later[:, 0, :rows] * state[0] + later[:, 1, :rows] * state[1]
+        else:
+            states = np.empty((2, rows, oscillators.number))
+            for row in range(rows):
+                cell = begin + row - 1
+                if cell >= 0:
+                    state = later[:, 0, 0] * state[0] + later[:, 1, 0] * state[1]
+                    if cell < kernel_cells:
+                        state += drives[cell]
+                states[:, row] = state
+        state = states[:, -1]
+        yield begin, states.swapaxes(1, 2).reshape(2 * oscillators.number, rows)
 
 
 @lru_cache(maxsize=8)
-def _kept_states(frequencies: bytes, ratios: bytes, rate: float, count: int) -> tuple[tuple[int, Floats], ...]:
-    """Return `_states`, cached for drops on the same plate."""
-    return tuple(_states(frequencies, ratios, rate, count))
+def _kept_states(frequencies: bytes, ratios: bytes, rate: float, count: int) -> tuple[tuple[int, Floats]]:
+    """Return `_states` in one block, cached for drops on the same plate."""
+    return ((0, np.concatenate([states for _, states in _states(frequencies, ratios, rate, count)], axis=1)),)
 
 
 def _rounded(number: int) -> int:
@@ -162,7 +185,7 @@ def filter_gains(oscillators: Oscillators, rate: float) -> Floats:
 def _gains(frequencies: bytes, ratios: bytes, rate: float) -> Floats:
     """Return `filter_gains`, cached."""
     *_, (_, states) = _states(frequencies, ratios, rate, 2 * HALF_LENGTH * FINENESS + 1)
-    displacement, velocity = np.split(states[-1], 2)
+    displacement, velocity = np.split(states[:, -1], 2)
     return np.stack([velocity + 2.0 * np.frombuffer(ratios) * np.frombuffer(frequencies) * displacement, displacement])
 
 

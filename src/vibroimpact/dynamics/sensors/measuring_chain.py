@@ -98,15 +98,13 @@ def measuring_chain(
     direct = compliance[..., None] * np.array([_whole_part(order, sections) for order in orders])
     if not sections:
         direct[:, :, 0] += np.where(np.asarray(orders) == 2, [shapes @ shape for shape in plate.shape], 0.0)
-    instrument = [
-        _section_weights(number, sections, at_port(plate, port), shapes, compliance[port], orders)
-        for port in range(len(compliance))
-        for number in range(len(sections))
-    ]
+    of_sections = [_section_weights(number, sections, plate, shapes, compliance, orders) for number in range(len(sections))]
+    instrument = np.concatenate([np.zeros((2, len(compliance), len(shapes), 0)), *of_sections], axis=-1)
+    by_port = instrument.swapaxes(1, 2).reshape(2, len(shapes), -1)  # those of a port are neighbours
     return MeasuringChain(
         _with_sections(plate, sections),
         plate.number,
-        np.concatenate([outputs, *instrument], axis=-1).transpose(1, 0, 2),
+        np.concatenate([outputs.swapaxes(0, 1), by_port], axis=-1),
         direct,
         shapes,
         compliance,
@@ -136,11 +134,14 @@ def section_outputs(number: int, sections: Sequence[Section], orders: Sequence[i
 
 
 def point_receptance(section: Section, plate: Oscillators, shapes: Floats, compliance: Floats) -> Floats:
-    """Return the receptance of points to minus the force at the poles of a section, (2, S, 1)."""
+    """Return the receptance of points to minus the force at the poles of a section, (2, S, 1), or (2, P, S, 1) of shapes with P rows.
+
+    `compliance` is that of the modes left out, (S,) or (P, S).
+    """
     stiffness, damping = section
     receptance = np.stack([plate.angular_frequency**2 - stiffness, plate.damping - damping])
-    receptance = PolePairs(np.full_like(plate.shape, stiffness), np.full_like(plate.shape, damping)).inverse(receptance) * plate.shape
-    receptance_there = receptance @ shapes.T  # (2, S)
+    at_poles = PolePairs(np.full(plate.number, stiffness), np.full(plate.number, damping)).inverse(receptance)
+    receptance_there = np.stack([(part * plate.shape) @ shapes.T for part in at_poles])
     receptance_there[0] += compliance
     return np.asarray(receptance_there[..., None])
 
@@ -148,13 +149,10 @@ def point_receptance(section: Section, plate: Oscillators, shapes: Floats, compl
 def _section_weights(
     number: int, sections: Sequence[Section], plate: Oscillators, shapes: Floats, compliance: Floats, orders: Sequence[int]
 ) -> Floats:
-    """Return the weights of the motion of one pair of poles in each output, (S, 2, 1)."""
+    """Return the weights of the motion of one pair of poles, driven at each port, in each output, (2, P, S, 1)."""
     stiffness, damping = sections[number]
     poles = PolePairs(np.array([stiffness]), np.array([damping]))
-    receptance_there = poles.product(
-        section_outputs(number, sections, orders), point_receptance(sections[number], plate, shapes, compliance)
-    )
-    return receptance_there.transpose(1, 0, 2)
+    return poles.product(section_outputs(number, sections, orders), point_receptance(sections[number], plate, shapes, compliance))
 
 
 def _separate_poles(sections: Sequence[Section], plate: Oscillators) -> list[Section]:

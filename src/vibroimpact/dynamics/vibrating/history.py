@@ -30,6 +30,8 @@ _BLOCK = 128
 
 def vibrating_history(problem: Problem, segment: VibratingSegment, time: Floats, columns: Collection[str]) -> dict[str, Floats]:
     """Return columns, by their names, at times since the start of a segment [s] (T,)."""
+    if set(columns).issubset({"force_N"}):  # it is known from the stretch, without the states of the modes
+        return {name: _force(segment, time) for name in columns}
     further, blocks = not set(columns).issubset(MOTION_COLUMNS), []
     for part in np.split(time, range(_BLOCK, len(time) - _BLOCK + 1, _BLOCK)):
         state = segment.state(part)
@@ -42,11 +44,7 @@ def _motion_columns(problem: Problem, segment: VibratingSegment, time: Floats, s
     """Return the columns of motion and force at times since the start of a segment [s] (T,), from the states then."""
     system, motion = segment.system, segment.motion
     mass, gravity = float(problem.sphere.mass), float(problem.net_gravity)
-    force = np.zeros_like(time)
-    if isinstance(motion, VibratingStretch):
-        force = motion.contacts[0].force_at(motion.rule.unmap_time(time / motion.length))
-    elif isinstance(motion, RestMotion):
-        force = motion.force(time)
+    force = _force(segment, time)
     depth, fall_speed = centre_of(state, mass)
     indentation = np.maximum(state.displacement @ system.indentation_shape[0], 0.0) if segment.in_contact else np.zeros_like(time)
     return {
@@ -62,6 +60,16 @@ def _motion_columns(problem: Problem, segment: VibratingSegment, time: Floats, s
         "potential_J": -mass * gravity * depth,
         "plate_deflection_m": state.displacement[:, system.ground] @ system.shape[0, system.ground] + system.driven_motion(state)[0],
     }
+
+
+def _force(segment: VibratingSegment, time: Floats) -> Floats:
+    """Return the contact force at times since the start of a segment [N] (T,)."""
+    motion = segment.motion
+    if isinstance(motion, VibratingStretch):
+        return motion.contacts[0].force_at(motion.rule.unmap_time(time / motion.length))
+    if isinstance(motion, RestMotion):
+        return motion.force(time)
+    return np.zeros_like(time)
 
 
 def _further_columns(problem: Problem, segment: VibratingSegment, time: Floats, state: State, force: Floats) -> dict[str, Floats]:

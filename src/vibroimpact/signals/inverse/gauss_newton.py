@@ -70,7 +70,7 @@ def gauss_newton(
         step /= max(1.0, float(np.max(np.abs(step) / most)))
         change = slopes @ step
         converged = bool(change @ change < tolerance**2 * len(step))
-        for _ in range(_HALVINGS):
+        for _ in range(1 if converged else _HALVINGS):  # a part of a step that is small enough is not worth another model
             tried = model(parameters + step)
             if tried[0] @ tried[0] < residual @ residual:
                 break
