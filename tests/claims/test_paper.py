@@ -54,8 +54,8 @@ def test_the_front_page_counts_results() -> None:
     total = met + explained + missed
     says(README, "Of the {} comparisons with its results {} agree as printed: the contact stiffness, four numbers", total, met)
     assert met == 1 + 4 + 8
-    says(README, "A further {}, among them all other results of rigid bodies, lie in a range", explained)
-    says(README, "that a stated cause gives, and {}, all of elastic bodies, in none", missed)
+    says(README, "A further {}, among them all other results of rigid bodies, agree with what a stated cause gives", explained)
+    says(README, "a value or a range, and {}, all of elastic bodies, with none", missed)
 
 
 def test_results_that_are_not_reproduced_are_of_elastic_bodies() -> None:
@@ -94,6 +94,6 @@ def test_the_drop_that_the_guide_describes() -> None:
     says(GUIDE, "the sphere rebounds with {}", impacts["restitution_achieved"][0])
     says(GUIDE, "The full-damping penetration is printed as {} mm", 1e3 * printed("full_damping_penetration").value)
     penetration = vi.load_case("paper:type1-variable").to_problem().laws[0].full_damping_penetration
-    says(GUIDE, "The printed results are those for {} mm", 1e3 * penetration)
+    says(GUIDE, "The printed rebounds of rigid bodies are those for {} mm", 1e3 * penetration)
     higher = vi.simulate(vi.load_case("paper:type1-theory", {"drop.height": "6 m"})).impacts
     says(GUIDE, "# {}: force grows as speed^1.2", higher["max_force_N"][0] / impacts["max_force_N"][0])

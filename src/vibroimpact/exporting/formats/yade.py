@@ -116,7 +116,7 @@ def _write(drop: Drop) -> Mapping[str, bytes]:
     else:
         angle = math.atan(0.0 if friction is None else float(friction.coefficient))
         youngs = 1.5 * stiffness * (1.0 - poisson**2) / math.sqrt(0.5 * drop.radius)
-        comment = "# YADE takes a wall as a sphere of the same size and material: this modulus gives the contact's stiffness, " + (
+        comment = "# YADE takes a wall as a sphere of the same size, here of the same material: this modulus gives the contact's stiffness, " + (
             f"{stiffness:.9g} N/m^1.5"
         )
         material = f"FrictMat(young={youngs!r}, poisson={poisson!r}, density={density!r}, frictionAngle={angle!r})"
