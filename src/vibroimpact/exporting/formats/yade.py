@@ -116,9 +116,8 @@ def _write(drop: Drop) -> Mapping[str, bytes]:
     else:
         angle = math.atan(0.0 if friction is None else float(friction.coefficient))
         youngs = 1.5 * stiffness * (1.0 - poisson**2) / math.sqrt(0.5 * drop.radius)
-        comment = "# YADE takes a wall as a sphere of the same size, here of the same material: this modulus gives the contact's stiffness, " + (
-            f"{stiffness:.9g} N/m^1.5"
-        )
+        wall = "# YADE takes a wall as a sphere of the same size, here of the same material"
+        comment = f"{wall}: this modulus gives the contact's stiffness, {stiffness:.9g} N/m^1.5"
         material = f"FrictMat(young={youngs!r}, poisson={poisson!r}, density={density!r}, frictionAngle={angle!r})"
         physics, law = "Ip2_FrictMat_FrictMat_MindlinPhys(betan=DAMPING[0], betas=0.0)", "Law2_ScGeom_MindlinPhys_Mindlin()"
         new_damping = "physics.betan = damping"
