@@ -53,10 +53,11 @@ def elsewhere(computed: tuple[Path, dict[str, bytes]], folder: Path, monkeypatch
 def test_who_receives_computes_nothing(
     computed: tuple[Path, dict[str, bytes]], elsewhere: dict[str, bytes], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    assert sorted(name.partition(".")[2] for name in elsewhere) == ["compliance", "modes", "modes"]
+    assert sorted(name.partition(".")[2] for name in elsewhere) == ["compliance", "compliance", "modes", "modes"]
     assert receive(elsewhere) == ""
     for name in ("recipe.computed_model", "static_compliance.computed_compliance"):
         monkeypatch.setattr(f"vibroimpact.structures.{name}", lambda *_: pytest.fail("computed again"))
+    monkeypatch.setattr("vibroimpact.cases.elastic.coupling.mesh_compliance", lambda *_: pytest.fail("computed again"))
     there = vi.read_case(TABLE).to_problem()
     monkeypatch.setenv("VIBROIMPACT_STORE", str(computed[0]))
     here = vi.read_case(TABLE).to_problem()

@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 import vibroimpact as vi
-from agreement import Against
+from agreement import Against, Agrees
 from vibroimpact.cases.limits.plate_mesh import plate_mesh_error
 
 AGAINST = Against(
@@ -48,10 +48,11 @@ def drop(supports: str, modes: int, radius: float, speed: float, size: float | N
 @pytest.mark.parametrize(("radius", "speed"), BALLS)
 @pytest.mark.parametrize("modes", [12, 40])
 @pytest.mark.parametrize("supports", SUPPORTS)
-def test_the_stated_error_of_the_mesh(supports: str, modes: int, radius: float, speed: float) -> None:
+def test_the_stated_error_of_the_mesh(agrees: Agrees, supports: str, modes: int, radius: float, speed: float) -> None:
     """From 0.6 to 1.2 times the true one."""
     found, fine = (drop(supports, modes, radius, speed, size) for size in (None, 3.0 * THICKNESS))
     error = float(found.impacts["max_force_N"][0] / fine.impacts["max_force_N"][0]) - 1.0
     assert error > 0.003
     stated = plate_mesh_error(found.problem.facts, found.impacts) - plate_mesh_error(fine.problem.facts, fine.impacts)
-    assert 0.6 < stated / error < 1.2
+    assert stated < 1.2 * error
+    agrees("steel balls on thin steel plates", "error of the largest force by the mesh, as stated", stated, error, relative=0.4)

@@ -30,7 +30,9 @@ from vibroimpact.structures.modes import ElasticSystem
 from vibroimpact.structures.plate_compliance import Average
 from vibroimpact.structures.plate_element import shear_factor
 from vibroimpact.structures.plate_mesh import plate_mesh
+from vibroimpact.structures.recipe import Recipe, plate_key
 from vibroimpact.structures.static_compliance import averaged_compliances, plate_element_average
+from vibroimpact.structures.store import key_of
 from vibroimpact.structures.structure import plate_structure
 from vibroimpact.structures.supports.constraints import HeldStructure
 from vibroimpact.structures.supports.edge import EDGES, Edge
@@ -84,6 +86,11 @@ def mesh_compliance(mesh: Mesh, material: Material, thickness: float, place: tup
     small = _small_plate(_rounded(0.5 * (edges[0] + edges[2])), _rounded(0.5 * (edges[1] + edges[3])), thickness, material, thin)
     at = float((local[0] - 0.5) * small.length), float((local[1] - 0.5) * small.width)
     return max(0.0, small.exact_compliance(at) - small.compliance(at))
+
+
+def mesh_compliance_key(recipe: Recipe, place: tuple[float, float]) -> str:
+    """Return the key of what the elements of a plate lack at a place, in the store."""
+    return key_of(["compliance of the mesh", plate_key(recipe), place])
 
 
 def _rounded(length: float) -> float:

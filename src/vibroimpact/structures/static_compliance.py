@@ -80,12 +80,32 @@ def static_compliance(recipe: Recipe, place: tuple[float, float], side: Side = "
     >>> round(static_compliance(recipe, (0.0, 0.0)) * stiffness / 0.5**2, 4)  # 0.0116 is Navier's
     0.0116
     """
-    key, say = compliance_key(recipe, place, side), tell or (lambda text: None)
+    return stored_compliance(compliance_key(recipe, place, side), lambda: computed_compliance(recipe, place, side), tell)
+
+
+def stored_compliance(key: str, compute: Callable[[], float], tell: Callable[[str], None] | None = None) -> float:
+    """Return a compliance by its key from the store, or computed and then stored [m/N].
+
+    Parameters
+    ----------
+    key : str
+        Its key in the store.
+    compute : callable
+        Computes it where the store does not have it.
+    tell : callable, optional
+        Called with a message on a failure of the store.
+
+    Raises
+    ------
+    InputError, ComputationError
+        As `compute` does.
+    """
+    say = tell or (lambda text: None)
     found, trouble = load_entry(key, _KIND, lambda parts: float(parts[_KIND].item()))
     if trouble:
         say(trouble)
     if found is None:
-        found = computed_compliance(recipe, place, side)
+        found = compute()
         trouble = save_entry(key, _KIND, {_KIND: np.array(found)})
         if trouble:
             say(trouble)

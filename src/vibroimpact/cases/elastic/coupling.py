@@ -33,13 +33,13 @@ from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.dynamics.vibrating.local import LocalContact
 from vibroimpact.errors import InputError
 from vibroimpact.materials import Material
-from vibroimpact.structures.mesh_compliance import mesh_compliance
+from vibroimpact.structures.mesh_compliance import mesh_compliance, mesh_compliance_key
 from vibroimpact.structures.modal_model import ModalBasis, ModalModel
 from vibroimpact.structures.plate_face import face_shapes
 from vibroimpact.structures.plate_waves import inertia_beyond_bending
 from vibroimpact.structures.recipe import is_thin, model_key
 from vibroimpact.structures.sphere_compliance import FITTED, sphere_term
-from vibroimpact.structures.static_compliance import compliance_key, static_compliance
+from vibroimpact.structures.static_compliance import compliance_key, static_compliance, stored_compliance
 from vibroimpact.structures.store import carry
 from vibroimpact.structures.surface import place_of
 
@@ -110,7 +110,7 @@ def coupling_of(case: CaseTable, progress: Callable[[float], None] | None = None
             facts["plate_static_compliance_m_N"] = static
             linear += static - carried
             if bodies["plate"].model.mesh.is_flat:
-                facts[PLATE_MESH_COMPLIANCE] = _lacking_compliance(bodies["plate"])
+                facts[PLATE_MESH_COMPLIANCE] = _lacking_compliance(bodies["plate"], tell)
             modes["plate"] = with_residuals(bodies["plate"], modes["plate"], tell)
     if is_free_sphere(case):
         rigid = _free_sphere(case)
@@ -158,6 +158,9 @@ def carried_modes(
         if name == "plate" and treatment_of(case) != "superposed":
             _plate_compliance(body, tell)
             keys.append(compliance_key(body.body.recipe, *contact_place(body)))
+            if body.model.mesh.is_flat:
+                _lacking_compliance(body, tell)
+                keys.append(mesh_compliance_key(body.body.recipe, contact_place(body)[0]))
             if body.body.sensors:
                 with_residuals(body, body.basis, tell)
                 keys += residual_keys(body)
@@ -174,11 +177,15 @@ def _plate_compliance(body: BodyModes, tell: Callable[[str], None] | None) -> fl
     return static_compliance(body.body.recipe, *contact_place(body), tell)
 
 
-def _lacking_compliance(body: BodyModes) -> float:
+def _lacking_compliance(body: BodyModes, tell: Callable[[str], None] | None) -> float:
     """Return the compliance that the plate elements lack at the contact point [m/N]."""
-    recipe, model = body.body.recipe, body.model
-    material = Material(recipe.density, recipe.youngs_modulus, recipe.poissons_ratio)
-    return mesh_compliance(model.mesh, material, model.thickness, contact_place(body)[0], is_thin(recipe))
+    recipe, model, place = body.body.recipe, body.model, contact_place(body)[0]
+
+    def computed() -> float:
+        material = Material(recipe.density, recipe.youngs_modulus, recipe.poissons_ratio)
+        return mesh_compliance(model.mesh, material, model.thickness, place, is_thin(recipe))
+
+    return stored_compliance(mesh_compliance_key(recipe, place), computed, tell)
 
 
 def _finite_size(case: CaseTable, patch: float) -> tuple[QuasiStatic, float]:
