@@ -250,7 +250,14 @@ def fallen_by_20_dB(force: Record) -> float:
 
 
 @pytest.mark.parametrize("with_force", [True, False])
-@pytest.mark.parametrize(("radius", "material"), [pytest.param(0.016, "steel", marks=pytest.mark.slow), (0.016, SOFT), (0.03, SOFT)])
+@pytest.mark.parametrize(
+    ("radius", "material"),
+    [
+        pytest.param(0.016, "steel", marks=pytest.mark.slow),
+        pytest.param(0.016, SOFT, marks=pytest.mark.slow),
+        (0.03, SOFT),
+    ],
+)
 def test_where_damping_alone_differs_it_is_said(radius: float, material: Any, with_force: bool) -> None:
     """FRAC is low rightly, and not for zeros of the force; it is not the frequencies either, nor a sensitivity."""
     motions, force = knocked(knocked_case(radius, material))

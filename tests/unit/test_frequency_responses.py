@@ -293,6 +293,7 @@ def test_gain_polarity_and_coherence_are_told(tmp_path: Path) -> None:
     assert found.coherence.shape == found.measured_response.shape
 
 
+@pytest.mark.slow
 def test_directions_turn_signs(tmp_path: Path) -> None:
     assert compared(tmp_path, *(-one for one in RIGHT), ref_dir=3).polarity.tolist() == [1.0, 1.0]
     assert compared(tmp_path, *(-one for one in RIGHT), rsp_dir=-3).polarity.tolist() == [1.0, 1.0]
@@ -301,6 +302,7 @@ def test_directions_turn_signs(tmp_path: Path) -> None:
     assert not any("polarity" in doubt for doubt in unstated.doubts)
 
 
+@pytest.mark.slow
 def test_velocities_over_force(tmp_path: Path) -> None:
     omega = 2.0 * np.pi * FREQUENCY
     found = compared(tmp_path, *(one / (1j * omega) for one in RIGHT), ordinate_axis_units_lab="m/s", ordinate_spec_data_type=11)
@@ -320,6 +322,7 @@ def test_a_roving_hammer(tmp_path: Path) -> None:
     assert any("by reciprocity" in doubt for doubt in found.doubts)
 
 
+@pytest.mark.slow
 def test_several_places_of_the_hammer(tmp_path: Path) -> None:
     sets = [
         {"rsp_node": node, "ref_node": place, "x": FREQUENCY, "data": response * (1.0 if place == 4 else 2.0)}

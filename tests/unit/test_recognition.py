@@ -446,6 +446,7 @@ def test_a_label_in_the_last_sample_is_found(tmp_path: Path) -> None:
     assert "leak: length, first and last sample alone classify better (balanced accuracy 1.000) than all features" in doubt
 
 
+@pytest.mark.slow
 def test_a_classifier_above_the_bound_is_a_leak(tmp_path: Path, found: vi.Recognition) -> None:
     assert not any("leak" in one for one in found.doubts)
 
