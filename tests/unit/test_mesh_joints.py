@@ -482,6 +482,39 @@ def test_reference_points_of_an_assembly(tmp_path: Path) -> None:
     np.testing.assert_allclose(frequencies(read_mesh(tmp_path / "three.inp")), frequencies(same), rtol=1e-9)
 
 
+@pytest.mark.parametrize("reference", ["RP", "1"])
+def test_a_reference_point_of_an_assembly_of_one_instance(reference: str, tmp_path: Path) -> None:
+    """It has the number of a node of the part, and is another, as in one of several instances."""
+    half = replace(box_mesh(SIZE, (2, 2, 1)), node_sets={})
+    write_abaqus(half, tmp_path / "half.inp")
+    right = faces_at(half, 0.1)
+    face = "".join(f"{element}, {label}\n" for element, label in right)
+    body = f"{(tmp_path / 'half.inp').read_text()}*SURFACE, NAME=end\n{face}"
+    coupling = f"*COUPLING, CONSTRAINT NAME=C, REF NODE={reference}, SURFACE=only.end\n*KINEMATIC\n"
+    (tmp_path / "one.inp").write_text(
+        f"*PART, NAME=P\n{body}*END PART\n*ASSEMBLY, NAME=A\n*INSTANCE, NAME=only, PART=P\n*END INSTANCE\n"
+        f"*NODE\n1, 0, 0, 0.3\n*NSET, NSET=RP\n1,\n{coupling}*END ASSEMBLY\n"
+    )
+    number = len(half.nodes) + 1
+    at_end = [str(node + 1) for node in np.flatnonzero(half.nodes[:, 0] > 0.1 - 1e-9)]
+    rigid = f"GRID,{number},,0.,0.,.3\n" + many(["RBE2", "900", str(number), "123456", *at_end])
+    found, same = read_mesh(tmp_path / "one.inp"), read(half, rigid, tmp_path, "bdf")
+    assert found.joined_by == {"*KINEMATIC": 1}
+    systems = [elastic_system(held_by(solid_structure(mesh, STEEL))) for mesh in (found, same)]
+    one, other = (system.modes(3).angular_frequencies for system in systems)
+    np.testing.assert_allclose(one, other, rtol=1e-9)
+
+
+def test_a_coupling_in_a_part(tmp_path: Path) -> None:
+    """Its nodes are those of each instance, by number and by set."""
+    text = assembly().replace("*END PART", "*KINEMATIC COUPLING, REF NODE=1\n2, 1, 3\ncorner, 1, 3\n*END PART")
+    (tmp_path / "two.inp").write_text(text)
+    found = read_mesh(tmp_path / "two.inp")
+    assert found.joined_by == {"*KINEMATIC COUPLING": 4}
+    assert found.joints is not None
+    assert len(found.joints.followers) == 2
+
+
 def ends_that_meet() -> list[tuple[int, int]]:
     """Nodes of the right end of a half, from 1, and those that stand there once it is turned."""
     nodes = box_mesh(SIZE, (2, 2, 1)).nodes
