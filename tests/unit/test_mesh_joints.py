@@ -171,6 +171,14 @@ def test_nodes_off_the_surface(tmp_path: Path) -> None:
     assert number_of_parts(apart) == 2
 
 
+def test_a_tolerance_of_zero_is_one_of_rounding(tmp_path: Path) -> None:
+    """Nodes that lie on a face but for rounding are tied."""
+    mesh = halves((8, 5, 3), (4, 3, 2))
+    exact = read(mesh, tie(mesh, more=", POSITION TOLERANCE=0"), tmp_path, "inp")
+    assert exact.remarks == ()
+    np.testing.assert_allclose(frequencies(exact), frequencies(read(mesh, tie(mesh), tmp_path, "inp")), rtol=1e-9)
+
+
 def constrained(mesh: Mesh, constraints: np.ndarray) -> np.ndarray:
     """Frequencies with constraints on displacements and six more unknowns, by the null space of all of them, dense."""
     structure = solid_structure(passing_as_joined(mesh), STEEL)
