@@ -19,6 +19,10 @@ import vibroimpact as vi
 from hammered import RATE, SOFT, TABLE, a_case, hammered, knocked, knocked_case, records
 from vibroimpact.correlation.acquired import acquired_of
 from vibroimpact.correlation.correlate import Correlation
+from vibroimpact.correlation.mode_pairs import paired
+from vibroimpact.correlation.shared_differences import shared_differences
+from vibroimpact.signals.decay.find import DecayMode
+from vibroimpact.signals.estimate import Estimate
 from vibroimpact.signals.flat_tops import clipped_count
 from vibroimpact.signals.record import Record
 
@@ -321,6 +325,20 @@ def test_clipping_of_every_kind_is_found(kind: str) -> None:
     for one in found:
         level = 0.2 if kind == "offset" else 0.0
         assert clipped_count(one - level, one, one[:200] - level) > 0
+
+
+@pytest.mark.parametrize("common", [0.0, 0.045, 0.08, -0.08])
+def test_modes_that_are_all_off_by_more_than_their_distance_are_paired(common: float) -> None:
+    """By a wrong modulus each mode is nearer to a neighbour than to its own: what all have in common is sought."""
+    frequencies = np.array([210.0, 268.0, 352.0, 410.0, 455.0, 520.0, 611.0, 645.0, 733.0, 808.0, 861.0, 948.0])
+    seen = [row for row in range(12) if row not in (3, 8)]
+    off = common + 0.002 * np.sin(np.arange(12.0))
+    found = [DecayMode(Estimate(frequencies[row] * (1.0 + off[row]), 0.1), Estimate(0.01, 0.01), (1.0,)) for row in seen]
+    pairs = paired(frequencies, np.full(12, 0.01), np.ones(12), found, (100.0, 1200.0))
+    assert {pair.number: pair.measured for pair in pairs if pair.measured} == dict(zip([row + 1 for row in seen], found, strict=True))
+    shared = shared_differences(pairs).frequency
+    assert (shared is not None) == (common != 0.0)
+    assert shared is None or shared.value == pytest.approx(common, abs=0.002)
 
 
 def test_what_is_not_clipped_is_not_said_to_be() -> None:

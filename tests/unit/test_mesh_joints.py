@@ -171,6 +171,14 @@ def test_nodes_off_the_surface(tmp_path: Path) -> None:
     assert number_of_parts(apart) == 2
 
 
+def test_a_tolerance_of_zero_is_one_of_rounding(tmp_path: Path) -> None:
+    """Nodes that lie on a face but for rounding are tied."""
+    mesh = halves((8, 5, 3), (4, 3, 2))
+    exact = read(mesh, tie(mesh, more=", POSITION TOLERANCE=0"), tmp_path, "inp")
+    assert exact.remarks == ()
+    np.testing.assert_allclose(frequencies(exact), frequencies(read(mesh, tie(mesh), tmp_path, "inp")), rtol=1e-9)
+
+
 def constrained(mesh: Mesh, constraints: np.ndarray) -> np.ndarray:
     """Frequencies with constraints on displacements and six more unknowns, by the null space of all of them, dense."""
     structure = solid_structure(passing_as_joined(mesh), STEEL)
@@ -224,6 +232,60 @@ def test_many_nodes_by_one_reference(way: str, tmp_path: Path) -> None:
 def many(fields: list[str]) -> str:
     name, *rest = fields
     return "".join(",".join([name if start == 0 else "", *rest[start : start + 8]]) + "\n" for start in range(0, len(rest), 8))
+
+
+@pytest.mark.parametrize("name", ["RBE1", "RBE2", "RBE3", "RBAR"])
+@pytest.mark.parametrize("gap", [1e-17, 1e-10, 1.7e-7])
+def test_rigid_links_of_nodes_at_one_place_but_for_rounding(name: str, gap: float, tmp_path: Path) -> None:
+    """They are no hinges in the direction of the rounding."""
+    mesh = halves()
+    nodes = mesh.nodes.copy()
+    nodes[mesh.node_sets["nodes1"]] += [gap, 0.5 * gap, 0.0]
+    joined = read(replace(mesh, nodes=nodes), NASTRAN[name](pairs(mesh)), tmp_path, "bdf")
+    np.testing.assert_allclose(frequencies(joined), frequencies(WHOLE), rtol=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("members", "follows"),
+    [([40], 1), ([40, 41], 2), ([39, 40, 41], 2), ([40, 41, 42], 3), ([1], 0), ([1, 2], 1), ([1, 2, 3], 3), ([3, 6, 20, 21], 3)],
+)
+def test_means_of_nodes_that_show_less_than_a_rigid_motion(members: list[int], follows: int, tmp_path: Path) -> None:
+    """Turns about a node, or about the line on which the nodes lie, are free: a rigid arm on one node keeps its length only."""
+    mesh = replace(halves(), node_sets={})
+    joints = read(mesh, many(["RBE3", "901", "", "1", "123", "1.", "123", *map(str, members)]), tmp_path, "bdf").joints
+    followers = [] if joints is None else joints.rows()
+    assert len(followers) == follows
+    motions = solid_structure(passing_as_joined(halves()), STEEL).rigid_motions()
+    for follower, weights in followers:
+        np.testing.assert_allclose(motions[follower], sum(value * motions[unknown] for unknown, value in weights.items()), atol=1e-12)
+
+
+def test_a_rigid_part_of_many_nodes_with_their_rotations(tmp_path: Path) -> None:
+    """Rotations of nodes that nothing else joins follow, and cost nothing."""
+    mesh = replace(box_mesh(SIZE, (12, 11, 10), "hex8"), node_sets={})
+    point = len(mesh.nodes) + 100
+    one, other = (
+        read(mesh, f"GRID,{point},,0.,0.,1.\n" + many(["RBE2", "900", str(point), part, *map(str, range(1, 1501))]), tmp_path, "bdf").joints
+        for part in ("123", "123456")
+    )
+    assert one is not None
+    assert other is not None
+    assert len(one.followers) == 3 * 1500 - 6
+    np.testing.assert_array_equal(one.followers, other.followers)
+    np.testing.assert_allclose((one.weights - other.weights).data, 0.0, atol=1e-12)
+
+
+def test_components_of_couplings(tmp_path: Path) -> None:
+    """A range may end beyond the last component; of *DISTRIBUTING, only rotations can be released."""
+    mesh = replace(halves(), node_sets={})
+    found = []
+    for way, components in (("KINEMATIC", "1, 6"), ("KINEMATIC", "1, 99999999999999"), ("DISTRIBUTING", "1, 6"), ("DISTRIBUTING", "4, 6")):
+        text = surface(mesh, "A", "part0") + f"*COUPLING, REF NODE=1, SURFACE=A\n*{way}\n{components}\n"
+        joints = read(mesh, text, tmp_path, "inp").joints
+        assert joints is not None
+        found.append(joints.weights.toarray())
+    np.testing.assert_allclose(found[1], found[0])
+    np.testing.assert_allclose(found[3], found[2])
 
 
 def test_equations_with_other_coefficients(tmp_path: Path) -> None:
@@ -428,6 +490,39 @@ def test_reference_points_of_an_assembly(tmp_path: Path) -> None:
     np.testing.assert_allclose(frequencies(read_mesh(tmp_path / "three.inp")), frequencies(same), rtol=1e-9)
 
 
+@pytest.mark.parametrize("reference", ["RP", "1"])
+def test_a_reference_point_of_an_assembly_of_one_instance(reference: str, tmp_path: Path) -> None:
+    """It has the number of a node of the part, and is another, as in one of several instances."""
+    half = replace(box_mesh(SIZE, (2, 2, 1)), node_sets={})
+    write_abaqus(half, tmp_path / "half.inp")
+    right = faces_at(half, 0.1)
+    face = "".join(f"{element}, {label}\n" for element, label in right)
+    body = f"{(tmp_path / 'half.inp').read_text()}*SURFACE, NAME=end\n{face}"
+    coupling = f"*COUPLING, CONSTRAINT NAME=C, REF NODE={reference}, SURFACE=only.end\n*KINEMATIC\n"
+    (tmp_path / "one.inp").write_text(
+        f"*PART, NAME=P\n{body}*END PART\n*ASSEMBLY, NAME=A\n*INSTANCE, NAME=only, PART=P\n*END INSTANCE\n"
+        f"*NODE\n1, 0, 0, 0.3\n*NSET, NSET=RP\n1,\n{coupling}*END ASSEMBLY\n"
+    )
+    number = len(half.nodes) + 1
+    at_end = [str(node + 1) for node in np.flatnonzero(half.nodes[:, 0] > 0.1 - 1e-9)]
+    rigid = f"GRID,{number},,0.,0.,.3\n" + many(["RBE2", "900", str(number), "123456", *at_end])
+    found, same = read_mesh(tmp_path / "one.inp"), read(half, rigid, tmp_path, "bdf")
+    assert found.joined_by == {"*KINEMATIC": 1}
+    systems = [elastic_system(held_by(solid_structure(mesh, STEEL))) for mesh in (found, same)]
+    one, other = (system.modes(3).angular_frequencies for system in systems)
+    np.testing.assert_allclose(one, other, rtol=1e-9)
+
+
+def test_a_coupling_in_a_part(tmp_path: Path) -> None:
+    """Its nodes are those of each instance, by number and by set."""
+    text = assembly().replace("*END PART", "*KINEMATIC COUPLING, REF NODE=1\n2, 1, 3\ncorner, 1, 3\n*END PART")
+    (tmp_path / "two.inp").write_text(text)
+    found = read_mesh(tmp_path / "two.inp")
+    assert found.joined_by == {"*KINEMATIC COUPLING": 4}
+    assert found.joints is not None
+    assert len(found.joints.followers) == 2
+
+
 def ends_that_meet() -> list[tuple[int, int]]:
     """Nodes of the right end of a half, from 1, and those that stand there once it is turned."""
     nodes = box_mesh(SIZE, (2, 2, 1)).nodes
@@ -445,6 +540,15 @@ def ends_that_meet() -> list[tuple[int, int]]:
         ("bdf", "MPC,1,1,1,1.,2,1,-1.\nMPC,2,1,1,1.,3,1,-1.\n", "MPC (2); constraints"),
         ("bdf", "GRID,900,,1.,1.,1.,7\nCORD2R,7,,0.,0.,0.,0.,1.,0.\n,0.,0.,1.\nRBE2,901,1,1,900\n", "RBE2 (1); constraints"),
         ("inp", "*EQUATION\n2\nNONE,1,1.,2,1,-1.\n", "*EQUATION (1); constraints"),
+        ("bdf", "MPC,1,1,1,1.,2,1,0.\n", "MPC (1); constraints"),
+        ("inp", "*EQUATION\n2\n1,1,1.,2,1,0.\n", "*EQUATION (1); constraints"),
+        ("inp", "*NSET,NSET=P,UNSORTED\n2,1\n*NSET,NSET=Q\n3,4\n*EQUATION\n2\nP,1,1.,Q,1,-1.\n", "*EQUATION (1); constraints"),
+        ("inp", "*NSET,NSET=P,UNSORTED\n2,1\n*NSET,NSET=Q\n3,4\n*MPC\nTIE,P,Q\n", "*MPC (1); constraints"),
+        ("inp", "*MPC\n,\n", "*MPC (1); constraints"),
+        ("inp", "*TIE, NAME=T\n", "*TIE (1); constraints"),
+        ("inp", "*COUPLING, REF NODE=1, SURFACE=A\n*MPC\nTIE,1,1\n", "*COUPLING (1); constraints"),
+        ("inp", "*SURFACE,NAME=A\npart0,S1\n*COUPLING,REF NODE=1,SURFACE=A\n*KINEMATIC\n11,11\n", "*KINEMATIC (1); constraints"),
+        ("inp", "*KINEMATIC COUPLING,REF NODE=1\n2,3,2\n", "*KINEMATIC COUPLING (1); constraints"),
         ("inp", "*EQUATION, REMOVE\n1,1\n", "*EQUATION (1); constraints"),
         ("inp", "*MPC\nBEAM, 1, 2\n", "*MPC (1); constraints"),
         ("inp", "*TIE, NAME=T\nA, B\n", "*TIE (1); constraints"),
@@ -462,6 +566,9 @@ def test_links_that_can_not_be_used_are_named(suffix: str, more: str, left: str,
     ("suffix", "more", "message"),
     [
         ("bdf", "RBE2,900,9999,123,1\n", "the node 9999 that is joined here is not in the file"),
+        ("bdf", "MPC,7,1,1,1.,9999,1,-1.\n", "the node 9999 that is joined here is not in the file"),
+        ("inp", "*EQUATION\n2\n1,1,1.,9999,1,-1.\n", "the node 9999 that is joined here is not in the file"),
+        ("inp", "*MPC\nTIE,1,9999\n", "the node 9999 that is joined here is not in the file"),
         ("bdf", "RBE2,900,1,127,2\n", '"127" names no components of motion'),
         ("bdf", "RBE2,900,1,123,2,THRU,99999999\n", "more than 1,000,000 nodes"),
         ("bdf", "RROD,900,1,1\n", "the two nodes whose distance is kept are at the same place"),

@@ -17,6 +17,12 @@ _FAR = 0.05
 """Relative difference of frequencies from which on two modes are not one."""
 FEWEST = 3
 """Least number of modes whose frequencies have anything in common."""
+_SHIFTS = np.arange(-0.1, 0.1001, 0.005)
+"""Logarithms of factors between the frequencies of both, from which on what all have in common is sought."""
+_CLOSE, _BETTER = 0.1, 0.6
+"""What the mean difference that a shift of more than a little leaves must be below: a fraction of the mean distance of modes, of which
+anything leaves a quarter; and a fraction of the sum without it.
+"""
 _HEARD = 1e-3
 """Response of a mode, relative to the strongest in the band, from which on it may be found in the records."""
 WEAK = 0.02
@@ -112,13 +118,23 @@ def _partners(places: Floats, response: Floats, measured: Sequence[float]) -> di
     if not len(heard) or not len(measured):
         return {}
     apart = np.log(np.asarray(measured)[None] / places[heard][:, None])
-    found, sum_of_differences = _nearest(apart)
+    found, least = _nearest(apart)
     if len(found) >= FEWEST:
         # a wrong modulus moves all: where modes are dense, some are nearer to a neighbour than to their own
-        shift = float(np.median([apart[pair] for pair in found]))
-        again, other_sum = _nearest(apart - shift)
-        found = again if other_sum < sum_of_differences else found
+        again, other = _nearest_shifted(apart, found)
+        found, least = (again, other) if other < least else (found, least)
+    if min(apart.shape) >= FEWEST:
+        starts = [pairs for pairs, _ in (_nearest(apart - shift) for shift in _SHIFTS) if len(pairs) >= FEWEST]
+        again, other = min((_nearest_shifted(apart, pairs) for pairs in starts), key=lambda one: one[1], default=(found, least))
+        distance = float(np.log(places[heard[-1]] / places[heard[0]])) / (len(heard) - 1)
+        if other < min(_CLOSE * distance * min(apart.shape), _BETTER * least):
+            found = again
     return {int(heard[row]): column for row, column in found}
+
+
+def _nearest_shifted(apart: Floats, pairs: Sequence[tuple[int, int]]) -> tuple[list[tuple[int, int]], float]:
+    """Return the pairs of the least sum aside from the median difference of given ones, and this sum."""
+    return _nearest(apart - float(np.median([apart[pair] for pair in pairs])))
 
 
 def _nearest(apart: Floats) -> tuple[list[tuple[int, int]], float]:

@@ -16,7 +16,8 @@ from vibroimpact.shown import shown
 _SPAN = 1_000_000_000_000  # numbers of nodes and elements that each instance has for itself
 _MOST_INSTANCES = 100_000
 _SET_NAMES = ("NSET", "ELSET", "TIE NSET", "PIN NSET", "SURFACE", "REF NODE")
-_NUMBERED = {"ELEMENT", "NSET", "ELSET", "SURFACE", "MPC", "EQUATION"}
+_NUMBERED = {"ELEMENT", "NSET", "ELSET", "SURFACE", "MPC", "EQUATION", "KINEMATIC COUPLING"}
+_LINKS = {"COUPLING", "EQUATION", "KINEMATIC COUPLING", "MPC", "RIGID BODY"}
 _TERMS = 3  # entries of a term of an equation
 
 Renamed = Callable[[str, TextLine], str]
@@ -44,10 +45,23 @@ class _Instance:
 
 
 def is_assembly(found: Sequence[Block]) -> bool:
-    """Whether blocks are those of an assembly of several parts or instances, or of one that is moved."""
+    """Whether blocks are those of an assembly of several parts or instances, of one that is moved, or with links of its own nodes."""
     instances = [block for block in found if block.keyword == "INSTANCE"]
     moves = (parse_real(text, line) for block in instances for line in block.data for text in line.text.split(",") if text.strip())
-    return len(instances) > 1 or sum(block.keyword == "PART" for block in found) > 1 or any(moves)
+    return len(instances) > 1 or sum(block.keyword == "PART" for block in found) > 1 or _has_links(found) or any(moves)
+
+
+def _has_links(found: Sequence[Block]) -> bool:
+    """Whether an assembly links nodes: outside of instances, it has numbers of its own."""
+    outside = False
+    for block in found:
+        if block.keyword in ("ASSEMBLY", "END INSTANCE"):
+            outside = True
+        elif block.keyword in ("INSTANCE", "END ASSEMBLY"):
+            outside = False
+        elif outside and block.keyword in _LINKS:
+            return True
+    return False
 
 
 def flattened(found: Iterable[Block]) -> Iterator[Block]:
@@ -194,7 +208,7 @@ def _renamed_lines(block: Block, renamed: Renamed) -> list[TextLine]:
         return [_renamed_line(line, renamed, 0, None) for line in block.data] if block.keyword == "TIE" else block.data
     if block.keyword == "EQUATION":
         return [line if "," not in line.text.rstrip(" ,") else _renamed_line(line, renamed, 0, _TERMS) for line in block.data]
-    if block.keyword == "SURFACE":
+    if block.keyword in ("SURFACE", "KINEMATIC COUPLING"):
         return [_renamed_line(line, renamed, 0, len(line.text)) for line in block.data]
     if "GENERATE" in block.parameters:
         return [line._replace(text=",".join(_generated(line, renamed))) for line in block.data]

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Sequence
 
 from vibroimpact.meshes.abaqus_blocks import Block
-from vibroimpact.meshes.links import COMPONENTS, Distance, Equation, Mean, Rigid
+from vibroimpact.meshes.links import COMPONENTS, Distance, Equation, Mean, Rigid, equation_of
 from vibroimpact.meshes.parsed_mesh import Parts
 from vibroimpact.meshes.selection import Selection
 from vibroimpact.meshes.text_files import TextLine, parse_integer, parse_real
@@ -61,9 +62,11 @@ class AbaqusLinks:
         """
         reader = _Reader(parts, known, self._surfaces, self._turned)
         coupling: Block | None = None
-        for block in self._blocks:
+        for block, after in itertools.zip_longest(self._blocks, self._blocks[1:]):
             if block.keyword == "COUPLING":
                 coupling = block
+                if after is None or after.keyword not in ("KINEMATIC", "DISTRIBUTING"):
+                    parts.skipped["*COUPLING"] += 1
                 continue
             used = reader.use(block, coupling)
             for name in used:
@@ -126,7 +129,7 @@ class _Reader:
         """Return the equations of terms: several if the terms are of sets; None if one can't be used."""
         terms = []
         for start in range(0, len(entries), _TERMS):
-            nodes = self._nodes(entries[start], line)
+            nodes = self._in_order(entries[start], line)
             component = parse_integer(entries[start + 1], line, "a component of motion") - 1
             value = parse_real(entries[start + 2], line, "a coefficient")
             if not nodes or component not in _ALL or not abs(value) < float("inf") or any(self._is_turned(node) for node in nodes):
@@ -135,17 +138,18 @@ class _Reader:
         counts = {len(nodes) for nodes, _, _ in terms} - {1}
         if len(terms) < 2 or len(counts) > 1:
             return None  # of one term it is a support
-        number = max(counts, default=1)
-        return [
-            Equation(line, [((nodes[min(index, len(nodes) - 1)], component), value) for nodes, component, value in terms])
-            for index in range(number)
+        found = [
+            equation_of(line, [((nodes[min(index, len(nodes) - 1)], component), value) for nodes, component, value in terms])
+            for index in range(max(counts, default=1))
         ]
+        usable = [one for one in found if one is not None]
+        return usable if len(usable) == len(found) else None
 
     def _mpc(self, block: Block) -> list[str]:
         left_out = []
         for line in block.data:
-            kind, *texts = [text.strip() for text in line.text.split(",") if text.strip()]
-            sets = [self._nodes(text, line) for text in texts]
+            kind, *texts = [text.strip() for text in line.text.split(",") if text.strip()] or [""]
+            sets = [self._in_order(text, line) for text in texts]
             if kind.upper() not in ("TIE", "PIN", "LINK") or len(sets) != 2 or len(sets[0]) != len(sets[1]) or not sets[0]:
                 left_out.append("MPC")
                 continue
@@ -160,6 +164,8 @@ class _Reader:
     def _tie(self, block: Block) -> list[str]:
         if any(word in block.parameters for word in _CYCLIC):
             return ["TIE of cyclic symmetry"]
+        if not block.data:
+            return ["TIE"]
         left_out = []
         for line in block.data:
             names = [_upper(text) for text in line.text.split(",") if text.strip()]
@@ -189,7 +195,7 @@ class _Reader:
         for line in block.data:
             texts = [text.strip() for text in line.text.split(",")]
             components = _range([texts[1:]], line)
-            if "ORIENTATION" in block.parameters and not set(_DISPLACEMENTS) <= set(components):
+            if not components or ("ORIENTATION" in block.parameters and not set(_DISPLACEMENTS) <= set(components)):
                 left_out.append("KINEMATIC COUPLING")
             else:
                 left_out += self._add_rigid("*KINEMATIC COUPLING", line, reference, self._nodes(texts[0], line), components)
@@ -205,7 +211,9 @@ class _Reader:
         lines = [[text.strip() for text in line.text.split(",")] for line in block.data]
         components = _range(lines, block.line)
         turned = "ORIENTATION" in coupling.parameters
-        if reference is None or not nodes or (turned and not set(_DISPLACEMENTS) <= set(components)):
+        if block.keyword == "DISTRIBUTING":  # only rotations can be released
+            components = tuple(sorted({*components, *_DISPLACEMENTS}))
+        if reference is None or not nodes or not components or (turned and not set(_DISPLACEMENTS) <= set(components)):
             return [block.keyword]
         if block.keyword == "KINEMATIC":
             return self._add_rigid("*KINEMATIC", block.line, reference, nodes, components)
@@ -235,6 +243,12 @@ class _Reader:
             return [parse_integer(text, line, "the number of a node")]
         found = self.known("NSET", text) if text else None
         return [] if found is None else self.parts.node_numbers(found)
+
+    def _in_order(self, text: str, line: TextLine) -> list[int]:
+        """Return the nodes of a set in the order in which they are paired with those of another; none if it is not theirs."""
+        found = self.known("NSET", text.strip().strip('"'))
+        nodes = self._nodes(text, line)
+        return [] if found is not None and found.unsorted and len(nodes) > 1 else nodes
 
     def _is_turned(self, node: int) -> bool:
         return node in self.turned.numbers or any(
@@ -269,11 +283,13 @@ class _Reader:
 def _range(lines: Sequence[Sequence[str]], line: TextLine) -> tuple[int, ...]:
     """Return the components of lines "first, last", from 0; all of none."""
     found: set[int] = set()
+    stated = False
     for texts in lines:
         numbers = [parse_integer(text, line, "a component of motion") for text in texts[:2] if text]
         if numbers:
-            found.update(range(numbers[0] - 1, numbers[-1]))
-    return tuple(sorted(found & set(_ALL))) or _ALL
+            stated = True
+            found.update(component for component in _ALL if numbers[0] <= component + 1 <= numbers[-1])
+    return tuple(sorted(found)) if stated else _ALL
 
 
 def _upper(name: str) -> str:

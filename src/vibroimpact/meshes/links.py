@@ -17,6 +17,18 @@ from vibroimpact.structures.structure import rotation_columns
 COMPONENTS = 6
 """Of the motion of a node: three displacements, and three rotations."""
 
+_TOGETHER = 5e-7
+"""Of the extent of the mesh: nodes within this distance are at one place, as files round coordinates to seven digits."""
+
+_ROUNDING = 1e-12
+"""Of the extent of the mesh, or of the largest coefficient: smaller components of an arm, or coefficients, are rounding."""
+
+_LOOSE = 1e-6
+"""Of the largest singular value: rigid motions that nodes show less do not follow from theirs."""
+
+_NONE = 1e-9
+"""Of the largest coefficient: smaller ones are rounding."""
+
 Free = tuple[int, int]
 """A node and a component of its motion, from 0."""
 
@@ -87,7 +99,7 @@ class Links:
         Raises
         ------
         InputError
-            If a node of a rigid link is not in the file.
+            If a node of a link is not in the file.
         """
         links = [*(link for _, link in self.stated), *more]
         if not links:
@@ -104,7 +116,8 @@ class _Unknowns:
         self._numbers, self._points = numbers, points
         self._used: dict[object, int] = {int(number): index for index, number in enumerate(numbers[used].tolist())}
         self._others: dict[object, int] = {}
-        self._rigids = 0
+        self._made = 0
+        self._extent = float(np.ptp(points[used], axis=0).max(initial=0.0))
 
     def number(self, node: object, component: int) -> int:
         """Return the number of the unknown of a component of the motion of a node."""
@@ -126,9 +139,24 @@ class _Unknowns:
             raise line.wrong(f"the node {node} that is joined here is not in the file; every node must be in it")
         return np.asarray(self._points[index])
 
+    def _arm(self, line: TextLine, node: int, centre: Floats) -> Floats:
+        """Return where a node is from a centre; zero if it is there but for rounding, which would be a hinge in any direction."""
+        arm = self.at(line, node) - centre
+        if np.linalg.norm(arm) < _TOGETHER * self._extent:
+            return np.zeros_like(arm)
+        return np.where(np.abs(arm) < _ROUNDING * self._extent, 0.0, arm)
+
+    def _owner(self) -> object:
+        """Return a new owner of unknowns that is no node."""
+        self._made += 1
+        return ("made", self._made)
+
     def equations(self, link: Link) -> list[Terms]:
         """Return the equations of a link; terms that meet are added."""
         if isinstance(link, Equation):
+            for (node, _), _ in link.terms:
+                if node not in self._used:
+                    self.at(link.line, node)  # raises if the file does not have it
             return [_sum((self.number(*free), value) for free, value in link.terms)]
         if isinstance(link, Rigid):
             return self._rigid(link)
@@ -136,14 +164,13 @@ class _Unknowns:
 
     def _rigid(self, link: Rigid) -> list[Terms]:
         leads = next((node for node, components in link.members if len(set(components)) == COMPONENTS), None)
-        self._rigids += 1
-        owner: object = ("rigid", self._rigids) if leads is None else leads
+        owner = self._owner() if leads is None else leads
         centre = self.at(link.line, link.members[0][0] if leads is None else leads)
         rows = []
         for node, components in link.members:
             if node == leads:
                 continue
-            turned = rotation_columns(*(self.at(link.line, node) - centre)[:, None])[0]
+            turned = rotation_columns(*self._arm(link.line, node, centre)[:, None])[0]
             for component in components:
                 moved = [(self.number(owner, component), -1.0)]
                 if component < AXES:
@@ -152,19 +179,38 @@ class _Unknowns:
         return rows
 
     def _mean(self, link: Mean) -> list[Terms]:
-        """The rigid motion about the node that fits the displacements of the others best, with weights (of RBE3 and of couplings)."""
+        """The rigid motion that fits the displacements of the others best, with weights (of RBE3 and of couplings), at the node.
+
+        What the others do not show, as the rotation about the line on which they lie, may take any value.
+        """
         centre = self.at(link.line, link.node)
-        at = np.array([self.at(link.line, node) for node, _, _ in link.members]) - centre
-        length = float(np.abs(at).max(initial=0.0)) or 1.0
-        rigid = np.concatenate([np.broadcast_to(np.eye(3), (len(at), 3, 3)), rotation_columns(*(at / length).T)], axis=2)
+        arms = np.array([self._arm(link.line, node, centre) for node, _, _ in link.members])
+        weights = np.array([weight for _, weight, _ in link.members])
+        weights /= weights.max()
+        middle = weights @ arms / weights.sum()
+        beside = arms - middle
+        length = float(np.abs(beside).max(initial=0.0))
+        length = length if length > _TOGETHER * self._extent else 1.0
+        rigid = np.concatenate([np.broadcast_to(np.eye(3), (len(arms), 3, 3)), rotation_columns(*(beside / length).T)], axis=2)
         counted = np.array([[axis in axes for axis in range(AXES)] for _, _, axes in link.members])
-        root = np.sqrt([weight for _, weight, _ in link.members])[:, None] * counted
-        # the pseudoinverse: nodes on one line do not turn about it
-        fit = np.linalg.pinv((root[:, :, None] * rigid).reshape(-1, COMPONENTS)) * root.ravel()
+        root = (np.sqrt(weights)[:, None] * counted).ravel()
+        rows = np.zeros((max(len(root), COMPONENTS), COMPONENTS))
+        rows[: len(root)] = root[:, None] * rigid.reshape(-1, COMPONENTS)
+        left, sizes, right = np.linalg.svd(rows, full_matrices=False)
+        shown = sizes > _LOOSE * sizes[0]
+        at_node = np.eye(COMPONENTS)
+        at_node[:AXES, AXES:] = rotation_columns(*(-middle / length)[:, None])[0]
+        fit = at_node @ (right[shown].T / sizes[shown]) @ left[: len(root), shown].T * root
+        loose = at_node @ right[~shown].T
+        loose[np.abs(loose) < _NONE * np.abs(at_node).max()] = 0.0
         fit[AXES:] /= length
+        loose[AXES:] /= length
+        owner = self._owner()
         unknowns = [self.number(node, axis) for node, _, _ in link.members for axis in range(AXES)]
+        unknowns += [self.number(owner, index) for index in range(loose.shape[1])]
+        shares = -np.concatenate([fit, loose], axis=1)
         return [
-            _sum([(self.number(link.node, component), 1.0), *zip(unknowns, (-fit[component]).tolist(), strict=True)])
+            _sum([(self.number(link.node, component), 1.0), *zip(unknowns, shares[component].tolist(), strict=True)])
             for component in link.components
         ]
 
@@ -172,11 +218,20 @@ class _Unknowns:
         first, second = link.nodes
         apart = self.at(link.line, second) - self.at(link.line, first)
         size = float(np.linalg.norm(apart))
-        if not size > 0.0:
+        if not size > _TOGETHER * self._extent:
             raise link.line.wrong("the two nodes whose distance is kept are at the same place; they must lie apart")
         along = (apart / size).tolist()
         ends = [(self.number(second, axis), value) for axis, value in enumerate(along)]
         return [_sum([*ends, *((self.number(first, axis), -value) for axis, value in enumerate(along))])]
+
+
+def equation_of(line: TextLine, terms: Sequence[tuple[Free, float]]) -> Equation | None:
+    """Return the equation of terms, of which some may be zero or of one component; None if one alone is left, which is a support."""
+    found: dict[Free, float] = {}
+    for free, value in terms:
+        found[free] = found.get(free, 0.0) + value
+    left = [(free, value) for free, value in found.items() if value != 0.0]
+    return None if len(left) == 1 or not terms else Equation(line, left)
 
 
 def _nodes_of(link: Link) -> list[int]:
@@ -190,8 +245,10 @@ def _nodes_of(link: Link) -> list[int]:
 
 
 def _sum(terms: Iterable[tuple[int, float]]) -> Terms:
-    """Return an equation without terms that are zero."""
+    """Return an equation without terms that are zero but for rounding, as where a node is one of those whose mean it is."""
     found: Terms = {}
+    largest = 0.0
     for unknown, value in terms:
         found[unknown] = found.get(unknown, 0.0) + value
-    return {unknown: value for unknown, value in found.items() if value != 0.0}
+        largest = max(largest, abs(value))
+    return {unknown: value for unknown, value in found.items() if abs(value) > _ROUNDING * largest}

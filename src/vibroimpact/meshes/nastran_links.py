@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Iterable, Sequence
 
-from vibroimpact.meshes.links import COMPONENTS, Distance, Equation, Link, Mean, Rigid
+from vibroimpact.meshes.links import COMPONENTS, Distance, Equation, Link, Mean, Rigid, equation_of
 from vibroimpact.meshes.nastran_cards import Card, nastran_real
 from vibroimpact.meshes.parsed_mesh import Parts
 from vibroimpact.meshes.text_files import TextLine, parse_integer
@@ -201,9 +201,9 @@ def _mpc(card: Card) -> Equation | None:
         if node:
             terms.append((node, component, nastran_real(value, card.line, "a coefficient")))
     parsed = [((parse_integer(node, card.line, _NODE), _components(card, part)), value) for node, part, value in terms]
-    if len(parsed) < 2 or any(len(components) != 1 or not abs(value) < float("inf") for (_, components), value in parsed):
-        return None  # of one term it is a support, and of scalar points there is no body
-    return Equation(card.line, [((node, components[0]), value) for (node, components), value in parsed if value])
+    if any(len(components) != 1 or not abs(value) < float("inf") for (_, components), value in parsed):
+        return None  # of scalar points there is no body
+    return equation_of(card.line, [((node, components[0]), value) for (node, components), value in parsed])
 
 
 def _components(card: Card, text: str) -> tuple[int, ...]:

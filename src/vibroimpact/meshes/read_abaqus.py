@@ -187,6 +187,7 @@ class _Reader:
             self.parts.skipped["*NSET, ELSET="] += 1
             return
         chosen = self._selection(kind, name)
+        chosen.unsorted |= "UNSORTED" in block.parameters
         included: set[str] = set()
         for line in block.data:
             texts = [text.strip() for text in line.text.split(",") if text.strip()]

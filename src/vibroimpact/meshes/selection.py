@@ -15,6 +15,15 @@ class Selection:
 
     Ranges are expanded only against the existing numbers, so that "1 to 10^12" costs nothing.
 
+    Parameters
+    ----------
+    numbers : set of int
+        Single numbers.
+    ranges : set of (int, int, int)
+        Ranges.
+    unsorted : bool
+        Whether the file gives the order of its members a meaning, which is not kept.
+
     Examples
     --------
     >>> Selection({7}, {(2, 10**12, 2)}).places(np.array([1, 2, 3, 4, 7])).tolist()
@@ -23,6 +32,7 @@ class Selection:
 
     numbers: set[int] = field(default_factory=set)
     ranges: set[tuple[int, int, int]] = field(default_factory=set)
+    unsorted: bool = False
 
     def places(self, known: Integers) -> Integers:
         """Return the indices of the selected numbers in `known`, which is sorted."""

@@ -95,7 +95,8 @@ def tied_nodes(mesh: Mesh, ties: Sequence[Tie], numbers: Integers, elements: tup
         if not leader or not len(followers):
             found.remarks.append(f"the tie {names} of the mesh file joins nothing: a surface of it has no faces or nodes of solid elements")
             continue
-        reach = _REACH * _mean_edge(mesh, leader) if tie.reach is None else tie.reach
+        rounding = _MOVED * float(mesh.extent.max())
+        reach = _REACH * _mean_edge(mesh, leader) if tie.reach is None else max(tie.reach, rounding)
         own = _faces(mesh, tie.follower, elements)
         if own and _mean_edge(mesh, own) > _COARSER * _mean_edge(mesh, leader):
             found.remarks.append(
@@ -122,7 +123,7 @@ def tied_nodes(mesh: Mesh, ties: Sequence[Tie], numbers: Integers, elements: tup
                 f"of the {len(places)} nodes that the mesh file ties by {names}, {away} are further than {reach:.4g} (in the unit of the "
                 "file) from its faces, and are not tied; give the tie a larger POSITION TOLERANCE"
             )
-        if furthest > _MOVED * float(mesh.extent.max()):
+        if furthest > rounding:
             found.remarks.append(
                 f"nodes that the mesh file ties by {names} are moved onto its faces, by up to {furthest:.4g} (in the unit of the file)"
             )

@@ -145,7 +145,7 @@ def _without_others(equations: Sequence[Terms], displacements: int) -> list[Term
     """Return the equations that remain once the unknowns that are no displacements are eliminated."""
     from scipy.linalg import qr
 
-    with_others = [index for index, row in enumerate(equations) if any(unknown >= displacements for unknown in row)]
+    with_others = _that_bind(equations, displacements)
     found = [row for row in equations if not any(unknown >= displacements for unknown in row)]
     for members in _hanging_together([equations[index] for index in with_others], displacements):
         rows = [equations[with_others[index]] for index in members]
@@ -175,6 +175,26 @@ def _without_others(equations: Sequence[Terms], displacements: int) -> list[Term
             if left:
                 found.append(left)
     return found
+
+
+def _that_bind(equations: Sequence[Terms], displacements: int) -> list[int]:
+    """Return the numbers of the equations with unknowns from `displacements` on, but for those that hold for some value of one of these.
+
+    Such an unknown is in no other equation, as the rotation of a node that follows a rigid part.
+    """
+    others = {index: {unknown for unknown in row if unknown >= displacements} for index, row in enumerate(equations)}
+    uses: dict[int, set[int]] = {}
+    for index, unknowns in others.items():
+        for unknown in unknowns:
+            uses.setdefault(unknown, set()).add(index)
+    waiting = [unknown for unknown, rows in uses.items() if len(rows) == 1]
+    while waiting:
+        for index in uses[waiting.pop()].copy():
+            for unknown in others.pop(index):
+                uses[unknown].discard(index)
+                if len(uses[unknown]) == 1:
+                    waiting.append(unknown)
+    return [index for index, unknowns in others.items() if unknowns]
 
 
 def _hanging_together(rows: Sequence[Terms], displacements: int) -> list[list[int]]:
