@@ -13,6 +13,7 @@ import sys
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -44,10 +45,16 @@ def _numbers_of_drop(name: str, times: Floats | None) -> dict[str, Floats]:
         times = _moments(response) if times is None else times
         found |= {f"history/{key}": np.asarray(value) for key, value in response.at(times).items()}
         if problem.sensors:
-            found |= {f"signal/{key}": np.asarray(signal.value) for key, signal in response.signals().items()}
+            found |= {f"signal/{key}": _from_touch(signal, response) for key, signal in response.signals().items()}
         return found
     table = vi.tabulate(problem)
     return found | {f"table/{key}": np.asarray(value) for key, value in table.impacts.items()}
+
+
+def _from_touch(signal: Any, response: vi.Response) -> Floats:
+    """Return the samples of a signal from the first touch on, at most 500."""
+    first = int(response.impacts["time_s"][0] * signal.rate)
+    return np.asarray(signal.value[first : first + 500])
 
 
 def _numbers_of_system(name: str, times: Floats | None) -> dict[str, Floats]:

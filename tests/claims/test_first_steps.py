@@ -12,6 +12,7 @@ from stated import ROOT, says
 from support import blocks
 from vibroimpact.cases.conditions import Conditions
 from vibroimpact.cases.limit import numbers_of
+from vibroimpact.cases.limits.plate_mesh import plate_mesh_error
 
 PAGE = "docs/first-steps.md"
 (CASE,) = (tomllib.loads(block) for block in blocks(PAGE, "toml"))
@@ -54,7 +55,9 @@ def test_the_run() -> None:
     assert 0.5 < damped / put_in < 0.65  # more than half of the energy
     says(PAGE, "a1 {} m/s²", response.signals()["a1"].largest)
     says(PAGE, "the restitution achieved is {}.", first(response, "restitution_achieved"))
-    doubts = vi.result_of(response).doubts
+    says(PAGE, "make the largest force about {} % too large", 100.0 * plate_mesh_error(response.problem.facts, response.impacts))
+    of_mesh, *doubts = vi.result_of(response).doubts
+    assert "about +0.57 % too large; give plate.mesh.element_size" in of_mesh
     assert [("cracks" in doubt, "no strength is given" in doubt) for doubt in doubts] == [(True, False), (True, True)]
 
 

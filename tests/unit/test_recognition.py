@@ -441,7 +441,7 @@ def test_a_label_in_the_last_sample_is_found(tmp_path: Path) -> None:
     def leak(data: dict[str, Any]) -> None:
         data["signal_a1"][:, -1] = np.where(data["class"] == 1, 5e-3, -5e-3)
 
-    found = vi.recognise(write_knocks(tmp_path / "data", leak, bayes_error=False, **SMALL), folds=2, seeds=1)
+    found = vi.recognise(write_knocks(tmp_path / "data", leak, bayes_error=False, **SMALL), folds=5, seeds=1)
     (doubt,) = (one for one in found.doubts if one.startswith("leak"))
     assert "leak: length, first and last sample alone classify better (balanced accuracy 1.000) than all features" in doubt
 
