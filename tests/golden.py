@@ -53,7 +53,7 @@ def _numbers_of_drop(name: str, times: Floats | None) -> dict[str, Floats]:
 
 def _from_touch(signal: Any, response: vi.Response) -> Floats:
     """Return the samples of a signal from the first touch on, at most 500."""
-    first = int(response.impacts["time_s"][0] * signal.rate)
+    first = int(np.searchsorted(signal.time, response.impacts["time_s"][0]))
     return np.asarray(signal.value[first : first + 500])
 
 

@@ -9,6 +9,7 @@ from typing import Any
 from vibroimpact.cases.limits.plate_mesh import PLATE_MESH_COMPLIANCE
 from vibroimpact.cases.limits.plate_waves import PLATE_THEORY_INERTIA
 from vibroimpact.results.csv_files import impact_rows
+from vibroimpact.results.peaks import FREQUENCIES
 from vibroimpact.results.result import Result
 
 
@@ -74,6 +75,10 @@ def check_types(summary: Mapping[str, Any]) -> None:
     for body in ("sphere", "plate"):
         peaks = summary.get(body, {})
         _check(body, isinstance(peaks, dict) and all(_is_peak(value) for value in peaks.values()))
+        frequencies = peaks.get(FREQUENCIES[0], [])
+        _check(FREQUENCIES[0], isinstance(frequencies, list) and all(_is_positive(value) for value in frequencies))
+        # the truncation of a body is that of its modes
+        _check(FREQUENCIES[0], bool(frequencies) or body not in summary.get("truncation", {}))
 
 
 def check_case(case: Mapping[str, Any]) -> None:
@@ -95,6 +100,10 @@ def check_case(case: Mapping[str, Any]) -> None:
 
 def _is_peak(value: Any) -> bool:
     return all(one is None or isinstance(one, (int, float)) for one in (value if isinstance(value, list) else [value]))
+
+
+def _is_positive(value: Any) -> bool:
+    return isinstance(value, (int, float)) and value > 0.0
 
 
 def _check(key: str, right: bool) -> None:
