@@ -49,6 +49,7 @@ def test_treatments() -> None:
     says(PAGE, "| {} | {} | {} | | elastic plate, 150 modes | {} | {} | {} |", *quasi_static, *elastic)
 
 
+@pytest.mark.slow
 def test_nothing_yields() -> None:
     for response in (drop(None), drop(None, finite_sphere=True), drop(150)):
         assert not any("yield" in doubt or "strength" in doubt for doubt in vi.result_of(response).doubts)

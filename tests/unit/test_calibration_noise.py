@@ -234,7 +234,8 @@ def response() -> vi.Response:
     )
 
 
-@pytest.mark.parametrize(("rate", "size"), [(1000.0, 1e-4), pytest.param(200.0, 1e-3, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize(("rate", "size"), [(1000.0, 1e-4), (200.0, 1e-3)])
 def test_position_records(response: vi.Response, rate: float, size: float) -> None:
     """The tops of three flights, and the speed of the first impact; the duration of contact is expected with the error that is assumed."""
     record, impacts, inside = response.sample(rate), response.impacts, []

@@ -253,7 +253,7 @@ def fallen_by_20_dB(force: Record) -> float:
     return low[0] * force.rate / (1 << 18) if len(low) else np.inf
 
 
-@pytest.mark.parametrize("with_force", [True, False])
+@pytest.mark.parametrize("with_force", [True, pytest.param(False, marks=pytest.mark.slow)])
 @pytest.mark.parametrize(
     ("radius", "material"),
     [

@@ -484,6 +484,7 @@ def test_the_report_can_be_read(tmp_path: Path) -> None:
     assert '<button type="button" data-copy="damping-text">' in page
 
 
+@pytest.mark.slow
 def test_of_a_file_with_both_either_is_compared(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """It was read as records alone, and its frequency responses were not mentioned."""
     monkeypatch.chdir(tmp_path)

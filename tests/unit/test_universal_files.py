@@ -68,6 +68,7 @@ def by_pyuff(path: Path, *functions: dict, units: dict | None = SI) -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_the_programs_own(exported: Path) -> None:
     """A position tells rebounds, a force also how hard the impacts are; the damping that was simulated is found again."""
     assert read_universal_record(exported, None, False).quantity == "force"

@@ -194,6 +194,7 @@ def test_surfaces_do_not_pass_through_each_other(seed: int) -> None:
     assert (found["position_m"] - 0.025 - found["plate_deflection_m"])[apart].min() > -1e-12
 
 
+@pytest.mark.slow
 def test_a_foil_that_cannot_be_integrated_names_a_tolerance_that_works() -> None:
     """A ball on a foil of 20 um sinks by thousands of thicknesses."""
     foil = {"size": [0.1, 0.1, 20e-6], "material": "steel", "model": "elastic", "modes": 20, "supports": "simply-supported"}
