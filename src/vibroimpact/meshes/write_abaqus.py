@@ -32,7 +32,7 @@ def write_abaqus(mesh: Mesh, path: str | PathLike[str], material: Material | Non
     """Write a mesh with its sets as an Abaqus input file in metres, kilograms and seconds.
 
     27-node bricks become C3D20, which other programs read too, and 14-node pyramids C3D13, which Abaqus does not have;
-    each plate element becomes four S8R. Joints become *EQUATION.
+    each plate element becomes four S8R. Joints become ``*EQUATION``.
 
     Parameters
     ----------
