@@ -10,6 +10,7 @@ import subprocess
 import sys
 import tracemalloc
 from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
@@ -255,6 +256,16 @@ def test_results_of_earlier_versions_open(folder: Path, tmp_path: Path, theory: 
         vi.read_result(copy)
 
 
+@pytest.mark.parametrize("damage", [{"plate": {"max_displacement_m": 1e-6, "frequencies_Hz": []}}, {"truncation": {"plate": 0.1}}])
+def test_peaks_and_truncation_without_modes_are_refused(folder: Path, tmp_path: Path, damage: dict[str, Any]) -> None:
+    copy = Path(shutil.copytree(folder, tmp_path / "copy"))
+    summary = json.loads((copy / "summary.json").read_text())
+    del summary["sha256"], summary["check_sums"]
+    (copy / "summary.json").write_text(json.dumps(summary | damage))
+    with pytest.raises(vi.InputError, match=r"summary.json: the file is missing or damaged: frequencies_Hz is not of the kind"):
+        vi.read_result(copy)
+
+
 def test_a_large_file_goes_to_the_disk_as_it_grows(tmp_path: Path) -> None:
     values = np.random.default_rng(1).random(2_000_000)
     tracemalloc.start()
@@ -280,6 +291,7 @@ def test_a_file_that_finds_no_room_is_an_error_and_no_more(tmp_path: Path) -> No
 _NO_ROOM = """
 import resource, sys
 from pathlib import Path
+from typing import Any
 import numpy as np
 from vibroimpact.files.hdf5 import new_array, new_hdf5
 

@@ -77,8 +77,8 @@ def check_types(summary: Mapping[str, Any]) -> None:
         _check(body, isinstance(peaks, dict) and all(_is_peak(value) for value in peaks.values()))
         frequencies = peaks.get(FREQUENCIES[0], [])
         _check(FREQUENCIES[0], isinstance(frequencies, list) and all(_is_positive(value) for value in frequencies))
-        # the truncation of a body is that of its modes
-        _check(FREQUENCIES[0], bool(frequencies) or body not in summary.get("truncation", {}))
+        # peaks and truncation are those of a body that has modes
+        _check(FREQUENCIES[0], bool(frequencies) or not (peaks or body in summary.get("truncation", {})))
 
 
 def check_case(case: Mapping[str, Any]) -> None:

@@ -151,10 +151,7 @@ def plate_motion_caption(result: Result) -> str:
     most = [text(float(np.max(peaks[name])), unit) for name, unit in names]
     there = text(float(np.abs(result.history["plate_deflection_m"]).max()), "m")
     words = f"The centre of mass moves by up to {most[0]}, at up to {most[1]} and {most[2]}; the contact point by up to {there}."
-    frequencies = result.frequencies("plate")
-    if not frequencies:  # of a plate that is free and otherwise rigid, or of a summary that was changed
-        return words
-    lowest = frequencies[0]
+    lowest = result.frequencies("plate")[0]
     periods = lowest * float(result.impacts["duration_s"][0])
     return f"{words} The first contact lasts {digits(periods, 2)} periods of the lowest mode, of {digits(lowest)}\u00a0Hz."
 
