@@ -14,7 +14,7 @@ PACKAGE = Path(vibroimpact.__file__).parent
 # from the ground up; a module may import its own room and what is below
 LAYERS = [
     {"shown", "_version"},
-    {"errors", "arrays"},
+    {"errors", "arrays", "compiled"},
     {"ranges", "registry", "resolved_case"},
     {"files"},
     {"units"},

@@ -3,16 +3,26 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any, ClassVar
 
 import numpy as np
 
 from vibroimpact.arrays import Array
+from vibroimpact.compiled import scalar
+from vibroimpact.contact.law import ScalarForces
 from vibroimpact.contact.parameters import parameter
-from vibroimpact.contact.power_law import PowerLaw
+from vibroimpact.contact.power_law import PowerLaw, power
 
 # power series e(D) = 1 - 2 D/3 + ... of the equation in `hysteretic_restitution`, exact to 1e-17 for D < 0.02
 _SERIES = (1.0, -2 / 3, 4 / 9, -44 / 135, 104 / 405, -40 / 189, 7648 / 42525, -2848 / 18225, 31712 / 229635)
 _SMALL = 0.02
+
+
+@scalar
+def _forces(delta: Array, delta_dot: Array, approach_speed: Array, coefficients: Any) -> tuple[Array, Array]:
+    stiffness, exponent, damping_factor, dissipation = coefficients[0], coefficients[1], coefficients[2], coefficients[3]
+    elastic = stiffness * power(delta, exponent)
+    return elastic, elastic * ((damping_factor / approach_speed + dissipation) * delta_dot)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -21,6 +31,7 @@ class HystereticLaw(PowerLaw):
 
     contact_end = "zero-indentation"
     tension = "none"
+    scalar_forces: ClassVar[ScalarForces | None] = staticmethod(_forces)
 
     restitution: Array = parameter(
         "restitution asked for, e", detail="Restitution asked for, :math:`e`.", example=0.7, at_least=0, at_most=1
@@ -35,10 +46,10 @@ class HystereticLaw(PowerLaw):
         """Return the damping factor of an impact at an approach speed [m/s]; here the same at all speeds."""
         return self.damping_factor
 
-    def forces(self, delta: Array, delta_dot: Array, approach_speed: Array) -> tuple[Array, Array]:
-        """Return the elastic and the dissipative force [N]."""
-        elastic = self.elastic_force(delta)
-        return elastic, elastic * (self.damping_factor_at(approach_speed) / approach_speed * delta_dot)
+    @property
+    def coefficients(self) -> tuple[Array, ...]:
+        """Stiffness, exponent, damping factor, and the dissipation that does not depend on the approach speed [s/m]."""
+        return self.stiffness, self.exponent, self.damping_factor, 0.0
 
     def closed_form_restitution(self, mass: Array, speed: Array) -> Array:
         """Return the restitution without gravity, a function of D only."""

@@ -6,12 +6,14 @@ A law is a frozen dataclass in a file of its own under `vibroimpact.contact.laws
 * `departure`, if it is not as its sources have it;
 * its parameters, each with `parameter(...)`: meaning, unit, range, default;
 * the state variables on which its force depends, if any, each with `memory(...)`;
-* and, if it is a `CompliantLaw`, when its contact ends and whether its force may be tensile.
+* and, if it is a `CompliantLaw`, when its contact ends, whether its force may be tensile, and the force itself as a function that
+  compiled code calls with floats and everything else with arrays.
 """
 
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 from dataclasses import dataclass, fields
 from typing import Any, ClassVar, Literal, Self
 
@@ -19,6 +21,9 @@ import numpy as np
 
 from vibroimpact.arrays import Array
 from vibroimpact.contact.parameters import Parameters
+
+ScalarForces = Callable[[Array, Array, Array, Any], tuple[Array, Array]]
+"""A function of indentation [m], its rate [m/s], approach speed [m/s] and coefficients: static and dissipative force [N]."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -95,6 +100,14 @@ class CompliantLaw(ContactLaw):
         """Indentations [m], ascending, at which the force is not smooth; integration steps end there."""
         return ()
 
+    scalar_forces: ClassVar[ScalarForces | None] = None
+    """The force as a function of floats, marked by `compiled.scalar`; a law that has none defines `forces`, and is not compiled."""
+
+    @property
+    def coefficients(self) -> tuple[Array, ...]:
+        """The numbers from which `scalar_forces` computes the force, made from parameters and memory."""
+        return ()
+
     def forces(self, delta: Array, delta_dot: Array, approach_speed: Array) -> tuple[Array, Array]:
         """Return the static and the dissipative part of the force [N], before any clipping at zero.
 
@@ -105,7 +118,10 @@ class CompliantLaw(ContactLaw):
         approach_speed : float or array
             Approach speed at the beginning of this contact [m/s], > 0.
         """
-        raise NotImplementedError
+        scalar_forces = type(self).scalar_forces
+        if scalar_forces is None:
+            raise NotImplementedError(f"{type(self).__name__} has neither `scalar_forces` nor `forces`")
+        return scalar_forces(delta, delta_dot, approach_speed, self.coefficients)
 
     def elastic_energy(self, delta: Array) -> Array:
         """Return the recoverable energy at the indentation `delta` [J].

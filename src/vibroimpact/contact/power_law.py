@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.arrays import Array
+from vibroimpact.compiled import scalar_as
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.parameters import parameter
 
@@ -54,6 +55,13 @@ class SphereLaw(CompliantLaw):
         return 0.4 * delta * self.elastic_force(delta)
 
 
+def _power_of_float(delta: float, exponent: float) -> float:
+    if exponent == 1.5:
+        return delta * math.sqrt(delta)
+    return float(delta**exponent)
+
+
+@scalar_as(_power_of_float)
 def power(delta: Array, exponent: Array) -> Array:
     """Return delta^exponent for delta >= 0; 3/2 is computed with a square root, which is many times faster.
 

@@ -92,3 +92,10 @@ class HuntCrossley(HystereticLaw):
     def damping_factor_at(self, approach_speed: Array) -> Array:
         """Return the damping factor of an impact [-]: D(e), or the dissipation times the approach speed [m/s]."""
         return self.damping_factor if self.dissipation is None else self.dissipation * approach_speed
+
+    @property
+    def coefficients(self) -> tuple[Array, ...]:
+        """Stiffness, exponent, damping factor and dissipation, one of which is zero."""
+        if self.dissipation is None:
+            return super().coefficients
+        return self.stiffness, self.exponent, 0.0, self.dissipation
