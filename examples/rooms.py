@@ -65,6 +65,7 @@ FLOORS = {  # top to bottom: name of a group, its colour, its subpackages and th
             "materials": "library",
             "units": "reading and display",
             "files": "atomic writing,\nchecksums",
+            "compiler": "scalar functions,\ncompiled code",
             "modules": "errors, arrays, ranges,\nregistry, resolved_case",
         },
     ),

@@ -7,34 +7,85 @@ drops are computed, since loading numba takes some tenths of a second.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
+from functools import cache
 from importlib.util import find_spec
-from typing import Any, TypeVar
+from typing import Any
 
-Function = TypeVar("Function", bound=Callable[..., Any])
+from vibroimpact.compiler.marks import Function, scalar, scalar_as
 
-_SCALAR: list[tuple[Callable[..., Any], Callable[..., Any] | None]] = []
-"""The functions that `scalar` marks, each with the one that compiled code calls in its place, if any."""
+__all__ = ["compiled", "force_function", "scalar", "scalar_as", "why_not_compiled"]
 
-HAS_COMPILER = find_spec("numba") is not None
-"""Is numba installed?"""
+SWITCH = "VIBROIMPACT_COMPILE"
+"""Environment variable: 0 runs everything in plain Python."""
+
+_SWITCH_OF_NUMBA = "NUMBA_DISABLE_JIT"
 
 
-def scalar(function: Function) -> Function:
-    """Mark a function of floats, or of arrays elementwise, as one that compiled code may call.
+def compiled(signature: Callable[[Any], Any]) -> Callable[[Function], Function]:
+    """Compile a function of the core, or leave it as it is where there is no compiler.
 
-    It takes and returns floats (or a tuple of floats), or arrays of them by NumPy's rules, and uses NumPy's functions that are there for
-    both: `np.sqrt`, `np.minimum`, `np.where` and so on. Indices into its coefficients are constants.
+    Parameters
+    ----------
+    signature : callable
+        Returns numba's signature from the names of the types, which are in `vibroimpact.compiler.types`. Not called without a compiler.
+
+    Examples
+    --------
+    >>> @compiled(lambda t: t.real(t.vector))
+    ... def largest(values):
+    ...     highest = values[0]
+    ...     for value in values:
+    ...         highest = max(highest, value)
+    ...     return highest
+    >>> import numpy as np
+    >>> largest(np.array([1.0, 3.0, 2.0]))
+    3.0
     """
-    _SCALAR.append((function, None))
-    return function
+
+    def compile_function(function: Function) -> Function:
+        if why_not_compiled():
+            return function
+        from vibroimpact.compiler.functions import compiled_function
+
+        function_value: Function = compiled_function(function, signature)
+        return function_value
+
+    return compile_function
 
 
-def scalar_as(of_floats: Callable[..., Any]) -> Callable[[Function], Function]:
-    """Mark a function as `scalar` does, with another body for floats, which may branch where that for arrays can't."""
+def force_function(law_class: type[Any]) -> Any:
+    """Return the force of a contact law as a function value of the type `force`; without a compiler the Python function.
 
-    def mark(function: Function) -> Function:
-        _SCALAR.append((function, of_floats))
-        return function
+    It takes indentation [m], its rate [m/s], approach speed [m/s] and the coefficients that `force_coefficients` returns, and returns
+    static and dissipative force [N]. A law that numba cannot compile is called in Python from compiled code; a `SlowLawWarning` says so.
 
-    return mark
+    Parameters
+    ----------
+    law_class : type
+        Class of the law, a `CompliantLaw`.
+    """
+    from vibroimpact.compiler.forces import interpreted_force
+
+    if why_not_compiled():
+        return interpreted_force(law_class)
+    from vibroimpact.compiler.functions import compiled_force
+
+    return compiled_force(law_class)
+
+
+@cache
+def why_not_compiled() -> str:
+    """Return why nothing is compiled, in words, or "" if it is."""
+    if os.environ.get(SWITCH) == "0":
+        return f"switched off by {SWITCH}=0"
+    if os.environ.get(_SWITCH_OF_NUMBA, "0") not in ("", "0"):
+        return f"switched off by {_SWITCH_OF_NUMBA}"
+    if find_spec("numba") is None:
+        return "numba is not installed"
+    try:
+        import numba
+    except Exception as error:  # ImportError where NumPy is too new for it, OSError where a library of it cannot be loaded
+        return f"numba cannot be loaded: {error}"
+    return "switched off in the configuration of numba" if numba.config.DISABLE_JIT else ""

@@ -70,6 +70,10 @@ class ChartWarning(UserWarning):
     """A chart could not be drawn; everything else was written."""
 
 
+class SlowLawWarning(UserWarning):
+    """A contact law could not be compiled; its results are the same, and take longer."""
+
+
 class InputError(VibroimpactError, ValueError):
     """An invalid case, argument or file; the message states the location, the fault, and what is allowed.
 

@@ -14,9 +14,11 @@ PACKAGE = Path(vibroimpact.__file__).parent
 # from the ground up; a module may import its own room and what is below
 LAYERS = [
     {"shown", "_version"},
-    {"errors", "arrays", "compiled"},
+    {"errors", "arrays"},
     {"ranges", "registry", "resolved_case"},
     {"files"},
+    {"compiler"},
+    {"compiled"},
     {"units"},
     {"materials"},
     # the physics

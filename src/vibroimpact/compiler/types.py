@@ -1,0 +1,27 @@
+"""The types of compiled functions, by the names that signatures use."""
+
+from __future__ import annotations
+
+from numba import types
+
+real = types.float64
+integer = types.int64
+boolean = types.boolean
+vector = types.float64[::1]
+matrix = types.float64[:, ::1]
+cube = types.float64[:, :, ::1]
+four = types.float64[:, :, :, ::1]
+integers = types.int64[::1]
+booleans = types.boolean[::1]
+void = types.void
+text = types.unicode_type
+
+pair = types.UniTuple(real, 2)
+
+force = types.FunctionType(pair(real, real, real, vector))
+"""The force of a contact law: indentation, its rate, approach speed and coefficients give static and dissipative force."""
+
+
+def tuple(*members: types.Type) -> types.Type:
+    """Return the type of a tuple, from those of its members."""
+    return types.Tuple(members)
