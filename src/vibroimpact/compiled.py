@@ -24,7 +24,7 @@ def scalar(function: Function) -> Function:
     """Mark a function of floats, or of arrays elementwise, as one that compiled code may call.
 
     It takes and returns floats (or a tuple of floats), or arrays of them by NumPy's rules, and uses NumPy's functions that are there for
-    both: `np.sqrt`, `np.minimum`, `np.where` and so on. Indices into its coefficients are constants.
+    both: `np.sqrt`, `np.minimum`, `np.exp` and so on, but not `np.where`. Indices into its coefficients are constants.
     """
     _SCALAR.append((function, None))
     return function
