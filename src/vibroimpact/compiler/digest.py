@@ -39,7 +39,7 @@ def digest(function: Callable[..., Any], replaced: Mapping[Any, Callable[..., An
 
 def _add(value: Any, words: list[str], seen: dict[int, int], replaced: Mapping[Any, Callable[..., Any]]) -> None:
     """Append words that describe a value; a function that was described before is named by its number."""
-    value = getattr(value, "py_func", value)
+    value = getattr(value, "py_func", getattr(value, "_defn", value))  # of a compiled function, of an intrinsic one
     if isinstance(value, FunctionType):
         value = replaced.get(value, value)
         if _package(value) in _OWN_VERSIONS:

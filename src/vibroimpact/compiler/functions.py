@@ -18,10 +18,10 @@ from vibroimpact.compiler.forces import interpreted_force
 from vibroimpact.compiler.marks import SCALAR
 from vibroimpact.errors import SlowLawWarning
 
-_OPTIONS = {"error_model": "numpy"}
+OPTIONS = {"error_model": "numpy"}
 """Division by zero gives infinity, as in NumPy; no `fastmath`, so that sums do not depend on the compiler."""
 
-_REPLACED: dict[Any, Callable[..., Any]] = {}
+REPLACED: dict[Any, Callable[..., Any]] = {}
 """The functions that compiled code calls, by those in whose place it does."""
 
 _FORCES: dict[Any, Any] = {}
@@ -66,21 +66,21 @@ def _calling(source: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def _compile(function: Callable[..., Any], signature: Any, nogil: bool = True) -> Any:
-    _register()
-    dispatcher = njit(**_OPTIONS, nogil=nogil)(function)
+    register_scalars()
+    dispatcher = njit(**OPTIONS, nogil=nogil)(function)
     with suppress(NotDigestible):  # it is then compiled in each process
-        dispatcher._cache = CodeCache(function.__name__, digest(function, _REPLACED))
+        dispatcher._cache = CodeCache(function.__name__, digest(function, REPLACED))
     dispatcher.compile(signature)
     dispatcher.disable_compile()
     return dispatcher
 
 
-def _register() -> None:
+def register_scalars() -> None:
     """Tell numba of the functions that were marked since the last time."""
-    while len(_REPLACED) < len(SCALAR):
-        function, of_floats = SCALAR[len(_REPLACED)]
-        _REPLACED[function] = of_floats or function
-        overload(function, jit_options=_OPTIONS, strict=False)(_replacing(_REPLACED[function]))
+    while len(REPLACED) < len(SCALAR):
+        function, of_floats = SCALAR[len(REPLACED)]
+        REPLACED[function] = of_floats or function
+        overload(function, jit_options=OPTIONS, strict=False)(_replacing(REPLACED[function]))
 
 
 def _replacing(body: Callable[..., Any]) -> Callable[..., Any]:
