@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.compiled import compiled, force_function
-from vibroimpact.compiler.forces import force_coefficients
+from vibroimpact.compiled import compiled, force_coefficients, force_function
 from vibroimpact.contact.laws.hunt_crossley import HuntCrossley
 
 
