@@ -11,7 +11,7 @@ import os
 from collections.abc import Callable
 from functools import cache
 from importlib.util import find_spec
-from typing import Any
+from typing import Any, cast
 
 from vibroimpact.compiler.function_values import force_at, force_coefficients, interpreted_force
 from vibroimpact.compiler.marks import Function, scalar, scalar_as
@@ -59,8 +59,7 @@ def compiled(signature: Callable[[Any], Any]) -> Callable[[Function], Function]:
             return function
         from vibroimpact.compiler.functions import CompiledFunction
 
-        replacement: Any = CompiledFunction(function, signature)
-        return replacement
+        return cast(Function, CompiledFunction(function, signature))
 
     return compile_function
 

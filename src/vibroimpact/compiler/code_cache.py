@@ -8,11 +8,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from llvmlite import binding
 from numba.core import caching, compiler, serialize
+from numba.core.codegen import ll
 from numba.core.runtime import _nrt_python, rtsys
 
-from vibroimpact.compiler.code_store import load_code, machine_folder, save_code
+from vibroimpact.compiler.code_store import has_code, load_code, machine_folder, save_code
 
 _OWN_PACKAGE = "vibroimpact."
 
@@ -35,15 +35,25 @@ class CodeCache(caching._Cache):  # type: ignore[misc]
         self._name = function.__name__
         self._is_own = function.__module__.startswith(_OWN_PACKAGE)
         self._digest = digest
+        self.trouble = ""
+        """Why the code is not on the disk, or ""."""
 
     @property
     def cache_path(self) -> str:
         """No path: the folder depends on the processor."""
         return ""
 
+    def folder(self, target_context: Any) -> Path:
+        """Return the folder of the code."""
+        return machine_folder(str(target_context.codegen().magic_tuple()))
+
+    def has_code(self, sig: Any, target_context: Any) -> bool:
+        """Is the code for a signature on the disk?"""
+        return has_code(self.folder(target_context), self._file(sig))
+
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """Return the compiled function for a signature, or None."""
-        data = load_code(_folder(target_context.codegen()), self._file(sig))
+        data = load_code(self.folder(target_context), self._file(sig))
         if data is None:
             return None
         if self._is_own:
@@ -59,7 +69,7 @@ class CodeCache(caching._Cache):  # type: ignore[misc]
         """Keep a compiled function, unless its code holds addresses of this process."""
         if data.library.has_dynamic_globals or not all(lifted.can_cache for lifted in data.lifted):
             return
-        save_code(_folder(data.codegen), self._file(sig), serialize.dumps(data._reduce()))
+        self.trouble = save_code(self.folder(data.target_context), self._file(sig), serialize.dumps(data._reduce()))
 
     def enable(self) -> None:
         """Do nothing: it is always enabled."""
@@ -74,10 +84,6 @@ class CodeCache(caching._Cache):  # type: ignore[misc]
         return f"{self._name}-{hashlib.sha256(f'{self._digest} {sig}'.encode()).hexdigest()[:32]}"
 
 
-def _folder(codegen: Any) -> Path:
-    return machine_folder(str(codegen.magic_tuple()))
-
-
 def _register_runtime(target_context: Any) -> None:
     """Make numba's memory manager known to the linker, which is all that loading needs.
 
@@ -85,6 +91,6 @@ def _register_runtime(target_context: Any) -> None:
     """
     try:
         for name, address in _nrt_python.c_helpers.items():
-            binding.add_symbol(name if name.startswith("_") else f"NRT_{name}", address)
+            ll.add_symbol(name if name.startswith("_") else f"NRT_{name}", address)
     except Exception:  # of another version of numba
         rtsys.initialize(target_context)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from contextlib import suppress
+from contextlib import nullcontext
 from typing import Any
 
 from numba.core.compiler_lock import global_compiler_lock
@@ -12,13 +12,18 @@ from numba.extending import overload
 
 from vibroimpact.compiler import types
 from vibroimpact.compiler.code_cache import CodeCache
-from vibroimpact.compiler.digest import NotDigestible, digest
+from vibroimpact.compiler.code_store import compiling_alone
+from vibroimpact.compiler.digest import Digest, NotDigestible
 from vibroimpact.compiler.function_values import force_at
 from vibroimpact.compiler.intrinsics import force_of_address
 from vibroimpact.compiler.marks import SCALAR
+from vibroimpact.compiler.notice import say_how_long, say_trouble
 
 _OPTIONS = {"error_model": "numpy"}
 """Division by zero gives infinity, as in NumPy; no `fastmath`, so that sums do not depend on the compiler."""
+
+_SECONDS = 6e-4
+"""Time to compile a byte of Python's code [s]."""
 
 _REPLACED: dict[Any, Callable[..., Any]] = {}
 """The functions that compiled code calls, by those in whose place it does."""
@@ -39,10 +44,15 @@ class CompiledFunction(CPUDispatcher):  # type: ignore[misc]
         Release the interpreter's lock in calls from Python.
     """
 
+    is_busy = False
+    """Is a function being compiled? Those that it calls are compiled meanwhile."""
+    _cache: Any
+
     def __init__(self, function: Callable[..., Any], signature: Callable[[Any], Any], nogil: bool = True) -> None:
         super().__init__(function, targetoptions={"nopython": True, "boundscheck": None, "nogil": nogil, **_OPTIONS})
         self._signature_of = signature
         self._is_ready = False
+        self._callees: list[CompiledFunction] = []
 
     def ready(self) -> None:
         """Compile the function, or load its code, unless that was done."""
@@ -51,12 +61,43 @@ class CompiledFunction(CPUDispatcher):  # type: ignore[misc]
         with global_compiler_lock:
             if self._is_ready or self.is_compiling:
                 return
-            _register()
-            with suppress(NotDigestible):  # it is then compiled in each process
-                self._cache = CodeCache(self.py_func, digest(self.py_func, _REPLACED))
-            self.compile(self._signature_of(types))
-            self.disable_compile()
-            self._is_ready = True
+            if self._is_on_disk() or CompiledFunction.is_busy:
+                self._make_ready()
+                return
+            CompiledFunction.is_busy = True
+            try:
+                with self._alone():
+                    say_how_long(self._seconds())
+                    self._make_ready()
+            finally:
+                CompiledFunction.is_busy = False
+            if isinstance(self._cache, CodeCache) and self._cache.trouble:
+                say_trouble(self._cache.trouble)
+
+    def _make_ready(self) -> None:
+        self.compile(self._signature_of(types))  # or load
+        self.disable_compile()
+        self._is_ready = True
+
+    def _is_on_disk(self) -> bool:
+        """Is the code on the disk? From now on numba asks for it there."""
+        _register()
+        if not isinstance(self._cache, CodeCache):
+            try:
+                digest = Digest(self.py_func, _REPLACED)
+            except NotDigestible:  # it is then compiled in each process
+                return False
+            self._callees = [callee for callee in digest.callees if isinstance(callee, CompiledFunction)]
+            self._cache = CodeCache(self.py_func, digest.text)
+        return self._cache.has_code(self._signature_of(types), self.targetctx)
+
+    def _alone(self) -> Any:
+        return compiling_alone(self._cache.folder(self.targetctx)) if isinstance(self._cache, CodeCache) else nullcontext()
+
+    def _seconds(self) -> float:
+        """Return about how long it takes to compile the function and its callees, as far as they are not on the disk [s]."""
+        missing = [function for function in (self, *self._callees) if not function._is_on_disk()]
+        return _SECONDS * sum(len(function.py_func.__code__.co_code) for function in missing)
 
     def address(self) -> int:
         """Return the address of the machine code, which is valid as long as this object exists."""

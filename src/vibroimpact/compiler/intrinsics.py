@@ -10,7 +10,7 @@ from numba.extending import intrinsic
 from vibroimpact.compiler import types
 
 
-@intrinsic
+@intrinsic  # type: ignore[untyped-decorator]
 def force_of_address(typing_context: Any, address: Any) -> Any:
     """Return the function value at an address."""
 
