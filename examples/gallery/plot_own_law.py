@@ -2,23 +2,38 @@
 A user-defined contact law
 ==========================
 
-A contact law is a frozen dataclass that returns a force. The example is a rubber lining of a chute, a spring whose force has a cubic term
-and a relaxation time; events, energy balance and charts need no further code, and the largest indentation is compared with its closed form.
+A contact law is a frozen dataclass with a function that returns a force. The example is a rubber lining of a chute, a spring whose force
+has a cubic term and a relaxation time; events, energy balance and charts need no further code, and the largest indentation is compared
+with its closed form.
 """
 
 # %%
 # The law
 # -------
-# The elastic and the dissipative part of the force are returned separately, for arrays, so that the dissipated energy can be computed. If
-# it is installed as a package with an entry point, the law can also be used by its name in cases and on the command line.
+# The elastic and the dissipative part of the force are returned separately, so that the dissipated energy can be computed. The function
+# works for numbers, with which it is compiled, and for arrays; it takes its coefficients from the law. If it is installed as a package
+# with an entry point, the law can also be used by its name in cases and on the command line.
 from dataclasses import dataclass
+from functools import cached_property
 
 import matplotlib.pyplot as plt
 import numpy as np
 
 import vibroimpact as vi
+from vibroimpact.compiled import scalar
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.parameters import parameter
+
+
+@scalar
+def lining_forces(delta, delta_dot, approach_speed, coefficients):
+    """Return the elastic and the dissipative force [N]."""
+    stiffness, stiffening, relaxation = coefficients[0], coefficients[1], coefficients[2]
+    rate = stiffness + 3.0 * stiffening * delta**2
+    return (
+        stiffness * delta + stiffening * delta**3,
+        relaxation * rate * delta_dot,
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -30,17 +45,15 @@ class Lining(CompliantLaw):
     source = "this page"
     contact_end = "zero-force"
     tension = "cut"
+    scalar_forces = staticmethod(lining_forces)
 
     stiffness: float = parameter("stiffness k at small indentations", "N/m", above=0)
     stiffening: float = parameter("coefficient q of the cube", "N/m^3", at_least=0)
     relaxation: float = parameter("relaxation time tau", "s", at_least=0)
 
-    def forces(self, delta, delta_dot, approach_speed):
-        rate = self.stiffness + 3.0 * self.stiffening * delta**2
-        return (
-            self.stiffness * delta + self.stiffening * delta**3,
-            self.relaxation * rate * delta_dot,
-        )
+    @cached_property
+    def coefficients(self):
+        return self.stiffness, self.stiffening, self.relaxation
 
     def elastic_energy(self, delta):
         return 0.5 * self.stiffness * delta**2 + 0.25 * self.stiffening * delta**4

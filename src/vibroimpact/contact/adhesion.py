@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, ClassVar
 
 import numpy as np
 
 from vibroimpact.arrays import Array
-from vibroimpact.contact.law import CompliantLaw
+from vibroimpact.compiled import scalar
+from vibroimpact.contact.choice import where
+from vibroimpact.contact.law import CompliantLaw, ScalarForces
 from vibroimpact.contact.mixins import ElasticPairLaw
 from vibroimpact.contact.parameters import parameter
 
@@ -15,6 +19,28 @@ from vibroimpact.contact.parameters import parameter
 # energy 8/15 z^10 - 4/3 z^7 + 1/2 z^4 + 3/10; pull-off is at the minimum of the indentation
 _PULL_OFF_Z = 0.25 ** (1.0 / 3.0)
 _PULL_OFF_INDENTATION = _PULL_OFF_Z**4 - _PULL_OFF_Z
+
+
+@scalar
+def _stable_root(s: Array) -> Array:
+    """Return the largest root z of z^4 - z = s, by Ferrari's formula and one Newton step."""
+    s = np.maximum(s, _PULL_OFF_INDENTATION)
+    third = s / 3.0
+    u = np.cbrt(0.0625 + np.sqrt(np.maximum(0.00390625 + third * third * third, 0.0)))
+    v = -third / u
+    y = where(s > 0.0, 0.125 / (u * u + third + v * v), u + v)  # the same root of y^3 + s y = 1/8, without cancellation
+    z = 0.5 * (np.sqrt(2.0 * y) + np.sqrt(np.maximum(np.sqrt(2.0 / y) - 2.0 * y, 0.0)))
+    cube = z * z * z
+    slope = np.maximum(4.0 * cube - 1.0, 1e-3)  # the slope vanishes at pull-off, where z is accurate without the step
+    return z - (cube * z - z - s) / slope
+
+
+@scalar
+def _forces(delta: Array, delta_dot: Array, approach_speed: Array, coefficients: Any) -> tuple[Array, Array]:
+    unit_indentation, unit_force, unit_dashpot = coefficients[0], coefficients[1], coefficients[2]
+    z = _stable_root(delta / unit_indentation)
+    cube = z * z * z
+    return (4.0 / 3.0 * cube - 2.0) * cube * unit_force, unit_dashpot * (z * z) * delta_dot
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,24 +54,30 @@ class AdhesiveLaw(ElasticPairLaw, CompliantLaw):
 
     contact_end = "pull-off"
     tension = "kept"
+    scalar_forces: ClassVar[ScalarForces | None] = staticmethod(_forces)
 
     work_of_adhesion: Array = parameter("work of adhesion w", "J/m^2", detail="Work of adhesion :math:`w`.", example=0.5, above=0)
 
     @property
     def release_level(self) -> Array:
         """Indentation at pull-off [m], negative."""
-        return _PULL_OFF_INDENTATION * self._radius_at_zero**2 / self.effective_radius
+        return _PULL_OFF_INDENTATION * self._unit_indentation
 
     def contact_radius(self, delta: Array) -> Array:
         """Return the contact radius a [m]."""
         z = self._z(delta)
         return self._radius_at_zero * z * z
 
-    def adhesive_force(self, radius: Array) -> Array:
-        """Return the static force [N] at a contact radius [m], negative in tension."""
-        ratio = radius / self._radius_at_zero
-        cube = ratio * np.sqrt(ratio)
-        return (4.0 / 3.0 * cube - 2.0) * cube * (self.effective_modulus * self._radius_at_zero**3 / self.effective_radius)
+    @property
+    def dashpot_per_radius(self) -> Array:
+        """The dashpot constant over the contact radius [N s/m^2]; zero unless a law has it otherwise."""
+        return 0.0
+
+    @cached_property
+    def coefficients(self) -> tuple[Array, ...]:
+        """The units of indentation, force and dashpot constant by which the contact is made dimensionless."""
+        unit_force = self.effective_modulus * self._radius_at_zero**3 / self.effective_radius
+        return self._unit_indentation, unit_force, self.dashpot_per_radius * self._radius_at_zero
 
     def elastic_energy(self, delta: Array) -> Array:
         """Return the integral of the static force from zero indentation [J]; at pull-off it is the energy lost."""
@@ -59,18 +91,9 @@ class AdhesiveLaw(ElasticPairLaw, CompliantLaw):
         """Contact radius at zero indentation [m]."""
         return np.cbrt(2.0 * np.pi * self.work_of_adhesion * self.effective_radius**2 / self.effective_modulus)
 
+    @property
+    def _unit_indentation(self) -> Array:
+        return self._radius_at_zero**2 / self.effective_radius
+
     def _z(self, delta: Array) -> Array:
-        return _stable_root(delta * self.effective_radius / self._radius_at_zero**2)
-
-
-def _stable_root(s: Array) -> Array:
-    """Return the largest root z of z^4 - z = s, by Ferrari's formula and one Newton step."""
-    s = np.maximum(s, _PULL_OFF_INDENTATION)
-    third = s / 3.0
-    u = np.cbrt(0.0625 + np.sqrt(np.maximum(0.00390625 + third * third * third, 0.0)))
-    v = -third / u
-    y = np.where(s > 0.0, 0.125 / (u * u + third + v * v), u + v)  # the same root of y^3 + s y = 1/8, without cancellation
-    z = 0.5 * (np.sqrt(2.0 * y) + np.sqrt(np.maximum(np.sqrt(2.0 / y) - 2.0 * y, 0.0)))
-    cube = z * z * z
-    slope = np.maximum(4.0 * cube - 1.0, 1e-3)  # the slope vanishes at pull-off, where z is accurate without the step
-    return z - (cube * z - z - s) / slope
+        return _stable_root(delta / self._unit_indentation)

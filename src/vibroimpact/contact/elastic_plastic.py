@@ -4,14 +4,35 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
 from vibroimpact.arrays import Array
+from vibroimpact.compiled import scalar
+from vibroimpact.contact.choice import where
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.parameters import memory
 from vibroimpact.contact.power_law import power
+
+
+@scalar
+def static_force(delta: Array, loading: Array, coefficients: Any) -> Array:
+    """Return the force of unloading below the largest indentation so far, and that of loading beyond it [N].
+
+    Parameters
+    ----------
+    delta : float or array
+        Indentation [m].
+    loading : float or array
+        Force on the loading curve [N] at the indentation, or at the largest so far where that is larger.
+    coefficients : array or tuple
+        The first five coefficients of an elastic-plastic law.
+    """
+    loaded_to, touch_level = coefficients[0], coefficients[1]
+    recovery, largest_force, exponent = coefficients[2], coefficients[3], coefficients[4]
+    unloading = largest_force * power(np.maximum(delta - touch_level, 0.0) / recovery, exponent)
+    return where(delta < loaded_to, unloading, loading)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -21,7 +42,8 @@ class ElasticPlasticLaw(CompliantLaw):
     .. math:: F = F_m \left(\frac{\delta - \delta_r}{\delta_m - \delta_r}\right)^q
 
     from the largest indentation :math:`(\delta_m, F_m)` to the residual indentation :math:`\delta_r`; reloading follows the same
-    curve. A law defines the loading force, its work, and the elastic recovery :math:`\delta_m - \delta_r`.
+    curve. A law defines the loading force, its work, and the elastic recovery :math:`\delta_m - \delta_r`; its `scalar_forces` take
+    the loading force and `static_force`.
     """
 
     contact_end = "zero-force"
@@ -54,13 +76,14 @@ class ElasticPlasticLaw(CompliantLaw):
         """The largest indentation so far, beyond which the loading curve is followed."""
         return (self.loaded_to,)
 
-    def forces(self, delta: Array, delta_dot: Array, approach_speed: Array) -> tuple[Array, Array]:
-        """Return the static force and zero [N]."""
-        with np.errstate(divide="ignore", invalid="ignore"):
-            recovery, largest = self._unloading
-            unloading = largest * power(np.maximum(delta - self.touch_level, 0.0) / recovery, self.unloading_exponent)
-        force = np.where(delta < self.loaded_to, unloading, self.loading_force(np.maximum(delta, self.loaded_to)))
-        return force, np.zeros_like(force)
+    @cached_property
+    def coefficients(self) -> tuple[Array, ...]:
+        """Largest indentation so far, touch level, elastic recovery, largest force and exponent of unloading; a law adds its own.
+
+        The recovery is one where nothing has been loaded, and the largest force zero, so that no force is 0/0.
+        """
+        recovery, largest_force = self._unloading
+        return self.loaded_to, self.touch_level, np.where(recovery > 0.0, recovery, 1.0), largest_force, self.unloading_exponent
 
     def elastic_energy(self, delta: Array) -> Array:
         """Return the energy recovered on unloading [J]."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
@@ -46,7 +47,7 @@ class HystereticLaw(PowerLaw):
         """Return the damping factor of an impact at an approach speed [m/s]; here the same at all speeds."""
         return self.damping_factor
 
-    @property
+    @cached_property
     def coefficients(self) -> tuple[Array, ...]:
         """Stiffness, exponent, damping factor, and the dissipation that does not depend on the approach speed [s/m]."""
         return self.stiffness, self.exponent, self.damping_factor, 0.0

@@ -3,12 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, ClassVar
 
 import numpy as np
 
 from vibroimpact.arrays import Array
-from vibroimpact.contact.law import CompliantLaw
+from vibroimpact.compiled import scalar
+from vibroimpact.contact.law import CompliantLaw, ScalarForces
 from vibroimpact.contact.parameters import parameter
+
+
+@scalar
+def _forces(delta: Array, delta_dot: Array, approach_speed: Array, coefficients: Any) -> tuple[Array, Array]:
+    stiffness, dashpot = coefficients[0], coefficients[1]
+    return stiffness * delta, dashpot * delta_dot
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -17,6 +26,7 @@ class KelvinVoigtLaw(CompliantLaw):
 
     contact_end = "zero-indentation"
     tension = "kept"
+    scalar_forces: ClassVar[ScalarForces | None] = staticmethod(_forces)
 
     stiffness: Array = parameter("spring stiffness k", "N/m", detail="Spring stiffness :math:`k`.", example=2e6, above=0)
 
@@ -25,9 +35,10 @@ class KelvinVoigtLaw(CompliantLaw):
         """The dashpot constant c [N s/m]."""
         raise NotImplementedError
 
-    def forces(self, delta: Array, delta_dot: Array, approach_speed: Array) -> tuple[Array, Array]:
-        """Return the elastic and the dissipative force [N]."""
-        return self.stiffness * delta, self.dashpot * delta_dot
+    @cached_property
+    def coefficients(self) -> tuple[Array, ...]:
+        """Stiffness and dashpot constant."""
+        return self.stiffness, self.dashpot
 
     def elastic_energy(self, delta: Array) -> Array:
         r"""Return :math:`k \delta^2/2` [J]."""

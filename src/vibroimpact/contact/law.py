@@ -6,8 +6,8 @@ A law is a frozen dataclass in a file of its own under `vibroimpact.contact.laws
 * `departure`, if it is not as its sources have it;
 * its parameters, each with `parameter(...)`: meaning, unit, range, default;
 * the state variables on which its force depends, if any, each with `memory(...)`;
-* and, if it is a `CompliantLaw`, when its contact ends, whether its force may be tensile, and the force itself as a function that
-  compiled code calls with floats and everything else with arrays.
+* and, if it is a `CompliantLaw`, when its contact ends, whether its force may be tensile, and the force: a function `scalar_forces`,
+  which compiled code calls with floats and everything else with arrays, and the `coefficients` it is called with.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable
 from dataclasses import dataclass, fields
+from functools import cached_property
 from typing import Any, ClassVar, Literal, Self
 
 import numpy as np
@@ -71,7 +72,19 @@ class CompliantLaw(ContactLaw):
     broadcast; the last axis is the drop.
 
     A law whose static force depends on the largest indentation so far declares it with `memory` and updates it in
-    `after_compression`; `forces` then follow the unloading curve below that indentation and the loading curve beyond it.
+    `after_compression`; the force then follows the unloading curve below that indentation and the loading curve beyond it.
+
+    Examples
+    --------
+    A law gives its force as one function of floats or arrays, and the coefficients of this function. One that defines `forces`
+    instead works as well, but is not compiled.
+
+    >>> import vibroimpact as vi
+    >>> law = vi.find_contact_law("hertz")(stiffness=2.0)
+    >>> law.coefficients
+    (2.0, 1.5)
+    >>> type(law).scalar_forces(4.0, 1.0, 1.0, law.coefficients) == law.forces(4.0, 1.0, 1.0)
+    True
     """
 
     contact_end: ClassVar[Literal["zero-indentation", "zero-force", "pull-off"]]
@@ -103,9 +116,22 @@ class CompliantLaw(ContactLaw):
     scalar_forces: ClassVar[ScalarForces | None] = None
     """The force as a function of floats, marked by `compiled.scalar`; a law that has none defines `forces`, and is not compiled."""
 
-    @property
+    _array_forces: ClassVar[ScalarForces | None] = None
+    """What `forces` evaluates: `scalar_forces` of the law, or of its base where the law defines `forces` anew."""
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        if cls.scalar_forces is not None:
+            cls._array_forces = staticmethod(cls.scalar_forces)
+        if "forces" in vars(cls) and "scalar_forces" not in vars(cls):
+            cls.scalar_forces = None  # compiled code would pass over the new `forces`
+
+    @cached_property
     def coefficients(self) -> tuple[Array, ...]:
-        """The numbers from which `scalar_forces` computes the force, made from parameters and memory."""
+        """The numbers from which `scalar_forces` computes the force, made once from parameters and memory.
+
+        They are floats, or arrays with one value per drop; compiled code has them as an array of floats, one drop at a time.
+        """
         return ()
 
     def forces(self, delta: Array, delta_dot: Array, approach_speed: Array) -> tuple[Array, Array]:
@@ -118,10 +144,10 @@ class CompliantLaw(ContactLaw):
         approach_speed : float or array
             Approach speed at the beginning of this contact [m/s], > 0.
         """
-        scalar_forces = type(self).scalar_forces
-        if scalar_forces is None:
+        array_forces = type(self)._array_forces
+        if array_forces is None:
             raise NotImplementedError(f"{type(self).__name__} has neither `scalar_forces` nor `forces`")
-        return scalar_forces(delta, delta_dot, approach_speed, self.coefficients)
+        return array_forces(delta, delta_dot, approach_speed, self.coefficients)
 
     def elastic_energy(self, delta: Array) -> Array:
         """Return the recoverable energy at the indentation `delta` [J].

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from vibroimpact.arrays import Array
-from vibroimpact.compiled import scalar_as
+from vibroimpact.compiled import scalar, scalar_as
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.parameters import parameter
 
@@ -76,3 +77,11 @@ def power(delta: Array, exponent: Array) -> Array:
         if exponent == 1.0:
             return delta
     return np.power(delta, exponent)
+
+
+@scalar
+def fourth_root_forces(delta: Array, delta_dot: Array, approach_speed: Array, coefficients: Any) -> tuple[Array, Array]:
+    r"""Return the forces of :math:`K \delta^{3/2} + c\, \delta^{1/4}\, \dot\delta` [N] from the coefficients K and c."""
+    stiffness, dashpot = coefficients[0], coefficients[1]
+    root = np.sqrt(delta)
+    return stiffness * (delta * root), dashpot * np.sqrt(root) * delta_dot

@@ -3,13 +3,35 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from vibroimpact.arrays import Array
-from vibroimpact.contact.elastic_plastic import ElasticPlasticLaw
+from vibroimpact.compiled import scalar
+from vibroimpact.contact.choice import where
+from vibroimpact.contact.elastic_plastic import ElasticPlasticLaw, static_force
 from vibroimpact.contact.mixins import ElasticPairLaw
 from vibroimpact.contact.pair import hertz_stiffness
+from vibroimpact.contact.power_law import power
+
+
+@scalar
+def yielded_indentation(delta: Array, coefficients: Any) -> Array:
+    """Return the indentation [m] at which the plastic force is taken: at least the largest so far, and that at yield."""
+    loaded_to, yield_indentation = coefficients[0], coefficients[5]
+    return np.maximum(np.maximum(delta, loaded_to), yield_indentation)
+
+
+@scalar
+def yielding_sphere_forces(delta: Array, plastic: Array, coefficients: Any) -> tuple[Array, Array]:
+    """Return the forces [N] of a yielding sphere at an indentation [m] from the plastic force [N] at the yielded indentation."""
+    loaded_to, yield_indentation, stiffness = coefficients[0], coefficients[5], coefficients[6]
+    deepest = np.maximum(delta, loaded_to)
+    elastic = stiffness * power(np.minimum(deepest, yield_indentation), 1.5)
+    force = static_force(delta, where(deepest > yield_indentation, plastic, elastic), coefficients)
+    return force, 0.0 * force
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -22,7 +44,8 @@ class YieldingSphereLaw(ElasticPairLaw, ElasticPlasticLaw):
 
     .. math:: \delta_m - \delta_r = \frac{3 F_m}{4 E^* a_m}
 
-    (Thornton 1997, J. Appl. Mech. 64, 383-386).
+    (Thornton 1997, J. Appl. Mech. 64, 383-386). A law defines the plastic force as a function that compiled code calls, from which its
+    `scalar_forces` follow by `yielding_sphere_forces`.
     """
 
     @property
@@ -46,6 +69,11 @@ class YieldingSphereLaw(ElasticPairLaw, ElasticPlasticLaw):
     def breakpoints(self) -> tuple[Array, ...]:
         """The yield indentation, or the largest indentation so far if that is larger."""
         return (np.maximum(self.yield_indentation, self.loaded_to),)
+
+    @cached_property
+    def coefficients(self) -> tuple[Array, ...]:
+        """Those of unloading, yield indentation and Hertz's stiffness; a law adds those of its plastic force."""
+        return *super().coefficients, self.yield_indentation, self.stiffness
 
     @property
     def stiffness(self) -> Array:

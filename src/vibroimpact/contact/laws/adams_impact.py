@@ -3,12 +3,25 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, ClassVar
 
 import numpy as np
 
 from vibroimpact.arrays import Array
+from vibroimpact.compiled import scalar
+from vibroimpact.contact.law import ScalarForces
 from vibroimpact.contact.parameters import inherited_parameter, parameter
-from vibroimpact.contact.power_law import PowerLaw
+from vibroimpact.contact.power_law import PowerLaw, power
+
+
+@scalar
+def _forces(delta: Array, delta_dot: Array, approach_speed: Array, coefficients: Any) -> tuple[Array, Array]:
+    stiffness, exponent = coefficients[0], coefficients[1]
+    damping_max, full_damping_penetration = coefficients[2], coefficients[3]
+    s = np.minimum(delta / full_damping_penetration, 1.0)
+    damping = damping_max * (s * s * (3.0 - 2.0 * s))
+    return stiffness * power(delta, exponent), damping * delta_dot
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,6 +52,7 @@ class AdamsImpact(PowerLaw):
     source = "MSC Adams/Solver guide, functions IMPACT and STEP"
     contact_end = "zero-indentation"
     tension = "cut"
+    scalar_forces: ClassVar[ScalarForces | None] = staticmethod(_forces)
     free_parameter = "damping_max"
 
     stiffness: Array = inherited_parameter(
@@ -59,8 +73,7 @@ class AdamsImpact(PowerLaw):
         """The penetration of full damping, at which the second derivative of STEP jumps."""
         return (self.full_damping_penetration,)
 
-    def forces(self, delta: Array, delta_dot: Array, approach_speed: Array) -> tuple[Array, Array]:
-        """Return the elastic and the dissipative force [N], before the clipping at zero."""
-        s = np.minimum(delta / self.full_damping_penetration, 1.0)
-        damping = self.damping_max * (s * s * (3.0 - 2.0 * s))
-        return self.elastic_force(delta), damping * delta_dot
+    @cached_property
+    def coefficients(self) -> tuple[Array, ...]:
+        """Stiffness, exponent, largest damping and the penetration at which it is full."""
+        return self.stiffness, self.exponent, self.damping_max, self.full_damping_penetration

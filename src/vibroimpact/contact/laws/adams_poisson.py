@@ -3,10 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, ClassVar
 
 from vibroimpact.arrays import Array
+from vibroimpact.compiled import scalar
+from vibroimpact.contact.law import ScalarForces
 from vibroimpact.contact.mixins import TwoPhaseLaw
 from vibroimpact.contact.parameters import parameter
+
+
+@scalar
+def _forces(delta: Array, delta_dot: Array, approach_speed: Array, coefficients: Any) -> tuple[Array, Array]:
+    penalty, loss = coefficients[0], coefficients[1]
+    force = penalty * delta
+    return force, -loss * force
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,14 +52,15 @@ class AdamsPoisson(TwoPhaseLaw):
     )
     contact_end = "zero-indentation"
     tension = "none"
+    scalar_forces: ClassVar[ScalarForces | None] = staticmethod(_forces)
 
     penalty: Array = parameter("penalty p", "N/m", detail="Penalty :math:`p`.", example=2e6, above=0)
     restitution: Array = parameter("restitution e", detail="Restitution :math:`e`.", example=0.7, above=0, at_most=1)
 
-    def forces(self, delta: Array, delta_dot: Array, approach_speed: Array) -> tuple[Array, Array]:
-        """Return the penalty force and its reduction in restitution [N]."""
-        force = self.penalty * delta
-        return force, (self.restitution * self.restitution - 1.0) * self.turned * force
+    @cached_property
+    def coefficients(self) -> tuple[Array, ...]:
+        """Penalty, and the part of the force that is lost: 1 - e^2 once the indentation has turned, nothing before."""
+        return self.penalty, (1.0 - self.restitution * self.restitution) * self.turned
 
     def elastic_energy(self, delta: Array) -> Array:
         r"""Return :math:`p \delta^2/2` [J], a part of which is lost in restitution."""

@@ -3,12 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, ClassVar
 
 import numpy as np
 
 from vibroimpact.arrays import Array
+from vibroimpact.compiled import scalar
+from vibroimpact.contact.law import ScalarForces
 from vibroimpact.contact.parameters import inherited_parameter
-from vibroimpact.contact.power_law import PowerLaw
+from vibroimpact.contact.power_law import PowerLaw, power
+
+
+@scalar
+def _forces(delta: Array, delta_dot: Array, approach_speed: Array, coefficients: Any) -> tuple[Array, Array]:
+    stiffness, exponent = coefficients[0], coefficients[1]
+    return stiffness * power(delta, exponent), 0.0 * delta
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,12 +50,14 @@ class Hertz(PowerLaw):
     source = "Hertz 1881, J. reine angew. Math. 92:156"
     contact_end = "zero-indentation"
     tension = "none"
+    scalar_forces: ClassVar[ScalarForces | None] = staticmethod(_forces)
 
     exponent: Array = inherited_parameter(PowerLaw, "exponent", detail="Force exponent :math:`n`; 1.5 for a sphere.")
 
-    def forces(self, delta: Array, delta_dot: Array, approach_speed: Array) -> tuple[Array, Array]:
-        """Return the elastic force and zero [N]."""
-        return self.elastic_force(delta), np.zeros_like(delta)
+    @cached_property
+    def coefficients(self) -> tuple[Array, ...]:
+        """Stiffness and exponent."""
+        return self.stiffness, self.exponent
 
     def closed_form_restitution(self, mass: Array, speed: Array) -> Array:
         """Return 1, since no energy is lost."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 from vibroimpact.arrays import Array
 from vibroimpact.contact.hysteretic import HystereticLaw
@@ -93,7 +94,7 @@ class HuntCrossley(HystereticLaw):
         """Return the damping factor of an impact [-]: D(e), or the dissipation times the approach speed [m/s]."""
         return self.damping_factor if self.dissipation is None else self.dissipation * approach_speed
 
-    @property
+    @cached_property
     def coefficients(self) -> tuple[Array, ...]:
         """Stiffness, exponent, damping factor and dissipation, one of which is zero."""
         if self.dissipation is None:

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 
 from vibroimpact.arrays import Array
+from vibroimpact.contact.law import ScalarForces
 from vibroimpact.contact.mixins import RestitutionForMassLaw, TwoPhaseLaw
-from vibroimpact.contact.power_law import SphereLaw
+from vibroimpact.contact.power_law import SphereLaw, fourth_root_forces
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,10 +49,12 @@ class Jankowski(RestitutionForMassLaw, SphereLaw, TwoPhaseLaw):
     contact_end = "zero-indentation"
     tension = "none"
     root = 4
+    scalar_forces: ClassVar[ScalarForces | None] = staticmethod(fourth_root_forces)
 
-    def forces(self, delta: Array, delta_dot: Array, approach_speed: Array) -> tuple[Array, Array]:
-        """Return the elastic and the dissipative force [N]."""
+    @cached_property
+    def coefficients(self) -> tuple[Array, ...]:
+        """Stiffness, and the dashpot constant, which is zero once the indentation has turned."""
         e = self.restitution
         ratio = 4.5 * np.sqrt(5.0) * (1.0 - e * e) / (e * (e * (9.0 * np.pi - 16.0) + 16.0))
-        damping = 2.0 * ratio * np.sqrt(self.effective_mass * self.stiffness) * (1.0 - self.turned)
-        return self.elastic_force(delta), damping * np.sqrt(np.sqrt(delta)) * delta_dot
+        dashpot = 2.0 * ratio * np.sqrt(self.effective_mass * self.stiffness)
+        return self.stiffness, dashpot * (1.0 - self.turned)

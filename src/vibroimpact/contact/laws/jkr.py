@@ -52,11 +52,6 @@ class JKR(AdhesiveLaw):
         detail="Work of adhesion :math:`w`: what it takes to part a unit of area, for equal materials twice the surface energy of each.",
     )
 
-    def forces(self, delta: Array, delta_dot: Array, approach_speed: Array) -> tuple[Array, Array]:
-        """Return the static force and zero [N]."""
-        force = self.adhesive_force(self.contact_radius(delta))
-        return force, np.zeros_like(force)
-
     def closed_form_restitution(self, mass: Array, speed: Array) -> Array:
         r"""Return :math:`\sqrt{1 - v_s^2/v^2}`, with the sticking speed :math:`v_s`, below which it is zero."""
         lost = self.elastic_energy(self.release_level) / (0.5 * mass * speed * speed)

@@ -49,8 +49,7 @@ class Krijt(ViscoelasticLaw, AdhesiveLaw):
         detail="Dissipative constant :math:`A`; in the paper's terms the relaxation time over the square of Poisson's ratio.",
     )
 
-    def forces(self, delta: Array, delta_dot: Array, approach_speed: Array) -> tuple[Array, Array]:
-        """Return the static and the dissipative force [N]."""
-        radius = self.contact_radius(delta)
-        damping = 2.0 * self.effective_modulus * self.dissipation_time * radius
-        return self.adhesive_force(radius), damping * delta_dot
+    @property
+    def dashpot_per_radius(self) -> Array:
+        """The dashpot constant over the contact radius [N s/m^2]."""
+        return 2.0 * self.effective_modulus * self.dissipation_time

@@ -3,12 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, ClassVar
 
 import numpy as np
 
 from vibroimpact.arrays import Array
+from vibroimpact.compiled import scalar
+from vibroimpact.contact.law import ScalarForces
 from vibroimpact.contact.mixins import ViscoelasticLaw
 from vibroimpact.contact.power_law import SphereLaw
+
+
+@scalar
+def _forces(delta: Array, delta_dot: Array, approach_speed: Array, coefficients: Any) -> tuple[Array, Array]:
+    stiffness, dashpot = coefficients[0], coefficients[1]
+    root = np.sqrt(delta)
+    return stiffness * (delta * root), dashpot * root * delta_dot
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,7 +56,9 @@ class KuwabaraKono(ViscoelasticLaw, SphereLaw):
     departure = "The contact ends when the force is zero; by the formula it would be tensile from there to zero indentation."
     contact_end = "zero-force"
     tension = "cut"
+    scalar_forces: ClassVar[ScalarForces | None] = staticmethod(_forces)
 
-    def forces(self, delta: Array, delta_dot: Array, approach_speed: Array) -> tuple[Array, Array]:
-        """Return the elastic and the dissipative force [N], before the clipping at zero."""
-        return self.elastic_force(delta), 1.5 * self.stiffness * self.dissipation_time * np.sqrt(delta) * delta_dot
+    @cached_property
+    def coefficients(self) -> tuple[Array, ...]:
+        """Stiffness, and the dashpot constant at a root of the indentation of one."""
+        return self.stiffness, 1.5 * self.stiffness * self.dissipation_time

@@ -2,17 +2,68 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, ClassVar
 
 import numpy as np
 
 from vibroimpact.arrays import Array
+from vibroimpact.compiled import scalar, scalar_as
+from vibroimpact.contact.law import ScalarForces
 from vibroimpact.contact.parameters import parameter
-from vibroimpact.contact.yielding_sphere import YieldingSphereLaw
+from vibroimpact.contact.power_law import power
+from vibroimpact.contact.yielding_sphere import YieldingSphereLaw, yielded_indentation, yielding_sphere_forces
 
 _AT_YIELD, _FULLY_PLASTIC = 1.6, 2.8  # largest pressure at first yield, and mean pressure when fully plastic, over the yield strength
 _RISE = 1.5 * _FULLY_PLASTIC / _AT_YIELD  # ratio of the mean pressures, which is two thirds of the largest one at first yield
 _MOST_ITERATIONS, _CONVERGED = 60, 1e-8  # convergence is quadratic: the next step would be below rounding
+
+
+def _relative_radius_of_float(relative_indentation: float, meyer_index: float, full_radius: float) -> float:
+    depth, exponent = 2.0 * relative_indentation, meyer_index - 1.0
+    full = 0.5 * (math.sqrt(_RISE * _RISE + 4.0 * depth) - _RISE)
+    if full > full_radius:
+        return full
+    x = 0.5 * (math.sqrt(1.0 + 4.0 * depth) - 1.0)
+    for _ in range(_MOST_ITERATIONS):
+        rising = x**exponent
+        step = (x * x + rising - depth) / (2.0 * x + exponent * rising / x)
+        x -= step
+        if abs(step) <= _CONVERGED * x:
+            break
+    return float(max(x, 1.0))
+
+
+@scalar_as(_relative_radius_of_float)
+def _relative_radius(relative_indentation: Array, meyer_index: Array, full_radius: Array) -> Array:
+    """Return the contact radius relative to that at yield [-], at indentations relative to that at yield [-], at least one."""
+    depth, exponent = 2.0 * relative_indentation, meyer_index - 1.0
+    full = 0.5 * (np.sqrt(_RISE * _RISE + 4.0 * depth) - _RISE)  # where the pressure is full: x^2 + _RISE x
+    x = 0.5 * (np.sqrt(1.0 + 4.0 * depth) - 1.0)  # where it does not rise, and not less where it does
+    for _ in range(_MOST_ITERATIONS):  # x^2 + x^(n-1) is convex: Newton's method goes down to the root
+        rising = x**exponent
+        step = (x * x + rising - depth) / (2.0 * x + exponent * rising / x)
+        x = x - step
+        if np.all(np.abs(step) <= _CONVERGED * x):
+            break
+    return np.where(full > full_radius, full, np.maximum(x, 1.0))
+
+
+@scalar
+def _plastic_force(delta: Array, yield_indentation: Array, yield_force: Array, meyer_index: Array, full_radius: Array) -> Array:
+    x = _relative_radius(delta / yield_indentation, meyer_index, full_radius)
+    return yield_force * np.minimum(power(x, meyer_index), _RISE * x * x)
+
+
+@scalar
+def _forces(delta: Array, delta_dot: Array, approach_speed: Array, coefficients: Any) -> tuple[Array, Array]:
+    yield_indentation, yield_force = coefficients[5], coefficients[7]
+    meyer_index, full_radius = coefficients[8], coefficients[9]
+    deepest = yielded_indentation(delta, coefficients)
+    plastic = _plastic_force(deepest, yield_indentation, yield_force, meyer_index, full_radius)
+    return yielding_sphere_forces(delta, plastic, coefficients)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,6 +114,7 @@ class Meyer(YieldingSphereLaw):
         "between them (Meyer), the depth of a spherical dent, and Hertz's unloading."
     )
     free_parameter = "yield_strength"
+    scalar_forces: ClassVar[ScalarForces | None] = staticmethod(_forces)
 
     yield_strength: Array = parameter(
         "yield strength Y",
@@ -93,33 +145,28 @@ class Meyer(YieldingSphereLaw):
 
     def contact_radius(self, delta: Array) -> Array:
         """Return the contact radius beyond the yield indentation [m]."""
-        return self._relative_radius(delta) * np.sqrt(self.effective_radius * self.yield_indentation)
+        return self._relative_radius_at(delta) * np.sqrt(self.effective_radius * self.yield_indentation)
 
     def plastic_force(self, delta: Array) -> Array:
         """Return the loading force beyond the yield indentation [N]."""
-        x = self._relative_radius(delta)
-        return self._yield_force * np.minimum(x**self.meyer_index, _RISE * x * x)
+        return _plastic_force(delta, self.yield_indentation, self._yield_force, self.meyer_index, self._full_radius)
 
     def plastic_loading_work(self, delta: Array) -> Array:
         """Return the integral of the plastic force from the yield indentation [J]."""
-        n, x = self.meyer_index, self._relative_radius(delta)
+        n, x = self.meyer_index, self._relative_radius_at(delta)
         rising = np.minimum(x, self._full_radius)
         work = (rising ** (n + 2.0) - 1.0) / (n + 2.0) + 0.5 * (n - 1.0) * (rising ** (2.0 * n - 1.0) - 1.0) / (2.0 * n - 1.0)
         work = work + _RISE * ((x**4 - rising**4) / 4.0 + _RISE * (x**3 - rising**3) / 6.0)
         return self._yield_force * self.yield_indentation * work
 
-    def _relative_radius(self, delta: Array) -> Array:
+    @cached_property
+    def coefficients(self) -> tuple[Array, ...]:
+        """Those of a yielding sphere, force at yield, Meyer's index and the relative radius at full plasticity."""
+        return *super().coefficients, self._yield_force, self.meyer_index, self._full_radius
+
+    def _relative_radius_at(self, delta: Array) -> Array:
         """Return the contact radius relative to that at yield [-], at indentations from that at yield on [m]."""
-        depth, power = 2.0 * delta / self.yield_indentation, self.meyer_index - 1.0
-        full = 0.5 * (np.sqrt(_RISE * _RISE + 4.0 * depth) - _RISE)  # where the pressure is full: x^2 + _RISE x
-        x = 0.5 * (np.sqrt(1.0 + 4.0 * depth) - 1.0)  # where it does not rise, and not less where it does
-        for _ in range(_MOST_ITERATIONS):  # x^2 + x^(n-1) is convex: Newton's method goes down to the root
-            rising = x**power
-            step = (x * x + rising - depth) / (2.0 * x + power * rising / x)
-            x = x - step
-            if np.all(np.abs(step) <= _CONVERGED * x):
-                break
-        return np.where(full > self._full_radius, full, np.maximum(x, 1.0))
+        return _relative_radius(delta / self.yield_indentation, self.meyer_index, self._full_radius)
 
     @property
     def _full_radius(self) -> Array:

@@ -3,12 +3,31 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, ClassVar
 
 import numpy as np
 
 from vibroimpact.arrays import Array
+from vibroimpact.compiled import scalar
+from vibroimpact.contact.law import ScalarForces
 from vibroimpact.contact.parameters import parameter
-from vibroimpact.contact.yielding_sphere import YieldingSphereLaw
+from vibroimpact.contact.power_law import power
+from vibroimpact.contact.yielding_sphere import YieldingSphereLaw, yielded_indentation, yielding_sphere_forces
+
+
+@scalar
+def _plastic_force(delta: Array, yield_force: Array, plastic_stiffness: Array, exponent: Array, power_at_yield: Array) -> Array:
+    return yield_force + plastic_stiffness * (power(delta, exponent) - power_at_yield)
+
+
+@scalar
+def _forces(delta: Array, delta_dot: Array, approach_speed: Array, coefficients: Any) -> tuple[Array, Array]:
+    yield_force, plastic_stiffness = coefficients[7], coefficients[8]
+    exponent, power_at_yield = coefficients[9], coefficients[10]
+    deepest = yielded_indentation(delta, coefficients)
+    plastic = _plastic_force(deepest, yield_force, plastic_stiffness, exponent, power_at_yield)
+    return yielding_sphere_forces(delta, plastic, coefficients)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,6 +77,7 @@ class Storakers(YieldingSphereLaw):
         "without hardening, for which the restitution far above yield would be 1.48 times as high."
     )
     free_parameter = "yield_strength"
+    scalar_forces: ClassVar[ScalarForces | None] = staticmethod(_forces)
 
     yield_strength: Array = parameter(
         "yield strength Y",
@@ -82,16 +102,25 @@ class Storakers(YieldingSphereLaw):
 
     def plastic_force(self, delta: Array) -> Array:
         """Return the loading force beyond the yield indentation [N]."""
-        at_yield = self.yield_indentation
-        return self.stiffness * at_yield**1.5 + self._plastic_stiffness * (delta**self._power - at_yield**self._power)
+        return _plastic_force(delta, *self._plastic_coefficients)
 
     def plastic_loading_work(self, delta: Array) -> Array:
         """Return the integral of the plastic force from the yield indentation [J]."""
-        at_yield, power = self.yield_indentation, self._power
-        constant = self.stiffness * at_yield**1.5 - self._plastic_stiffness * at_yield**power
-        return constant * (delta - at_yield) + self._plastic_stiffness * (delta ** (power + 1.0) - at_yield ** (power + 1.0)) / (
-            power + 1.0
-        )
+        yield_force, plastic_stiffness, exponent, power_at_yield = self._plastic_coefficients
+        at_yield, rise = self.yield_indentation, exponent + 1.0
+        constant = yield_force - plastic_stiffness * power_at_yield
+        return constant * (delta - at_yield) + plastic_stiffness * (delta**rise - at_yield**rise) / rise
+
+    @cached_property
+    def coefficients(self) -> tuple[Array, ...]:
+        """Those of a yielding sphere, and those of the plastic force."""
+        return *super().coefficients, *self._plastic_coefficients
+
+    @cached_property
+    def _plastic_coefficients(self) -> tuple[Array, ...]:
+        """The force at yield, the stiffness of the plastic force, its exponent, and the yield indentation to this power."""
+        at_yield, exponent = self.yield_indentation, self._power
+        return self.stiffness * at_yield**1.5, self._plastic_stiffness, exponent, at_yield**exponent
 
     @property
     def _power(self) -> Array:
@@ -99,6 +128,6 @@ class Storakers(YieldingSphereLaw):
 
     @property
     def _plastic_stiffness(self) -> Array:
-        radius, power = self.effective_radius, 1.0 / self.hardening_exponent
-        flow_stress = self.yield_strength * (self.effective_modulus / self.yield_strength) ** power
-        return 3.0 * np.pi * flow_stress * radius * (36.0 * radius) ** (-0.5 * power)
+        radius, hardening = self.effective_radius, 1.0 / self.hardening_exponent
+        flow_stress = self.yield_strength * (self.effective_modulus / self.yield_strength) ** hardening
+        return 3.0 * np.pi * flow_stress * radius * (36.0 * radius) ** (-0.5 * hardening)

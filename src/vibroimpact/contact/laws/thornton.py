@@ -3,12 +3,28 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, ClassVar
 
 import numpy as np
 
 from vibroimpact.arrays import Array
+from vibroimpact.compiled import scalar
+from vibroimpact.contact.law import ScalarForces
 from vibroimpact.contact.parameters import parameter
-from vibroimpact.contact.yielding_sphere import YieldingSphereLaw
+from vibroimpact.contact.yielding_sphere import YieldingSphereLaw, yielded_indentation, yielding_sphere_forces
+
+
+@scalar
+def _plastic_force(delta: Array, yield_indentation: Array, yield_force: Array, slope: Array) -> Array:
+    return yield_force + slope * (delta - yield_indentation)
+
+
+@scalar
+def _forces(delta: Array, delta_dot: Array, approach_speed: Array, coefficients: Any) -> tuple[Array, Array]:
+    yield_indentation, yield_force, slope = coefficients[5], coefficients[7], coefficients[8]
+    plastic = _plastic_force(yielded_indentation(delta, coefficients), yield_indentation, yield_force, slope)
+    return yielding_sphere_forces(delta, plastic, coefficients)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -49,6 +65,7 @@ class Thornton(YieldingSphereLaw):
     equation = "F = 4/3 E* sqrt(R) delta^1.5 up to yield, F_y + pi R p_y (delta - delta_y) beyond; unloading Hertz's, of a flatter sphere"
     source = "Thornton 1997, J. Appl. Mech. 64:383"
     free_parameter = "yield_pressure"
+    scalar_forces: ClassVar[ScalarForces | None] = staticmethod(_forces)
 
     yield_pressure: Array = parameter(
         "limiting contact pressure p_y",
@@ -66,13 +83,22 @@ class Thornton(YieldingSphereLaw):
 
     def plastic_force(self, delta: Array) -> Array:
         """Return the loading force beyond the yield indentation [N]."""
-        at_yield = self.yield_indentation
-        return self.stiffness * at_yield * np.sqrt(at_yield) + self._slope * (delta - at_yield)
+        return _plastic_force(delta, self.yield_indentation, self._yield_force, self._slope)
 
     def plastic_loading_work(self, delta: Array) -> Array:
         """Return the integral of the plastic force from the yield indentation [J]."""
         at_yield = self.yield_indentation
-        return (self.stiffness * at_yield * np.sqrt(at_yield) + 0.5 * self._slope * (delta - at_yield)) * (delta - at_yield)
+        return (self._yield_force + 0.5 * self._slope * (delta - at_yield)) * (delta - at_yield)
+
+    @cached_property
+    def coefficients(self) -> tuple[Array, ...]:
+        """Those of a yielding sphere, and the force at yield and the slope of the plastic force."""
+        return *super().coefficients, self._yield_force, self._slope
+
+    @property
+    def _yield_force(self) -> Array:
+        at_yield = self.yield_indentation
+        return self.stiffness * at_yield * np.sqrt(at_yield)
 
     @property
     def _slope(self) -> Array:

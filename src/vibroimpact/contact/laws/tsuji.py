@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 
 from vibroimpact.arrays import Array
 from vibroimpact.contact.kelvin_voigt import damping_ratio_from_restitution, restitution_from_damping_ratio
+from vibroimpact.contact.law import ScalarForces
 from vibroimpact.contact.mixins import RestitutionForMassLaw
-from vibroimpact.contact.power_law import SphereLaw
+from vibroimpact.contact.power_law import SphereLaw, fourth_root_forces
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,14 +49,16 @@ class Tsuji(RestitutionForMassLaw, SphereLaw):
     contact_end = "zero-indentation"
     tension = "kept"
     root = 4
+    scalar_forces: ClassVar[ScalarForces | None] = staticmethod(fourth_root_forces)
 
     @property
     def _dashpot(self) -> Array:
         return np.sqrt(5.0 * self.effective_mass * self.stiffness) * damping_ratio_from_restitution(self.restitution)
 
-    def forces(self, delta: Array, delta_dot: Array, approach_speed: Array) -> tuple[Array, Array]:
-        """Return the elastic and the dissipative force [N]."""
-        return self.elastic_force(delta), self._dashpot * np.sqrt(np.sqrt(delta)) * delta_dot
+    @cached_property
+    def coefficients(self) -> tuple[Array, ...]:
+        """Stiffness and dashpot constant."""
+        return self.stiffness, self._dashpot
 
     def closed_form_restitution(self, mass: Array, speed: Array) -> Array:
         """Return Antypov and Elliott's restitution, independent of the speed."""

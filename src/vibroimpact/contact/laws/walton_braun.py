@@ -3,13 +3,24 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, ClassVar
 
 import numpy as np
 
 from vibroimpact.arrays import Array
-from vibroimpact.contact.elastic_plastic import ElasticPlasticLaw
+from vibroimpact.compiled import scalar
+from vibroimpact.contact.elastic_plastic import ElasticPlasticLaw, static_force
+from vibroimpact.contact.law import ScalarForces
 from vibroimpact.contact.parameters import inherited_parameter, parameter
 from vibroimpact.errors import InputError
+
+
+@scalar
+def _forces(delta: Array, delta_dot: Array, approach_speed: Array, coefficients: Any) -> tuple[Array, Array]:
+    loaded_to, stiffness = coefficients[0], coefficients[5]
+    force = static_force(delta, stiffness * np.maximum(delta, loaded_to), coefficients)
+    return force, 0.0 * force
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,6 +62,7 @@ class WaltonBraun(ElasticPlasticLaw):
     source = "Walton & Braun 1986, J. Rheology 30:949"
     lasting = False
     unloading_exponent = 1.0
+    scalar_forces: ClassVar[ScalarForces | None] = staticmethod(_forces)
 
     loaded_to: Array = inherited_parameter(ElasticPlasticLaw, "loaded_to", detail="Deepest indentation of this contact so far.")
     stiffness: Array = parameter("stiffness of loading k1", "N/m", detail="Stiffness of loading :math:`k_1`.", example=2e6, above=0)
@@ -79,6 +91,11 @@ class WaltonBraun(ElasticPlasticLaw):
     def free_parameter(self) -> str:
         """The name of the parameter given, restitution or stiffening."""
         return "stiffening" if self.restitution is None else "restitution"
+
+    @cached_property
+    def coefficients(self) -> tuple[Array, ...]:
+        """Those of unloading, and the stiffness of loading."""
+        return *super().coefficients, self.stiffness
 
     def loading_force(self, delta: Array) -> Array:
         r"""Return :math:`k_1 \delta` [N]."""
