@@ -80,19 +80,21 @@ class Digest:
             self._words.append(f"function {self._numbers[id(function)]}")
             return
         self._numbers[id(function)] = len(self._numbers)
-        self._add_code(function.__code__)
+        self._add_code(function.__code__, function.__doc__)
         self._add(function.__defaults__)
         for name, value in _used(function):
             self._words.append(name)
             self._add(value)
 
-    def _add_code(self, code: CodeType) -> None:
+    def _add_code(self, code: CodeType, docstring: str | None) -> None:
         names = (code.co_varnames, code.co_names, code.co_cellvars, code.co_freevars)
         self._words.append(f"code {code.co_code.hex()} {names} {code.co_argcount} {code.co_flags}")
         for constant in code.co_consts:
             if isinstance(constant, CodeType):
-                self._add_code(constant)
-            else:
+                self._add_code(constant, None)
+            elif isinstance(constant, frozenset):  # in an order that differs between processes
+                self._words.append(repr(sorted(map(repr, constant))))
+            elif constant != docstring:
                 self._words.append(repr(constant))
 
 

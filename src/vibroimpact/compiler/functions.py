@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import nullcontext
+from inspect import signature
 from typing import Any
 
 from numba.core.compiler_lock import global_compiler_lock
@@ -147,4 +148,5 @@ def _replacing(body: Callable[..., Any]) -> Callable[..., Any]:
     def replacement(*arguments: Any) -> Callable[..., Any]:
         return body
 
+    replacement.__signature__ = signature(body)  # type: ignore[attr-defined]
     return replacement

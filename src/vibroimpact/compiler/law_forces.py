@@ -15,30 +15,39 @@ from vibroimpact.errors import SlowLawWarning
 _FORCES: dict[Any, CompiledFunction] = {}
 """Forces by their Python functions; they are kept, since addresses of them are in use."""
 
+_REASONS: dict[Any, str] = {}
+"""Why a force is not compiled, by its Python function; "" if it is."""
+
+_WARNED: set[type[Any]] = set()
+"""Laws of which the user knows that they are not compiled."""
+
 
 def compiled_force(law_class: type[Any]) -> CompiledFunction:
     """Return the force of a law as a function value, compiled once a process."""
     source = interpreted_force(law_class)
     if source not in _FORCES:
-        _FORCES[source] = _compiled_or_called(source, law_class)
+        reason = "it has no force of floats, `scalar_forces`" if law_class.scalar_forces is None else _why_not_compiled(source)
+        if reason:
+            _FORCES[source] = CompiledFunction(_calling(source), lambda types: types.force.signature, nogil=False)
+            _FORCES[source].ready()
+        _REASONS[source] = reason
+    if _REASONS[source] and law_class not in _WARNED:
+        _WARNED.add(law_class)
+        name = getattr(law_class, "name", law_class.__name__)
+        said = f"the law {name} is not compiled, and its force takes microseconds in place of nanoseconds: {_REASONS[source]}"
+        warnings.warn(SlowLawWarning(said), stacklevel=4)
     return _FORCES[source]
 
 
-def _compiled_or_called(source: Callable[..., Any], law_class: type[Any]) -> CompiledFunction:
-    reason = "it has no force of floats, `scalar_forces`"
-    if law_class.scalar_forces is not None:
-        try:
-            return _ready(CompiledFunction(source, lambda types: types.force.signature))
-        except Exception as error:  # numba has many kinds, and a function of another package may be anything
-            reason = _first_reason(error)
-    name = getattr(law_class, "name", law_class.__name__)
-    warnings.warn(SlowLawWarning(f"the law {name} is not compiled and takes longer: {reason}"), stacklevel=4)
-    return _ready(CompiledFunction(_calling(source), lambda types: types.force.signature, nogil=False))
-
-
-def _ready(force: CompiledFunction) -> CompiledFunction:
-    force.ready()
-    return force
+def _why_not_compiled(source: Callable[..., Any]) -> str:
+    """Compile a force, or return why numba refuses it."""
+    force = CompiledFunction(source, lambda types: types.force.signature)
+    try:
+        force.ready()
+    except Exception as error:  # numba has many kinds, and a function of another package may be anything
+        return _first_reason(error)
+    _FORCES[source] = force
+    return ""
 
 
 def _calling(source: Callable[..., Any]) -> Callable[..., Any]:
