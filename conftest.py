@@ -43,6 +43,16 @@ def own_store(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
         yield folder
 
 
+@pytest.fixture(autouse=True, scope="session")
+def shared_code_store() -> Iterator[None]:
+    """Share the compiled code of the user in processes with another home too: it is found by its content, and takes long to make."""
+    from vibroimpact.compiler.code_store import PLACE, code_folder
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv(PLACE, str(code_folder()))
+        yield
+
+
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Leave out tests marked `whole` where not all are asked for; mark examples of docstrings that train classifiers as slow."""

@@ -121,7 +121,8 @@ class Guard:
         (folder / "hook").mkdir()
         (folder / "hook" / "sitecustomize.py").write_text(_HOOK)
         ours = [str(folder / "hook"), str(Path(__file__).parent), str(Path(vibroimpact.__file__).parents[1])]
-        kept = {key: os.environ[key] for key in ("PATH", "VIRTUAL_ENV", "LANG", "OPENBLAS_NUM_THREADS") if key in os.environ}
+        names = ("PATH", "VIRTUAL_ENV", "LANG", "OPENBLAS_NUM_THREADS", "VIBROIMPACT_CODE_STORE")
+        kept = {key: os.environ[key] for key in names if key in os.environ}
         # as on the machine of a user: some libraries are silent where they find that they are tested
         self.environment = kept | {"HOME": str(self.home), "PYTHONPATH": os.pathsep.join(ours), "GUARD_CALLS": str(self._record)}
         compiler = shutil.which("cc")

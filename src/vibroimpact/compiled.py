@@ -8,14 +8,27 @@ drops are computed, since loading numba takes some tenths of a second.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import cache
 from importlib.util import find_spec
-from typing import Any
+from typing import Any, cast
 
+import numpy as np
+
+from vibroimpact.compiler.function_values import force_at, force_coefficients, interpreted_force
 from vibroimpact.compiler.marks import Function, scalar, scalar_as
 
-__all__ = ["compiled", "force_function", "scalar", "scalar_as", "why_not_compiled"]
+__all__ = [
+    "compiled",
+    "force_address",
+    "force_addresses",
+    "force_at",
+    "force_coefficients",
+    "force_function",
+    "scalar",
+    "scalar_as",
+    "why_not_compiled",
+]
 
 SWITCH = "VIBROIMPACT_COMPILE"
 """Environment variable: 0 runs everything in plain Python."""
@@ -47,10 +60,9 @@ def compiled(signature: Callable[[Any], Any]) -> Callable[[Function], Function]:
     def compile_function(function: Function) -> Function:
         if why_not_compiled():
             return function
-        from vibroimpact.compiler.functions import compiled_function
+        from vibroimpact.compiler.functions import CompiledFunction
 
-        function_value: Function = compiled_function(function, signature)
-        return function_value
+        return cast(Function, CompiledFunction(function, signature))
 
     return compile_function
 
@@ -66,13 +78,39 @@ def force_function(law_class: type[Any]) -> Any:
     law_class : type
         Class of the law, a `CompliantLaw`.
     """
-    from vibroimpact.compiler.forces import interpreted_force
-
     if why_not_compiled():
         return interpreted_force(law_class)
-    from vibroimpact.compiler.functions import compiled_force
+    from vibroimpact.compiler.law_forces import compiled_force
 
     return compiled_force(law_class)
+
+
+def force_address(law_class: type[Any]) -> Any:
+    """Return what a compiled function takes from Python as an `address`, and makes the force of a law of by `force_at`.
+
+    Parameters
+    ----------
+    law_class : type
+        Class of the law, a `CompliantLaw`.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> @compiled(lambda t: t.real(t.address, t.real, t.vector))
+    ... def static_force(address, delta, coefficients):
+    ...     force = force_at(address)
+    ...     return force(delta, 0.0, 1.0, coefficients)[0]
+    >>> law = vi.find_contact_law("hunt-crossley")(stiffness=2.0, restitution=0.5)
+    >>> static_force(force_address(type(law)), 4.0, force_coefficients(law))
+    16.0
+    """
+    force = force_function(law_class)
+    return force if why_not_compiled() else force.address()
+
+
+def force_addresses(law_classes: Iterable[type[Any]]) -> Any:
+    """Return what `force_address` does of several laws, as an array."""
+    return np.array([force_address(law_class) for law_class in law_classes], dtype=object if why_not_compiled() else np.int64)
 
 
 @cache

@@ -1,16 +1,115 @@
-"""Compiled functions equal the interpreted ones."""
+"""Compiled functions: equal to interpreted ones, kept on the disk whatever happens to it, and none where there is no compiler."""
 
 from __future__ import annotations
 
+import os
+import signal
+import subprocess
+import sys
+import time
+import warnings
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import vibroimpact as vi
+from vibroimpact.compiled import SWITCH, compiled, force_address, force_at, force_coefficients, force_function, why_not_compiled
+from vibroimpact.compiler import code_store
+from vibroimpact.compiler.code_store import PLACE, load_code, save_code
+from vibroimpact.contact.laws.hertz import Hertz
+from vibroimpact.contact.laws.hunt_crossley import HuntCrossley
+
+needs_compiler = pytest.mark.skipif(bool(why_not_compiled()), reason=why_not_compiled())
+
+_CALLEE = """
+FACTOR = 2.0
+
+
+def scaled(value):
+    return FACTOR * value
+"""
+
+_MODULE = """
+import sys
+
 import numpy as np
 
-from vibroimpact.compiled import compiled, force_function
-from vibroimpact.compiler.forces import force_coefficients
-from vibroimpact.contact.laws.hunt_crossley import HuntCrossley
+from callee import scaled
+from vibroimpact.compiled import compiled, scalar
+
+scalar(scaled)
+
+
+@compiled(lambda t: t.real(t.vector))
+def total(values):
+    answer = 0.0
+    for value in values:
+        answer += scaled(value)
+    return answer
+
+
+@compiled(lambda t: t.real(t.vector))
+def twice(values):
+    return 2.0 * total(values)
+
+
+print(twice(np.arange(4.0)))
+if hasattr(twice, "_cache_hits"):
+    print("loaded" if twice._cache_hits else "compiled")
+"""
+
+
+class Toy:
+    """A program with a compiled function, which calls one of another file.
+
+    Parameters
+    ----------
+    folder : Path
+        An empty folder, for the program and the code that it compiles.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.code = folder / "code"
+        self.callee = folder / "callee.py"
+        self.callee.write_text(_CALLEE)
+        self.program = folder / "toy.py"
+        self.program.write_text(_MODULE)
+        self.environment = {**os.environ, PLACE: str(self.code)}
+
+    def start(self, **environment: str) -> subprocess.Popen[str]:
+        return subprocess.Popen(
+            [sys.executable, str(self.program)],
+            env=self.environment | environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+
+    def run(self, **environment: str) -> list[str]:
+        return printed(self.start(**environment))
+
+    def files(self) -> list[Path]:
+        return sorted(self.code.glob("*/*"))
+
+
+def printed(process: subprocess.Popen[str]) -> list[str]:
+    out, errors = process.communicate(timeout=120)
+    assert (process.returncode, errors) == (0, "")
+    return out.split()
+
+
+@pytest.fixture
+def toy(tmp_path: Path) -> Toy:
+    return Toy(tmp_path)
 
 
 @compiled(lambda t: t.real(t.integer, t.force, t.vector))
-def work(steps, force, coefficients):
+def work(steps: int, force: Callable[..., Any], coefficients: np.ndarray) -> float:
     total = 0.0
     for step in range(steps):
         static, dissipative = force(1e-4 * step, 1.0, 2.0, coefficients)
@@ -18,8 +117,205 @@ def work(steps, force, coefficients):
     return total
 
 
-def test_a_law_is_called_by_value() -> None:
-    law = HuntCrossley(stiffness=1e9, restitution=0.6)
-    static, dissipative = law.forces(1e-4 * np.arange(10), np.ones(10), 2.0 * np.ones(10))
-    found = work(10, force_function(HuntCrossley), force_coefficients(law))
-    assert abs(found / sum(static + dissipative) - 1.0) < 1e-14
+@compiled(lambda t: t.real(t.integer, t.address, t.vector))
+def work_of_law(steps: int, address: Any, coefficients: np.ndarray) -> float:
+    return work(steps, force_at(address), coefficients)
+
+
+def work_of_arrays(law: vi.ContactLaw) -> float:
+    static, dissipative = law.forces(1e-4 * np.arange(10), np.ones(10), 2.0 * np.ones(10))  # type: ignore[attr-defined]
+    return float(np.sum(static + dissipative))
+
+
+# laws
+
+
+@pytest.mark.parametrize("law", [HuntCrossley(stiffness=1e9, restitution=0.6), Hertz(stiffness=1e9)], ids=lambda law: law.name)
+def test_a_law_is_called_by_value_and_by_address(law: vi.ContactLaw) -> None:
+    expected = pytest.approx(work_of_arrays(law), rel=1e-14)
+    assert work(10, force_function(type(law)), force_coefficients(law)) == expected
+    assert work_of_law(10, force_address(type(law)), force_coefficients(law)) == expected
+
+
+@dataclass(frozen=True, kw_only=True)
+class OfArrays(Hertz):
+    """A law of another package that has no force of floats."""
+
+    name = "of-arrays"
+
+    def forces(self, delta: np.ndarray, delta_dot: np.ndarray, approach_speed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        static, dissipative = super().forces(delta, delta_dot, approach_speed)
+        return static, dissipative + 0.1 * delta_dot
+
+
+def of_dictionaries(delta: Any, delta_dot: Any, approach_speed: Any, coefficients: Any) -> tuple[Any, Any]:
+    forces = dict.fromkeys(("static", "dissipative"), coefficients[0] * delta)
+    return forces["static"], dict(**forces)["dissipative"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class NotCompilable(Hertz):
+    """A law of another package whose force numba refuses."""
+
+    name = "not-compilable"
+    scalar_forces = staticmethod(of_dictionaries)
+
+
+@needs_compiler
+@pytest.mark.parametrize("law", [OfArrays(stiffness=1e9), NotCompilable(stiffness=1e9)], ids=lambda law: law.name)
+def test_a_law_that_is_not_compiled_is_called_and_says_so_once(law: vi.ContactLaw) -> None:
+    with pytest.warns(vi.errors.SlowLawWarning, match=f"the law {law.name} is not compiled, and its force takes microseconds"):
+        address = force_address(type(law))
+    coefficients = force_coefficients(law)
+    expected = pytest.approx(work_of_arrays(law), rel=1e-14)
+    assert work_of_law(10, address, coefficients) == expected
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert work_of_law(10, force_address(type(law)), coefficients) == expected
+    with ThreadPoolExecutor(4) as threads:
+        assert set(threads.map(lambda _: work_of_law(500, address, coefficients), range(8))) == {work_of_law(500, address, coefficients)}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Failing(Hertz):
+    """A law whose force raises."""
+
+    name = "failing"
+
+    def forces(self, delta: np.ndarray, delta_dot: np.ndarray, approach_speed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        raise vi.InputError("no force")
+
+
+@needs_compiler
+def test_an_error_of_a_law_reaches_the_caller() -> None:
+    law = Failing(stiffness=1.0)
+    with pytest.warns(vi.errors.SlowLawWarning):
+        address = force_address(Failing)
+    with pytest.raises(vi.InputError, match="no force"):
+        work_of_law(10, address, force_coefficients(law))
+
+
+# on the disk
+
+
+@needs_compiler
+def test_code_is_loaded_by_the_next_process(toy: Toy) -> None:
+    assert toy.run() == ["24.0", "compiled"]
+    assert toy.run(PYTHONHASHSEED="7") == ["24.0", "loaded"]
+
+
+@needs_compiler
+def test_an_edited_callee_or_constant_is_compiled_anew(toy: Toy) -> None:
+    assert toy.run() == ["24.0", "compiled"]
+    toy.callee.write_text(_CALLEE.replace("FACTOR = 2.0", "FACTOR = 3.0"))
+    assert toy.run() == ["36.0", "compiled"]
+    toy.callee.write_text(f'"""What it is."""\n{_CALLEE}')
+    assert toy.run() == ["24.0", "loaded"]
+
+
+@needs_compiler
+def test_a_damaged_file_is_replaced(toy: Toy) -> None:
+    toy.run()
+    for path in toy.files():
+        path.write_bytes(path.read_bytes()[:-1000])
+    assert toy.run() == ["24.0", "compiled"]
+    assert toy.run() == ["24.0", "loaded"]
+
+
+@pytest.mark.parametrize("damage", [lambda data: data[:500], lambda data: b"", lambda data: data[:99] + b"+" + data[100:]])
+def test_damage_is_seen(tmp_path: Path, damage: Callable[[bytes], bytes]) -> None:
+    assert save_code(tmp_path, "name", bytes(1000)) == ""
+    (path,) = tmp_path.iterdir()
+    path.write_bytes(damage(path.read_bytes()))
+    assert load_code(tmp_path, "name") is None
+
+
+@needs_compiler
+def test_a_store_that_cannot_be_written_is_done_without(toy: Toy) -> None:
+    toy.code.write_text("a file in place of the folder")
+    assert toy.run() == ["24.0", "compiled"]
+
+
+@needs_compiler
+def test_another_processor_has_its_own_code(toy: Toy) -> None:
+    assert toy.run() == ["24.0", "compiled"]
+    assert toy.run(NUMBA_CPU_NAME="generic", NUMBA_CPU_FEATURES="") == ["24.0", "compiled"]
+    assert len({path.parent for path in toy.files()}) == 2
+
+
+@needs_compiler
+def test_of_two_processes_one_compiles(toy: Toy) -> None:
+    answers = [printed(process) for process in [toy.start(), toy.start()]]
+    assert [answer[0] for answer in answers] == ["24.0", "24.0"]
+    if sys.platform.startswith("linux"):
+        assert sorted(answer[1] for answer in answers) == ["compiled", "loaded"]
+
+
+@needs_compiler
+@pytest.mark.skipif(os.name != "posix", reason="needs signals")
+def test_a_killed_process_leaves_nothing_in_the_way(toy: Toy) -> None:
+    process = toy.start()
+    while not toy.code.exists():
+        time.sleep(0.01)
+    process.send_signal(signal.SIGKILL)
+    process.communicate()
+    assert toy.run() == ["24.0", "compiled"]
+    assert toy.run() == ["24.0", "loaded"]
+    assert all(path.suffix == ".code" for path in toy.files())
+
+
+def test_the_least_recently_used_code_is_removed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(PLACE, str(tmp_path))
+    monkeypatch.setattr(code_store, "_LARGEST", 2500)
+    old, new = tmp_path / "old", tmp_path / "new"
+    assert save_code(old, "first", bytes(1000)) == ""
+    os.utime(next(old.iterdir()), (0, 0))
+    assert save_code(new, "second", bytes(1000)) == ""
+    assert load_code(old, "first") == bytes(1000)  # and is thereby the last that was used
+    os.utime(next(new.iterdir()), (1, 1))
+    assert save_code(new, "third", bytes(1000)) == ""
+    assert (load_code(old, "first"), load_code(new, "second"), load_code(new, "third")) == (bytes(1000), None, bytes(1000))
+    assert code_store.code_size() == 2064
+    assert code_store.clear_code() == 2
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_full_disk_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(code_store, "write_file", fail)
+    assert save_code(tmp_path / "new", "name", b"") == f"{tmp_path / 'new'} can't be written to: No space left on device"
+
+
+# without a compiler
+
+
+@pytest.mark.parametrize("switch", [SWITCH, "NUMBA_DISABLE_JIT"])
+def test_a_switch_leaves_functions_in_python(toy: Toy, switch: str) -> None:
+    assert toy.run(**{switch: "0" if switch == SWITCH else "1"}) == ["24.0"]
+    assert toy.files() == []
+
+
+def test_without_numba_functions_stay_in_python(toy: Toy) -> None:
+    finder = "import sys; sys.modules['numba'] = None"
+    toy.program.write_text(f"{finder}\n{_MODULE}\nfrom vibroimpact.compiled import why_not_compiled; print(why_not_compiled())")
+    assert toy.run() == ["24.0", *["numba", "is", "not", "installed"]]
+
+
+def test_numba_that_does_not_load_is_done_without(toy: Toy) -> None:
+    (toy.program.parent / "numba.py").write_text("raise ImportError('Numba needs NumPy 2.6 or less')")
+    toy.program.write_text(f"{_MODULE}\nfrom vibroimpact.compiled import why_not_compiled; print(why_not_compiled())")
+    assert " ".join(toy.run()) == "24.0 numba cannot be loaded: Numba needs NumPy 2.6 or less"
+
+
+def test_commands_that_compute_no_drop_load_no_compiler() -> None:
+    program = (
+        "import sys\nfrom vibroimpact.cli import main\n"
+        "for words in (['--help'], ['check', 'paper:type1-theory'], ['laws'], ['laws', 'hertz'], ['units', '1 mm']):\n"
+        "    sys.argv = ['vibroimpact', *words]\n"
+        "    try:\n        main()\n    except SystemExit:\n        pass\n"
+        "assert 'numba' not in sys.modules\n"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=120, check=False)
+    assert (done.returncode, done.stderr) == (0, "")

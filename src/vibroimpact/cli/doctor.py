@@ -1,4 +1,4 @@
-"""Diagnosis of the installation: versions, the store of modes, and a reference computation."""
+"""Diagnosis of the installation: versions, compiled code, the store of modes, and a reference computation."""
 
 from __future__ import annotations
 
@@ -7,9 +7,12 @@ import platform
 from collections.abc import Mapping
 from functools import cache
 from importlib.metadata import PackageNotFoundError, requires, version
+from pathlib import Path
 from typing import Any
 
 from vibroimpact._version import __version__
+from vibroimpact.compiled import why_not_compiled
+from vibroimpact.compiler.code_store import code_files, code_folder, code_size
 from vibroimpact.recognition.onnx_runtime import SWITCH
 from vibroimpact.structures.free_memory import free_memory
 from vibroimpact.structures.store import entries, store_folder, store_size
@@ -26,10 +29,10 @@ def diagnose() -> dict[str, Any]:
     Examples
     --------
     >>> sorted(diagnose())
-    ['packages', 'platform', 'python', 'resources', 'store', 'usage_data', 'version']
+    ['compiler', 'packages', 'platform', 'python', 'resources', 'store', 'usage_data', 'version']
     """
     folder = store_folder()
-    usable = not os.path.lexists(folder) or (folder.is_dir() and os.access(folder, os.W_OK))
+    usable = _is_usable(folder)
     return {
         "version": __version__,
         "python": platform.python_version(),
@@ -41,6 +44,7 @@ def diagnose() -> dict[str, Any]:
             "entries": len(entries()) if usable else 0,
             "size_byte": store_size() if usable else 0,
         },
+        "compiler": _compiler(),
         "usage_data": {name: {"sent": False, "switch": switch} for name, switch in _SWITCHES.items() if _installed(name)},
         "packages": {name: _installed(name) for name in _requirements()},
     }
@@ -61,10 +65,33 @@ def diagnosis_rows(found: Mapping[str, Any]) -> list[tuple[str, str]]:
         ("platform", found["platform"]),
         ("processors", str(found["resources"]["processors"])),
         ("memory free", f"{memory / 1e9:.3g} GB"),
+        ("compiled code", _compiler_words(found["compiler"])),
         ("store of modes", _store_words(found["store"])),
         ("usage data", _usage_words(found["usage_data"])),
         *((name, version or _missing(extras[name])) for name, version in found["packages"].items()),
     ]
+
+
+def _compiler() -> dict[str, Any]:
+    """Return whether the solver is compiled, and what is kept of it."""
+    folder = code_folder()
+    reason = why_not_compiled()
+    return {
+        "compiled": not reason,
+        "reason": reason,
+        "folder": str(folder),
+        "usable": _is_usable(folder),
+        "entries": len(code_files()),
+        "size_byte": code_size(),
+    }
+
+
+def _is_usable(folder: Path) -> bool:
+    """Can files be written to a folder, or can it be made?"""
+    there = folder
+    while not os.path.lexists(there) and there != there.parent:
+        there = there.parent
+    return there.is_dir() and os.access(there, os.W_OK | os.X_OK)
 
 
 def _requirements() -> dict[str, str]:
@@ -91,6 +118,14 @@ def _missing(extra: str) -> str:
 def _usage_words(usage: Mapping[str, Any]) -> str:
     switches = ", ".join(f"that of {name} by {one['switch']}=1" for name, one in usage.items())
     return f"none is sent; {switches}, before it is loaded" if switches else "none is sent"
+
+
+def _compiler_words(compiler: Mapping[str, Any]) -> str:
+    if not compiler["compiled"]:
+        return f"none, the solver runs in plain Python, which takes a hundred times as long: {compiler['reason']}"
+    if not compiler["usable"]:
+        return f"{compiler['folder']} is not a folder that can be written to: the solver is compiled again by each command"
+    return f"{compiler['entries']} functions, {compiler['size_byte'] / 1e6:.3g} MB, in {compiler['folder']}"
 
 
 def _store_words(store: Mapping[str, Any]) -> str:

@@ -136,19 +136,23 @@ def schema() -> None:
 
 @app.command()
 def doctor(
-    clear_store: Annotated[bool, typer.Option("--clear-store", help="Empty the store of computed modes.")] = False,
+    clear_store: Annotated[
+        bool, typer.Option("--clear-store", help="Remove the computed modes and the compiled code that are kept.")
+    ] = False,
     as_json: Json = False,
 ) -> None:
-    """Show versions and the store of modes, and test this program."""
+    """Show versions, compiled code and the store of modes, and test this program."""
     from vibroimpact.cli.doctor import diagnose, diagnosis_rows, first_rebound_error
     from vibroimpact.runs.text import versions_table
 
     if clear_store:
+        from vibroimpact.compiler.code_store import clear_code
         from vibroimpact.structures.store import clear_store as clear
 
         removed = clear()
-        show(lambda: {"removed": removed}, as_json=as_json)
-        say(f"removed {removed} entries from the store of modes", err=as_json)
+        functions = clear_code()
+        show(lambda: {"removed": removed, "removed_functions": functions}, as_json=as_json)
+        say(f"removed {removed} entries from the store of modes, and {functions} compiled functions", err=as_json)
         return
     found = diagnose()
     show(

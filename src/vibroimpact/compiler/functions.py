@@ -1,90 +1,152 @@
-"""Compiled functions of the core, and the forces of laws as function values. Loading this module loads numba."""
+"""Compiled functions: each is compiled, or taken from the disk, when it is first called. Loading this module loads numba."""
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable
-from contextlib import suppress
+from contextlib import nullcontext
+from inspect import signature
 from typing import Any
 
-from numba import njit, objmode
-from numba.core.errors import NumbaError
+from numba.core.compiler_lock import global_compiler_lock
+from numba.core.registry import CPUDispatcher
 from numba.extending import overload
 
 from vibroimpact.compiler import types
 from vibroimpact.compiler.code_cache import CodeCache
-from vibroimpact.compiler.digest import NotDigestible, digest
-from vibroimpact.compiler.forces import interpreted_force
+from vibroimpact.compiler.code_store import compiling_alone
+from vibroimpact.compiler.digest import Digest, NotDigestible
+from vibroimpact.compiler.function_values import force_at
+from vibroimpact.compiler.intrinsics import force_of_address
 from vibroimpact.compiler.marks import SCALAR
-from vibroimpact.errors import SlowLawWarning
+from vibroimpact.compiler.notice import say_how_long, say_trouble
 
-OPTIONS = {"error_model": "numpy"}
+_OPTIONS = {"error_model": "numpy"}
 """Division by zero gives infinity, as in NumPy; no `fastmath`, so that sums do not depend on the compiler."""
 
-REPLACED: dict[Any, Callable[..., Any]] = {}
+_SECONDS = 6e-4
+"""Time to compile a byte of Python's code [s]."""
+
+_REPLACED: dict[Any, Callable[..., Any]] = {}
 """The functions that compiled code calls, by those in whose place it does."""
 
-_FORCES: dict[Any, Any] = {}
+
+class CompiledFunction(CPUDispatcher):  # type: ignore[misc]
+    """A function with one signature, compiled when Python calls it, or when a function that calls it is compiled.
+
+    A function whose code is on the disk holds that of its callees too, so these are then neither compiled nor loaded.
+
+    Parameters
+    ----------
+    function : callable
+        The Python function.
+    signature : callable
+        Returns numba's signature from `vibroimpact.compiler.types`.
+    nogil : bool
+        Release the interpreter's lock in calls from Python.
+    """
+
+    is_busy = False
+    """Is a function being compiled? Those that it calls are compiled meanwhile."""
+    _cache: Any
+
+    def __init__(self, function: Callable[..., Any], signature: Callable[[Any], Any], nogil: bool = True) -> None:
+        super().__init__(function, targetoptions={"nopython": True, "boundscheck": None, "nogil": nogil, **_OPTIONS})
+        self._signature_of = signature
+        self._is_ready = False
+        self._callees: list[CompiledFunction] = []
+
+    def ready(self) -> None:
+        """Compile the function, or load its code, unless that was done."""
+        if self._is_ready:
+            return
+        with global_compiler_lock:
+            if self._is_ready or self.is_compiling:
+                return
+            if self._is_on_disk() or CompiledFunction.is_busy:
+                self._make_ready()
+                return
+            CompiledFunction.is_busy = True
+            try:
+                with self._alone():
+                    say_how_long(self._seconds())
+                    self._make_ready()
+            finally:
+                CompiledFunction.is_busy = False
+            if isinstance(self._cache, CodeCache) and self._cache.trouble:
+                say_trouble(self._cache.trouble)
+
+    def _make_ready(self) -> None:
+        self.compile(self._signature_of(types))  # or load
+        self.disable_compile()
+        self._is_ready = True
+
+    def _is_on_disk(self) -> bool:
+        """Is the code on the disk? From now on numba asks for it there."""
+        _register()
+        if not isinstance(self._cache, CodeCache):
+            try:
+                digest = Digest(self.py_func, _REPLACED)
+            except NotDigestible:  # it is then compiled in each process
+                return False
+            self._callees = [callee for callee in digest.callees if isinstance(callee, CompiledFunction)]
+            self._cache = CodeCache(self.py_func, digest.text)
+        return self._cache.has_code(self._signature_of(types), self.targetctx)
+
+    def _alone(self) -> Any:
+        return compiling_alone(self._cache.folder(self.targetctx)) if isinstance(self._cache, CodeCache) else nullcontext()
+
+    def _seconds(self) -> float:
+        """Return about how long it takes to compile the function and its callees, as far as they are not on the disk [s]."""
+        missing = [function for function in (self, *self._callees) if not function._is_on_disk()]
+        return _SECONDS * sum(len(function.py_func.__code__.co_code) for function in missing)
+
+    def address(self) -> int:
+        """Return the address of the machine code, which is valid as long as this object exists."""
+        self.ready()
+        (result,) = self.overloads.values()
+        return int(result.library.get_pointer_to_function(result.fndesc.llvm_func_name))
+
+    # numba's hooks: the first call from Python, a call or a use as function value in a function that is being compiled
+
+    def _compile_for_args(self, *arguments: Any, **keywords: Any) -> Any:
+        if self._is_ready:
+            return super()._compile_for_args(*arguments, **keywords)
+        self.ready()
+        return self  # which numba calls, and finds the compiled code
+
+    def get_call_template(self, args: Any, kws: Any) -> Any:
+        """Return numba's template of a call, for the one signature."""
+        self.ready()
+        return super().get_call_template(args, kws)
+
+    def get_compile_result(self, sig: Any) -> Any:
+        """Return numba's compiled function."""
+        self.ready()
+        return super().get_compile_result(sig)
+
+    def get_function_type(self) -> Any:
+        """Return numba's type as a function value."""
+        self.ready()
+        return super().get_function_type()
+
+    def __reduce__(self) -> str:
+        return str(self.py_func.__qualname__)  # pickled by its name, as Python's functions are
 
 
-def compiled_function(function: Any, signature: Callable[[Any], Any]) -> Any:
-    """Compile a function for one signature, or take its code from the disk."""
-    return _compile(function, signature(types))
-
-
-def compiled_force(law_class: type[Any]) -> Any:
-    """Return the force of a law as a function value, compiled once a process."""
-    source = interpreted_force(law_class)
-    if source not in _FORCES:
-        _FORCES[source] = _compiled_or_called(source, law_class)
-    return _FORCES[source]
-
-
-def _compiled_or_called(source: Callable[..., Any], law_class: type[Any]) -> Any:
-    signature = types.force.signature
-    if law_class.scalar_forces is not None:
-        try:
-            return _compile(source, signature)
-        except NumbaError as error:
-            reason = str(error).splitlines()[0]
-    else:
-        reason = "it has no force of floats, `scalar_forces`"
-    name = getattr(law_class, "name", law_class.__name__)
-    warnings.warn(SlowLawWarning(f"the law {name} is not compiled: {reason}; each of its forces takes longer"), stacklevel=4)
-    return _compile(_calling(source), signature, nogil=False)
-
-
-def _calling(source: Callable[..., Any]) -> Callable[..., Any]:
-    """Return a function that compiled code calls, and which calls Python."""
-
-    def force(delta, delta_dot, approach_speed, coefficients):  # type: ignore[no-untyped-def]
-        with objmode(static="float64", dissipative="float64"):
-            static, dissipative = source(delta, delta_dot, approach_speed, coefficients)
-        return static, dissipative
-
-    return force
-
-
-def _compile(function: Callable[..., Any], signature: Any, nogil: bool = True) -> Any:
-    register_scalars()
-    dispatcher = njit(**OPTIONS, nogil=nogil)(function)
-    with suppress(NotDigestible):  # it is then compiled in each process
-        dispatcher._cache = CodeCache(function.__name__, digest(function, REPLACED))
-    dispatcher.compile(signature)
-    dispatcher.disable_compile()
-    return dispatcher
-
-
-def register_scalars() -> None:
+def _register() -> None:
     """Tell numba of the functions that were marked since the last time."""
-    while len(REPLACED) < len(SCALAR):
-        function, of_floats = SCALAR[len(REPLACED)]
-        REPLACED[function] = of_floats or function
-        overload(function, jit_options=OPTIONS, strict=False)(_replacing(REPLACED[function]))
+    if not _REPLACED:
+        _REPLACED[force_at] = force_at
+        overload(force_at)(lambda address: lambda address: force_of_address(address))
+    while len(_REPLACED) <= len(SCALAR):
+        function, of_floats = SCALAR[len(_REPLACED) - 1]
+        _REPLACED[function] = of_floats or function
+        overload(function, jit_options=_OPTIONS, strict=False)(_replacing(_REPLACED[function]))
 
 
 def _replacing(body: Callable[..., Any]) -> Callable[..., Any]:
     def replacement(*arguments: Any) -> Callable[..., Any]:
         return body
 
+    replacement.__signature__ = signature(body)  # type: ignore[attr-defined]
     return replacement

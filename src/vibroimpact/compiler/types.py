@@ -11,6 +11,7 @@ vector = types.float64[::1]
 matrix = types.float64[:, ::1]
 cube = types.float64[:, :, ::1]
 four = types.float64[:, :, :, ::1]
+address = types.int64
 integers = types.int64[::1]
 booleans = types.boolean[::1]
 void = types.void

@@ -28,6 +28,7 @@ NEW, OLD, COMPLETE = "new", "old", "whole"
 
 _NAME = re.compile(rf"\.vibroimpact-([0-9a-f]{{16}})-[0-9a-f]{{12}}\.({NEW}|{OLD}|{COMPLETE})")
 _TRIES = 100
+_PAUSE = 0.05  # seconds between two looks at a lock
 _ABANDONED = 86_400.0  # seconds without a change after which it counts as a leftover, on file systems without locks
 
 
@@ -112,6 +113,25 @@ def locked(path: Path) -> Iterator[bool]:
         return
     try:
         yield _lock(descriptor, shared=True) is not False and _is_still(path, descriptor)
+    finally:
+        os.close(descriptor)
+
+
+@contextmanager
+def alone(folder: Path, longest: float) -> Iterator[None]:
+    """Keep other processes that ask for the same out of a folder during the block; wait for them, but not longer than `longest` [s].
+
+    Where the system or the file system has no locks, nothing is waited for.
+    """
+    descriptor = _opened(folder)
+    if descriptor is None:
+        yield
+        return
+    try:
+        end = time.monotonic() + longest
+        while _lock(descriptor, shared=False) is False and time.monotonic() < end:
+            time.sleep(_PAUSE)
+        yield
     finally:
         os.close(descriptor)
 

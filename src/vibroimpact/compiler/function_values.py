@@ -1,4 +1,8 @@
-"""The force of a contact law as a Python function, and its coefficients."""
+"""The force of a contact law as a function value, which compiled functions pass on and call.
+
+From Python a law is given by the address of its machine code, as numba takes some 40 us to make a function value of an argument; compiled
+code makes one of the address by `force_at`. Without a compiler both are the Python function.
+"""
 
 from __future__ import annotations
 
@@ -15,6 +19,11 @@ MOST_COEFFICIENTS = 24
 
 _HELD: WeakValueDictionary[int, Any] = WeakValueDictionary()
 """Laws without a force of floats, which are called by number."""
+
+
+def force_at(address: Any) -> Any:
+    """Return the function value at an address that `force_address` returned; for use in compiled functions."""
+    return address
 
 
 def force_coefficients(law: Any) -> Floats:
