@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
-import inspect
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import cache
 from typing import Any
 
 import numpy as np
@@ -14,7 +12,8 @@ import pytest
 
 import vibroimpact as vi
 from support import plain_case
-from vibroimpact.compiled import _SCALAR
+from vibroimpact.compiled import force_function
+from vibroimpact.compiler.forces import force_coefficients
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.hunt_crossley import HuntCrossley
@@ -67,38 +66,12 @@ def motions(law: CompliantLaw) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return delta, random.normal(size=DROPS), random.uniform(0.1, 5.0, DROPS)
 
 
-@cache
-def compiled_force(scalar_forces: Callable[..., Any]) -> Callable[..., Any]:
-    numba = pytest.importorskip("numba")
-    from numba.core.errors import NumbaError
-
-    for function, of_floats in _SCALAR:
-        tell_numba(function, of_floats or function)
-    number = numba.float64
-    signature = numba.types.UniTuple(number, 2)(number, number, number, number[::1])
-    try:
-        return numba.njit(signature, error_model="numpy")(scalar_forces)
-    except NumbaError as error:
-        pytest.fail(str(error))
-
-
-@cache
-def tell_numba(function: Callable[..., Any], body: Callable[..., Any]) -> None:
-    from numba.extending import overload
-
-    def replacement(*_: Any) -> Callable[..., Any]:
-        return body
-
-    replacement.__signature__ = inspect.signature(body)  # type: ignore[attr-defined]
-    overload(function, strict=False, jit_options={"error_model": "numpy"})(replacement)
-
-
 def assert_same(scalar_forces: Callable[..., Any], law: CompliantLaw) -> None:
     delta, rate, speed = motions(law)
     together = np.array(law.forces(delta, rate, speed))
     alone = np.empty((2, DROPS))
     for drop in range(DROPS):
-        coefficients = np.array(law.take(drop).coefficients, dtype=float)
+        coefficients = force_coefficients(law.take(drop))
         assert np.all(np.isfinite(coefficients) | (law.name == "meyer"))  # whose pressure may rise without end
         alone[:, drop] = scalar_forces(float(delta[drop]), float(rate[drop]), float(speed[drop]), coefficients)
     for of_floats, of_arrays in zip(alone, together, strict=True):
@@ -115,9 +88,9 @@ def test_floats_give_what_arrays_give(law: type[CompliantLaw]) -> None:
 
 @pytest.mark.parametrize("law", COMPLIANT, ids=lambda law: law.name)
 def test_compiled_gives_what_arrays_give(law: type[CompliantLaw]) -> None:
-    assert law.scalar_forces is not None
+    force = force_function(law)
     for state in states(example(law)):
-        assert_same(compiled_force(law.scalar_forces), state)
+        assert_same(force, state)
 
 
 @pytest.mark.parametrize("law", OTHER_PARAMETERS, ids=lambda law: law.name)
@@ -125,7 +98,7 @@ def test_laws_with_other_parameters(law: CompliantLaw) -> None:
     assert type(law).scalar_forces is not None
     for state in states(law):
         assert_same(type(law).scalar_forces, state)
-        assert_same(compiled_force(type(law).scalar_forces), state)
+        assert_same(force_function(type(law)), state)
 
 
 def test_a_law_that_defines_forces_anew_is_not_compiled() -> None:
