@@ -23,7 +23,6 @@ from vibroimpact.calibration.typed_inputs import _NAMED
 from vibroimpact.contact.pair import effective_shear_modulus
 from vibroimpact.measurements.table_file import TABLE
 from vibroimpact.signals.bounces import chain, touches
-from vibroimpact.signals.bounces.find import _DOUBLE
 from vibroimpact.units.written import read_written
 
 PAGE = "docs/calibration.md"
@@ -118,9 +117,7 @@ def test_a_contact_in_a_flight() -> None:
 
 def test_how_bounces_are_found() -> None:
     says(PAGE, "a sudden rise of the power above {} Hz", touches._LOWEST)
-    says(PAGE, "The {} clearest are kept", touches.MOST)
     says(PAGE, "by a factor between {} and {} that changes slowly", chain.LOWEST, chain.HIGHEST)
-    says(PAGE, "Second contacts within {} ms", 1e3 * _DOUBLE)
 
 
 @pytest.mark.slow

@@ -42,7 +42,7 @@ def test_doubts_of_a_study(tmp_path: Path) -> None:
 
 
 def test_drafts() -> None:
-    says(LIVE, "with a tolerance of {} or that of the case if larger, a history of about {} points", _TOLERANCE, _POINTS)
+    says(LIVE, "with a tolerance of {}, a history of about {} points", _TOLERANCE, _POINTS)
 
 
 def test_sizes_of_cases() -> None:
