@@ -58,7 +58,7 @@ def tolerance(test: str, *, case: str = "", quantity: str = "") -> float:
 def test_what_is_said_of_rigid_bodies() -> None:
     """The tolerances of the comparisons, which the tests of verification assert."""
     paper = tolerance("tests/published/test_paper_type1.py::test_every_column")
-    says(README, "results for rigid bodies agree to {} with an independent integration of the paper's equations", paper)
+    says(README, "Type 1, of rigid bodies, agrees to {} with an independent integration of the paper's equations", paper)
     says(TRUST, "times, speeds, restitution, indentation, force, rebound) | {} |", paper)
     says(TRUST, "tests this installation against a known rebound, to {}", paper)
     says(VERIFICATION, "with that of an independent integration, to {}", paper)
@@ -69,7 +69,7 @@ def test_what_is_said_of_rigid_bodies() -> None:
         tolerance(f"{damped}::test_the_printed_restitutions", quantity="coefficient of restitution"),
         tolerance(f"{damped}::test_the_laws_without_a_printed_restitution", quantity="coefficient of restitution"),
     ]
-    says(README, "and to {} with the closed forms of Hertz's impact and of hysteretic damping", max(closed))
+    says(README, "normal impacts agree to {} with the closed forms of Hertz's impact and of hysteretic damping", max(closed))
     says(TRUST, "against the closed forms of Hertz's impact and of hysteretic damping | {} |", max(closed))
     laws = tolerance("tests/verification/test_vs_scipy.py::test_restitution")
     says(TRUST, "restitution of every law with a force, against SciPy | {} |", laws)

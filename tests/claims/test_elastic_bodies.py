@@ -13,7 +13,7 @@ from vibroimpact.materials import find_material
 from vibroimpact.meshes import tied_surfaces
 from vibroimpact.meshes.geometry import GEOMETRY, MOST_SECONDS
 from vibroimpact.meshes.text_files import MESH
-from vibroimpact.structures import frequency_error, stated_materials, static_compliance, store
+from vibroimpact.structures import stated_materials, static_compliance, store
 from vibroimpact.structures.plate_waves import bending_error, stretching_error, wave_numbers
 from vibroimpact.structures.recipe import PlateOfPlates, Recipe, Reduction, SphereOfSolids, computed_model
 from vibroimpact.structures.supports.patch import Patch
@@ -41,13 +41,7 @@ def test_error_of_plate_theory() -> None:
     says(PAGE, "stretching, {} to {} times that at the same frequencies", stretched[0] / errors[0], stretched[1] / errors[2])
 
 
-def test_constants_of_the_estimate() -> None:
-    says(PAGE, "and {} % for edges", 100.0 * frequency_error._EDGES)
-    says(PAGE, "{} of it for in-plane motion", frequency_error._BED_IN_PLANE)
-
-
 def test_limits() -> None:
-    says(PAGE, "if the mass of the mesh deviates by more than {} %", 100.0 * modes._MESH_OFF)
     says(PAGE, "A mass that differs by more than {} % from that of the case", 100.0 * modes._WEIGHT_OFF)
     says(PAGE, "A mesh may have at most {} GB", MESH.largest / 1e9)
     says(PAGE, "a geometry at most {} MB and {} minutes", GEOMETRY.largest / 1e6, MOST_SECONDS / 60.0)

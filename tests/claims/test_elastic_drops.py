@@ -141,7 +141,7 @@ def test_filters() -> None:
 def test_thresholds_of_doubts() -> None:
     says(PAGE, "or if the estimate exceeds {} %", 100.0 * modes_left_out._TRUNCATED)
     says(PAGE, "right within a third. Above {} % a doubt is raised", 100.0 * plate_waves.LIMITS[0].threshold)
-    says(PAGE, "Above {} % a doubt is raised, with an element size", 100.0 * plate_mesh.LIMITS[0].threshold)
+    says(PAGE, "Above {} % a doubt is raised, with a smaller element size", 100.0 * plate_mesh.LIMITS[0].threshold)
     says(PAGE, "(more than {} % of the rms value", 100.0 * sensor_doubts._PROMISED)
     says(PAGE, "contact radii up to about {} radii", small_contact.LIMITS[0].threshold)
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import runpy
 from functools import cache
-from pathlib import Path
 from typing import Any
 from unittest import mock
 
@@ -13,10 +12,7 @@ import pytest
 
 import vibroimpact as vi
 from hammered import RATE, a_case, hammered, records
-from responding import MODULUS, PLACES, SIZE, accelerance, measured, noisy
-from responding import a_case as a_thin_plate
 from stated import ROOT, says
-from vibroimpact.correlation.shared_differences import common_difference
 from vibroimpact.signals.decay import find
 from vibroimpact.signals.estimate import Estimate
 
@@ -84,18 +80,3 @@ def test_noise_of_the_force() -> None:
     )
     windowed = np.where(force < 1e-3 * force.max(), 0.0, force + level * noise)
     says(PAGE, "the residual with {} % of noise is then {} %", 100.0 * level, residual(windowed))
-
-
-def test_a_wrong_modulus(tmp_path: Path) -> None:
-    more = 0.03
-    path = measured(tmp_path / "plate.uff", noisy([accelerance(place, modulus=(1.0 + more) * MODULUS) for place in PLACES]))
-    found = vi.correlate_responses(a_thin_plate(), vi.read_responses(path))
-    common = common_difference(found.modes)
-    assert common is not None
-    says(
-        PAGE,
-        "for a modulus {} % higher in a plate of {} x {} x {} mm it states {} %, and FRAC rises from {} to {}",
-        *(100.0 * more, *(1e3 * side for side in SIZE)),
-        100.0 * ((1.0 + common.value) ** 2 - 1.0),
-        *(float(found.frac.min()), float(found.scaled_frac.min())),
-    )

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from stated import says
-from vibroimpact.identification import doubts, plate, polarity, sphere
+from vibroimpact.identification import doubts, polarity
 
 PAGE = "docs/identification.md"
 
 
 def test_constants() -> None:
     says(PAGE, "leaves more than {} % of the records", 100.0 * doubts._PART)
-    says(PAGE, "with standard deviations of {} and one", sphere._NEXT_OCTAVE)
-    says(PAGE, "the spread of this difference over {} positions", plate._PLACES)
     says(PAGE, "found if the best pulse leaves more than {} % of the energy of the records", 100.0 * polarity._POOR)
     says(PAGE, "with the opposite sign at most {} % of that", 100.0 * polarity._BETTER)
     says(PAGE, "where the fit leaves more than {} times the noise before first touch", doubts._LEFT)
-    says(PAGE, "the fit is repeated until the noise falls by less than {} %", 100.0 * (1.0 - sphere._SETTLED))

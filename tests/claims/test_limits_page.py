@@ -64,7 +64,7 @@ def test_thresholds() -> None:
     says(PAGE, "for a relative change of the drop of {}, or of the tolerance", RELATIVE_CHANGE)
     says(PAGE, "| above {} % | the change, and the first impact concerned", threshold("sensitivity", 100.0))
     says(PAGE, "| above {} % | the error, and the duration of the contact", threshold("plate_waves", 100.0))
-    says(PAGE, "| above {} % | the error, and an element size that removes the doubt", threshold("plate_mesh", 100.0))
+    says(PAGE, "| above {} % | the error, and a smaller element size", threshold("plate_mesh", 100.0))
     says(PAGE, "| above {} % | the number of modes", 100.0 * modes._FREQUENCY_OFF)
     says(
         PAGE,
