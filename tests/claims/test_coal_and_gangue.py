@@ -81,7 +81,6 @@ def test_the_table_of_bounds(whole: Bound) -> None:
         GUIDE, "impulse and contact time, position unknown | {} to {} % | at most {} % |", *per_cent(far), 100.0 * exact["one impact"].upper
     )
     says(GUIDE, "is near the bound for impulse and contact time at an unknown position, {} to {} %", *per_cent(far))
-    says(GUIDE, "With the position known the bound is {} to {} %", *per_cent(near))
     says(
         BOUNDS,
         "the command uses {} falls: {} to {} %, {} to {} %, {} to {} % and {} to {} %",
