@@ -15,6 +15,7 @@ from vibroimpact.recognition.few_groups import FINE
 from vibroimpact.recognition.folds import FEW, FOLDS
 from vibroimpact.recognition.recognise import MOST_SIGNALS
 from vibroimpact.recognition.recogniser import _DIFFERENT
+from vibroimpact.recognition.recorder_leaks import _CLOCK
 from vibroimpact.recognition.robustness import LEVELS
 from vibroimpact.recognition.scores import Score, widening_by_training
 
@@ -50,6 +51,7 @@ def test_settings_and_population() -> None:
     says(PAGE, "is wider than from {} to +{} %", -100.0 * FINE, 100.0 * FINE)
     says(PAGE, "an interval of {} % on each side", 100.0 * FINE)
     says(PAGE, "with a confidence of {} %, the result reports *leak*", SURE)
+    says(PAGE, "and a clock from {} % on", 100.0 * _CLOCK)
     says(PAGE, "below the bound with a confidence of {} %", SURE)
     says(PAGE, "of the trained classifier for {} % of the signals or more", 100.0 * (1.0 - _DIFFERENT))
     says(PAGE, "white noise from {} to {} dB", max(LEVELS), min(LEVELS))
