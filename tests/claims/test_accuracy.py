@@ -131,4 +131,6 @@ def test_what_is_said_of_a_wrong_modulus() -> None:
         impacts = vi.simulate(vi.read_case(case)).impacts
         found.append([float(impacts[name][0]) for name in ("max_force_N", "duration_s")])
     force, time = 100.0 * (np.divide(*reversed(found)) - 1.0)
-    says(TRUST, "a modulus {} % too large makes the force {} % too large, and the contact time {} % too short", 20.0, force, -time)
+    says(
+        TRUST, "an effective modulus {} % too large makes the force {} % too large, and the contact time {} % too short", 20.0, force, -time
+    )

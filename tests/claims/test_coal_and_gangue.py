@@ -81,7 +81,6 @@ def test_the_table_of_bounds(whole: Bound) -> None:
         GUIDE, "impulse and contact time, position unknown | {} to {} % | at most {} % |", *per_cent(far), 100.0 * exact["one impact"].upper
     )
     says(GUIDE, "is near the bound for impulse and contact time at an unknown position, {} to {} %", *per_cent(far))
-    says(GUIDE, "With the position known the bound is {} to {} %", *per_cent(near))
     says(
         BOUNDS,
         "the command uses {} falls: {} to {} %, {} to {} %, {} to {} % and {} to {} %",
@@ -225,7 +224,7 @@ def test_an_almost_exact_bound_excludes_nothing() -> None:
     assert least_error(alike) < 5e-4
     says(GUIDE, "all nearly exactly, is less than {} %", 0.05)
     assert least_error(with_moduli(None, (20.0, 7.0))) < 5e-4
-    says(RECOGNITION, "for coal and gangue it is less than {} %, and then finds no leak", 0.05)
+    says(RECOGNITION, "For coal and gangue the bound is less than {} %, and then finds no leak", 0.05)
 
 
 # what elastic contacts leave out

@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 
 import vibroimpact as vi
-from bounces_in_oil import DIAMETER, DRY_RESTITUTION, OIL_DENSITY, TRACKS, VISCOSITY, computed_restitution, fall_in, speed_at_touch
 from stated import says
 from support import plain_case
 from vibroimpact.cases.rigid import touch_speed
@@ -75,11 +74,6 @@ def test_liquids() -> None:
     in_oil = float(liquid.restitution_kept(vi.Liquid(density=900.0, viscosity=0.1).stokes_number(3.0, 0.005, QUARTZ)))
     says(PAGE, "a grain of quartz of {} mm, relative to that in air, is {} % in water at {} m/s", 10, 100.0 * in_water, 1.0)
     says(PAGE, "and {} % at {} m/s in an oil of {} kg/m^3 and {} Pa s", 100.0 * in_oil, 3.0, 900.0, 0.1)
-    speeds = [[*map(speed_at_touch, track)] for track in TRACKS.values()]
-    says(PAGE, "For a sphere of {} mm bouncing", 1e3 * DIAMETER)
-    says(PAGE, "the correlation gives restitutions of {}, {} and {}, with", *(computed_restitution(before) for before, _ in speeds))
-    says(PAGE, "from the recorded positions, give {}, {} and {}.", *(after / before for before, after in speeds))
-    says(PAGE, "with a restitution of {} in air", DRY_RESTITUTION)
     glass = vi.read_case(
         plain_case(
             sphere={"radius": 0.005, "material": {"density": 2500.0, "youngs_modulus": 70e9, "poissons_ratio": 0.22}},
@@ -90,9 +84,6 @@ def test_liquids() -> None:
     fast = (2.0 * 9.80665 * 0.995) ** 0.5
     says(PAGE, "A glass sphere of {} mm that falls {} m in water touches at its terminal speed of {} m/s", 10, 1, touch_speed(glass))
     says(PAGE, "where it would have {} m/s in a vacuum", fast)
-    oil = vi.Liquid(density=OIL_DENSITY, viscosity=VISCOSITY)
-    left = [1e6 * np.abs(np.subtract(*fall_in(stokes, medium))).max() for medium in (oil, None) for stokes in (152, 82)]
-    says(PAGE, "at Stokes numbers of {} and {}, are reproduced to {} and {} um, where parabolas leave {} and {} um", 152, 82, *left)
     heavier = 1.0 + 0.5 * liquid.WATER_DENSITY / QUARTZ
     says(PAGE, "lengthen it (by {} % in water for quartz", 100.0 * (heavier**0.4 - 1.0))
     says(PAGE, "Below a Stokes number of about {} no rebound", liquid.CRITICAL_STOKES)

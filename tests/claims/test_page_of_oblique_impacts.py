@@ -51,28 +51,6 @@ def test_measured_and_computed() -> None:
     says(PAGE, "deviate from the measurements by up to {}", np.abs(computed - MEASURED)[1:4, ANGLES < 30.0].max())
 
 
-def test_twisting_of_a_contact_that_slides() -> None:
-    problem, spin = alumina_on_glass("mdr"), 100.0
-    assert problem.oblique is not None
-    component = SPEED * np.sqrt(0.5)
-    oblique = replace(problem.oblique, velocity=(component, 0.0), spin=(0.0, 0.0, spin))
-    response = vi.simulate(replace(problem, speed=component, oblique=oblique))
-    lost = 1.0 - response.impacts["spin_z_after_rad_s"][0] / spin
-    touch, lasts = (response.impacts[name][0] for name in ("time_s", "duration_s"))
-    time = touch + lasts * np.linspace(0.0, 1.0, 4001)
-    force = response.at(time)["force_N"]
-    friction = problem.oblique.friction
-    radius, mass = 2.5e-3, float(problem.sphere.mass)
-    moment = 3.0 / 16.0 * np.pi * COEFFICIENT * force * friction.contact_radius(np.maximum(force, 0.0))  # type: ignore[union-attr]
-    whole = np.trapezoid(moment, time) / (0.4 * mass * radius**2 * spin)
-    says(
-        PAGE,
-        "3.85 m/s and 100 rad/s thus loses {} % of its spin about the normal; with the full moment it would lose {} %",
-        100 * lost,
-        100 * whole,
-    )
-
-
 def friction_left(ratio: float) -> float:
     """Return the friction of a contact that slides and twists over that of sliding alone, by quadrature of Hertz's pressure."""
     distance = (np.arange(2000) + 0.5) / 2000
@@ -85,9 +63,7 @@ def friction_left(ratio: float) -> float:
 
 def test_friction_that_twisting_takes() -> None:
     lower = [100.0 * (1.0 - friction_left(ratio)) for ratio in (0.3, 1.0)]
-    says(PAGE, "the friction is lower by {} % at q = {}, and by {} % at q = 1", lower[0], 0.3, lower[1])
-    ratio = 1e-4 * 100.0 / 1.0
-    says(PAGE, "With a of 0.1 mm, 100 rad/s and a slip of 1 m/s q is {}, and friction is accurate to {}", ratio, ratio**2 / 10.0)
+    says(PAGE, "The friction is lower by {} % at q = {}, and by {} % at q = 1", lower[0], 0.3, lower[1])
 
 
 def test_where_single_springs_part_from_mdr() -> None:

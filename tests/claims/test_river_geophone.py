@@ -71,7 +71,7 @@ def test_water_takes_a_hundredth_of_the_rebound() -> None:
         table["plate"], table["drop"], table["run"] = {"material": "steel"}, {"speed": 1.0}, {"impacts": 1}
         table["sphere"]["radius"], table["contact"]["liquid"] = 0.005, liquid
         achieved.append(float(vi.simulate(vi.read_case(table)).impacts["restitution_achieved"][0]))
-    says(PAGE, "a quartz grain of 10 mm at 1 m/s is damped by {} %", 100.0 * (1.0 - achieved[0] / achieved[1]))
+    says(PAGE, "a quartz grain of 10 mm at 1 m/s is lower by {} %", 100.0 * (1.0 - achieved[0] / achieved[1]))
 
 
 @pytest.mark.slow

@@ -12,7 +12,7 @@ PAGE = "docs/signals.md"
 
 
 def test_numbers_of_the_baseline() -> None:
-    says(PAGE, "A drift is sought only if these span {} % of it", 100.0 * baseline._WIDE)
+    says(PAGE, "A drift is sought only if these parts span {} % of it", 100.0 * baseline._WIDE)
     says(PAGE, "removed only if it exceeds {} of its standard deviations", baseline._SURE)
     says(PAGE, "Of a record of fewer than {} samples no baseline is removed", baseline._LEAST)
     says(PAGE, "of {} samples or more, that are not equally spaced", equal_steps._FEWEST)
@@ -32,8 +32,8 @@ def test_numbers_of_cells_without_a_number() -> None:
 
 def test_numbers_of_coded_sound() -> None:
     assert touches._FLOOR_OF_CODED == 1e-3  # "down to a thousandth of the largest power"
-    says(PAGE, "their times are refined within {} ms", 1e3 * coded_sound._BLUR)
+    says(PAGE, "largest power and refines their times within {} ms", 1e3 * coded_sound._BLUR)
 
 
 def test_number_of_features() -> None:
-    says(PAGE, "`vibroimpact features` computes {} of them", len(registry.features()))
+    says(PAGE, "`vibroimpact features` computes {} features", len(registry.features()))

@@ -21,7 +21,7 @@ def test_newtons_cradle() -> None:
     moved = vi.simulate_system(vi.System(bodies=balls, contacts=contacts), duration=1.2e-3).at(1.2e-3)
     last, first = float(moved["4"].velocity[0]), float(moved["0"].velocity[0])
     assert first < 0.0
-    says(SYSTEMS, "the last ball separates with {} % of the speed, and the first rebounds with {} %", 100 * last, -100 * first)
+    says(SYSTEMS, "The last ball separates with {} % of the speed, and the first rebounds with {} %", 100 * last, -100 * first)
 
 
 def test_samples_of_a_motion() -> None:
