@@ -397,3 +397,12 @@ def test_schema_accepts_the_shipped_cases() -> None:
         schema.validate(resolved_case(vi.load_case(name)))
     with pytest.raises(jsonschema.ValidationError):
         schema.validate({**resolved_case(vi.load_case(name)), "contact": {"law": "hertz", "damping": 1}})
+
+
+def test_no_file_holds_a_merge_conflict() -> None:
+    folders = ["docs", "src", "tests", "examples", "benchmarks", "packaging"]
+    kinds = {".md", ".py", ".toml", ".yaml", ".yml", ".j2", ".rst", ".txt"}
+    files = [file for folder in folders for file in (ROOT / folder).rglob("*") if file.suffix in kinds]
+    files += [file for file in ROOT.iterdir() if file.suffix in kinds]
+    marks = re.compile(r"^(<{7}|>{7}) ", re.MULTILINE)
+    assert [str(file.relative_to(ROOT)) for file in files if marks.search(file.read_text(encoding="utf-8", errors="ignore"))] == []
