@@ -18,7 +18,7 @@ _OWN_PACKAGE = "vibroimpact."
 
 
 class CodeCache(caching._Cache):  # type: ignore[misc]
-    """Compiled code of a function in the project's own folder, under its digest and signature; damage counts as absence.
+    """Compiled code of a function in the project's own folder, under its digest; damage counts as absence.
 
     Numba's own cache looks at the file of a function and not at its callees, does not survive damaged files, and takes a folder for all
     that use numba in this process.
@@ -28,13 +28,12 @@ class CodeCache(caching._Cache):  # type: ignore[misc]
     function : callable
         The Python function.
     digest : str
-        Its digest, with that of its callees.
+        What it is compiled from, with its callees, its signature and the options.
     """
 
     def __init__(self, function: Callable[..., Any], digest: str) -> None:
-        self._name = function.__name__
+        self._file = f"{function.__name__}-{hashlib.sha256(digest.encode()).hexdigest()[:32]}"
         self._is_own = function.__module__.startswith(_OWN_PACKAGE)
-        self._digest = digest
         self.trouble = ""
         """Why the code is not on the disk, or ""."""
 
@@ -47,13 +46,13 @@ class CodeCache(caching._Cache):  # type: ignore[misc]
         """Return the folder of the code."""
         return machine_folder(str(target_context.codegen().magic_tuple()))
 
-    def has_code(self, sig: Any, target_context: Any) -> bool:
-        """Is the code for a signature on the disk?"""
-        return has_code(self.folder(target_context), self._file(sig))
+    def has_code(self, target_context: Any) -> bool:
+        """Is the code on the disk? It may be damaged."""
+        return has_code(self.folder(target_context), self._file)
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """Return the compiled function for a signature, or None."""
-        data = load_code(self.folder(target_context), self._file(sig))
+        """Return the compiled function, or None."""
+        data = load_code(self.folder(target_context), self._file)
         if data is None:
             return None
         if self._is_own:
@@ -69,7 +68,7 @@ class CodeCache(caching._Cache):  # type: ignore[misc]
         """Keep a compiled function, unless its code holds addresses of this process."""
         if data.library.has_dynamic_globals or not all(lifted.can_cache for lifted in data.lifted):
             return
-        self.trouble = save_code(self.folder(data.target_context), self._file(sig), serialize.dumps(data._reduce()))
+        self.trouble = save_code(self.folder(data.target_context), self._file, serialize.dumps(data._reduce()))
 
     def enable(self) -> None:
         """Do nothing: it is always enabled."""
@@ -79,9 +78,6 @@ class CodeCache(caching._Cache):  # type: ignore[misc]
 
     def flush(self) -> None:
         """Do nothing."""
-
-    def _file(self, sig: Any) -> str:
-        return f"{self._name}-{hashlib.sha256(f'{self._digest} {sig}'.encode()).hexdigest()[:32]}"
 
 
 def _register_runtime(target_context: Any) -> None:

@@ -14,6 +14,9 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 
+MOST_COEFFICIENTS = 24
+"""Largest number of coefficients of a law."""
+
 _HELD: WeakValueDictionary[int, Any] = WeakValueDictionary()
 """Laws without a force of floats, which are called by number."""
 
@@ -28,10 +31,13 @@ def force_coefficients(law: Any) -> Floats:
 
     For a law that has only `forces` this is a number by which the law itself is called; it must be kept as long as that is used.
     """
+    coefficients = np.zeros(MOST_COEFFICIENTS)
     if type(law).scalar_forces is not None:
-        return np.array(law.coefficients, dtype=float)
-    _HELD[id(law)] = law
-    return np.array([float(id(law))])
+        coefficients[: len(law.coefficients)] = law.coefficients
+    else:
+        _HELD[id(law)] = law
+        coefficients[0] = id(law)
+    return coefficients
 
 
 def interpreted_force(law_class: type[Any]) -> Callable[..., Any]:

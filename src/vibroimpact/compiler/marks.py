@@ -15,7 +15,7 @@ def scalar(function: Function) -> Function:
     """Mark a function of floats, or of arrays elementwise, as one that compiled code may call.
 
     It takes and returns floats (or a tuple of floats), or arrays of them by NumPy's rules, and uses NumPy's functions that are there for
-    both: `np.sqrt`, `np.minimum` and so on. Indices into its coefficients are constants.
+    both: `np.sqrt`, `np.minimum` and so on, but not `np.where`. Indices into its coefficients are constants.
     """
     SCALAR.append((function, None))
     return function

@@ -15,6 +15,9 @@ address = types.int64
 integers = types.int64[::1]
 booleans = types.boolean[::1]
 void = types.void
+pointer = types.CPointer(real)
+complex = types.complex128
+complexes = types.complex128[::1]
 text = types.unicode_type
 
 pair = types.UniTuple(real, 2)
@@ -26,3 +29,10 @@ force = types.FunctionType(pair(real, real, real, vector))
 def tuple(*members: types.Type) -> types.Type:
     """Return the type of a tuple, from those of its members."""
     return types.Tuple(members)
+
+
+def of(kind: type) -> types.Type:
+    """Return the type of a named tuple whose members are annotated with names of types, as `Vector`."""
+    members = [globals()[annotation.__forward_arg__.lower()] for annotation in kind.__annotations__.values()]
+    alike = len(set(members)) == 1
+    return types.NamedUniTuple(members[0], len(members), kind) if alike else types.NamedTuple(members, kind)

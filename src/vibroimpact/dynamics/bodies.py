@@ -10,7 +10,6 @@ from vibroimpact.dynamics.contact import Contact
 from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.leg import Leg
-from vibroimpact.dynamics.lockstep import Coroutine
 from vibroimpact.dynamics.oblique.motion import ObliqueMotion
 from vibroimpact.dynamics.oblique.state import ObliqueContacts
 
@@ -48,7 +47,7 @@ class Bodies(Protocol):
 
     def collide(
         self, drops: Drops, encounter: Encounter, place: tuple[Floats, Floats], limits: tuple[Floats, Floats], row: dict[str, Floats]
-    ) -> Coroutine[tuple[Contact, Floats, Floats]]:
+    ) -> tuple[Contact, Floats, Floats]:
         """Return the contact of drops, its largest force [N], and the time of that since first touch [s].
 
         Parameters
@@ -83,5 +82,5 @@ class Bodies(Protocol):
     def energies(self) -> dict[str, Floats]:
         """Return further entries of the energy ledger [J] (B,); `local_J` and `local_damping_J` are added to those of the contact."""
 
-    def growth(self, leg: Leg) -> Coroutine[Floats]:
+    def growth(self, leg: Leg) -> Floats:
         """Return the growth of a small relative change of the drop up to the contact of a leg [-], one value per drop; or nothing."""

@@ -20,7 +20,6 @@ from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.flight_in_fluid import FluidFlight
 from vibroimpact.dynamics.impact_rows import ImpactRows
 from vibroimpact.dynamics.leg import Leg
-from vibroimpact.dynamics.lockstep import Coroutine
 from vibroimpact.dynamics.oblique.motion import ObliqueMotion
 from vibroimpact.dynamics.outcome import OUTCOMES, Outcome
 from vibroimpact.dynamics.problem import MOST_IMPACTS, Problem
@@ -147,7 +146,7 @@ class Run:
             self.ahead = drops, flights
         return self.ahead[1]
 
-    def advance(self) -> Coroutine[Leg]:
+    def advance(self) -> Leg:
         """Advance all moving drops to their next touch and through one contact, and return both as a leg."""
         drops = np.flatnonzero(self.moving)
         flight, law = self.flights(drops), self.law(drops)
@@ -175,19 +174,19 @@ class Run:
         self.gap[drops], self.velocity[drops] = flight.at(leg.flight_end)
         self.time[drops], self.ahead = leg.flight_end, None
         if not stops.all():
-            leg = yield from self.collide(leg, touch[~stops], speed[~stops])
+            leg = self.collide(leg, touch[~stops], speed[~stops])
         if isinstance(flight, FluidFlight):
             assert self.problem.fluid is not None
             self.to_fluid[drops] += self.mass[drops] * flight.given(leg.flight_end)
             if not stops.all():
                 lost = self.mass[drops] * flight.lost(leg.flight_end)
                 self.rows.last[f"{self.problem.fluid.key}_lost_J"][leg.contact_drops] = lost[~stops]
-        growth = yield from self.bodies.growth(leg)
+        growth = self.bodies.growth(leg)
         if growth.size:
             self.rows.last["sensitivity"][leg.contact_drops] = growth
         return leg
 
-    def collide(self, leg: Leg, touch: Floats, speed: Floats) -> Coroutine[Leg]:
+    def collide(self, leg: Leg, touch: Floats, speed: Floats) -> Leg:
         """Solve the contact of drops, write the row of the impact table, and return the leg with the contact."""
         drops, law = leg.contact_drops, self.law_at(leg.contact_drops, speed)
         row = self.rows.add()
@@ -211,7 +210,7 @@ class Run:
         else:
             assert isinstance(law, CompliantLaw)
             closing = self.bodies.closing_speed(drops, speed, self.velocity[drops])
-            leg, lost = yield from self.solve_contact(leg, encounter_of(law, self.mass[drops], self.gravity[drops], closing), touch, row)
+            leg, lost = self.solve_contact(leg, encounter_of(law, self.mass[drops], self.gravity[drops], closing), touch, row)
             lost += row["plastic_work_J"][drops]
             law = self.problem.law_at(self.law(drops), speed)  # with its memory of this impact
         self.dissipated[drops] += lost - row["plastic_work_J"][drops]
@@ -271,12 +270,12 @@ class Run:
             self.memories[name] = values.copy()  # laws of earlier contacts refer to the previous array
             self.memories[name][gone] = self.spread(fresh[name])[gone]
 
-    def solve_contact(self, leg: Leg, encounter: Encounter, touch: Floats, row: dict[str, Floats]) -> Coroutine[tuple[Leg, Floats]]:
+    def solve_contact(self, leg: Leg, encounter: Encounter, touch: Floats, row: dict[str, Floats]) -> tuple[Leg, Floats]:
         """Return the leg with the contact of drops, and the energy lost in it [J]."""
         drops = leg.contact_drops
         until = (np.inf if self.problem.duration is None else self.problem.duration) - touch
         place, limits = (self.gap[drops], self.velocity[drops]), (self.rest_speed[drops], until)
-        contact, force, when = yield from self.bodies.collide(drops, encounter, place, limits, row)
+        contact, force, when = self.bodies.collide(drops, encounter, place, limits, row)
         self.deepest[drops] = np.maximum(self.deepest[drops], contact.max_delta)
         self.time[drops] = touch + contact.duration
         self.gap[drops], self.velocity[drops] = -contact.final_delta, -contact.final_rate

@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 
+import numpy as np
+
 from vibroimpact.dynamics.collocation import Rule
 from vibroimpact.dynamics.leg import Leg
-from vibroimpact.dynamics.lockstep import Coroutine, run_coroutine, run_in_lockstep
 from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.dynamics.packed_list import PackedList
 from vibroimpact.dynamics.phase_plane.collocation import PlaneRule
@@ -58,11 +59,26 @@ def simulate(problem: StatesProblem, progress: Callable[[float], None] | None = 
     >>> simulate(problem).impacts["rebound_height_m"].round(6).tolist()
     [0.35, 0.1625, 0.115625]
     """
-    return run_coroutine(_simulated(problem, progress))
+    if not hasattr(problem, "to_problem"):
+        raise InputError(f"simulate takes a Problem, or a case as vi.load_case(...) reads it, not {problem!r}")
+    stated = problem.to_problem()
+    with np.errstate(all="ignore"):  # Newton iterates may overflow; results that are not finite are detected and retried
+        run = Run(stated, contact_solver(stated.laws[0], stated.tolerance, math.prod(stated.shape), finer=_HISTORY))
+        legs: PackedList[Leg] | list[Leg] = []
+        if stated.shape == () and not stated.vibrates:
+            legs = PackedList[Leg](Rule, PlaneRule, PlateMotion)
+        while run.moving.any():
+            legs.append(run.advance())
+            if progress is not None:
+                progress(run.fraction_done())
+        response = run.response(legs)
+    if response.problem.shape == () and response.outcomes[0] is Outcome.FAILED:
+        raise ComputationError(response.status)
+    return response
 
 
 def simulate_together(problems: Sequence[StatesProblem]) -> list[Response | Exception]:
-    """Return the responses of several drops; those with elastic bodies are computed side by side.
+    """Return the responses of several drops, or of several batches.
 
     Parameters
     ----------
@@ -74,29 +90,11 @@ def simulate_together(problems: Sequence[StatesProblem]) -> list[Response | Exce
     list of Response or Exception
         The exception in place of the response where a drop failed; the others are not affected.
     """
-    return run_coroutine(run_in_lockstep(_guarded(_simulated(problem)) for problem in problems))
+    return [_response_or_error(problem) for problem in problems]
 
 
-def _guarded(coroutine: Coroutine[Response]) -> Coroutine[Response | Exception]:
-    """Return the result of a coroutine, or the exception that it raises."""
+def _response_or_error(problem: StatesProblem) -> Response | Exception:
     try:
-        return (yield from coroutine)
+        return simulate(problem)
     except Exception as error:
         return error
-
-
-def _simulated(problem: StatesProblem, progress: Callable[[float], None] | None = None) -> Coroutine[Response]:
-    """Return the response of a problem."""
-    if not hasattr(problem, "to_problem"):
-        raise InputError(f"simulate takes a Problem, or a case as vi.load_case(...) reads it, not {problem!r}")
-    stated = problem.to_problem()
-    run = Run(stated, contact_solver(stated.laws[0], stated.tolerance, math.prod(stated.shape), finer=_HISTORY))
-    legs: PackedList[Leg] | list[Leg] = PackedList[Leg](Rule, PlaneRule, PlateMotion) if stated.shape == () and not stated.vibrates else []
-    while run.moving.any():
-        legs.append((yield from run.advance()))
-        if progress is not None:
-            progress(run.fraction_done())
-    response = run.response(legs)
-    if response.problem.shape == () and response.outcomes[0] is Outcome.FAILED:
-        raise ComputationError(response.status)
-    return response

@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.arrays import Bools, Floats
-from vibroimpact.dynamics.lockstep import run_coroutine
 from vibroimpact.dynamics.system import MovingBody, System
 from vibroimpact.dynamics.vibrating.active_contact import ContactDefinition
 from vibroimpact.dynamics.vibrating.free_motion import FreePhase
@@ -229,7 +228,8 @@ def simulate_system(system: System, *, duration: float, progress: Callable[[floa
     march = March(
         linear, [ContactDefinition(one.law, one.series, not one.same_spot) for one in system.contacts.values()], start, system.tolerance
     )
-    run_coroutine(march.run_until(duration, progress))
+    with np.errstate(all="ignore"):  # Newton iterates may overflow; results that are not finite are detected and retried
+        march.run_until(duration, progress)
     names = list(system.contacts)
     forces = np.array([impact.force.locate() for impact in march.impacts]).reshape(-1, 2)
     columns = {

@@ -8,7 +8,6 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.lockstep import run_coroutine
 from vibroimpact.dynamics.phase_plane.contact_solver import contact_solver
 from vibroimpact.dynamics.problem import Problem, StatesProblem
 from vibroimpact.dynamics.response import Response
@@ -70,10 +69,11 @@ def tabulate(problem: StatesProblem, progress: Callable[[float], None] | None = 
 
 def _table_of(problem: Problem) -> Response:
     """Return the response of a block of drops, with arrays of a batch, and without its history."""
-    run = Run(problem, contact_solver(problem.laws[0], problem.tolerance, math.prod(problem.shape)))
-    while run.moving.any():
-        run_coroutine(run.advance())
-    return run.batch()
+    with np.errstate(all="ignore"):  # Newton iterates may overflow; results that are not finite are detected and retried
+        run = Run(problem, contact_solver(problem.laws[0], problem.tolerance, math.prod(problem.shape)))
+        while run.moving.any():
+            run.advance()
+        return run.batch()
 
 
 def _joined(problem: Problem, parts: Sequence[Response]) -> Response:

@@ -15,7 +15,6 @@ from vibroimpact.dynamics.contact import FAILED, Contact
 from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.leg import Leg
-from vibroimpact.dynamics.lockstep import Coroutine
 from vibroimpact.dynamics.oblique.motion import OBLIQUE_STEPS, ObliqueMotion
 from vibroimpact.dynamics.oblique.normal_motion import normal_motions
 from vibroimpact.dynamics.oblique.state import ObliqueContacts
@@ -59,9 +58,8 @@ class RigidBodies:
 
     def collide(
         self, drops: Drops, encounter: Encounter, place: tuple[Floats, Floats], limits: tuple[Floats, Floats], row: dict[str, Floats]
-    ) -> Coroutine[tuple[Contact, Floats, Floats]]:
+    ) -> tuple[Contact, Floats, Floats]:
         """Return the contact of drops from the solver of the run."""
-        yield from ()
         return self.solve_contact(encounter, drops)
 
     def slide(self, oblique: ObliqueMotion, leg: Leg, row: dict[str, Floats]) -> ObliqueContacts:
@@ -95,7 +93,6 @@ class RigidBodies:
         """Return no further entries."""
         return {}
 
-    def growth(self, leg: Leg) -> Coroutine[Floats]:
+    def growth(self, leg: Leg) -> Floats:
         """Return nothing: the growth is followed where bodies vibrate."""
-        yield from ()
         return np.zeros(0)

@@ -16,7 +16,6 @@ from vibroimpact.dynamics.contact import CAPTURED, RIDING, SETTLED, Contact, Pie
 from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.leg import Leg
-from vibroimpact.dynamics.lockstep import Coroutine, run_in_lockstep
 from vibroimpact.dynamics.oblique.motion import ObliqueMotion
 from vibroimpact.dynamics.oblique.state import ObliqueContacts
 from vibroimpact.dynamics.oblique.statement import Oblique
@@ -252,19 +251,18 @@ class VibratingBodies:
 
     def collide(
         self, drops: Drops, encounter: Encounter, place: tuple[Floats, Floats], limits: tuple[Floats, Floats], row: dict[str, Floats]
-    ) -> Coroutine[tuple[Contact, Floats, Floats]]:
-        """Take drops through their visits, in lockstep."""
+    ) -> tuple[Contact, Floats, Floats]:
+        """Take drops through their visits."""
         (gaps, velocities), (rest_speed, until) = place, limits
-        starts, followed = [], []
+        starts, visits = [], []
         for number, drop in enumerate(drops):
             one, problem = encounter.pick(np.array([number])), self.problem
             # the duration of Hertz's contact goes with the 0.4th power of the mass; a free plate reduces the effective mass
             lighter = float(self.systems[drop].mass[0] / one.mass[0]) ** 0.4
             start, pace = self.state(drop, gaps[number], velocities[number]), 3.0 * lighter * float(one.depth[0] / one.speed_scale[0])
             rules = (problem.tolerance, pace, not problem.same_spot, float(rest_speed[number]), float(until[number]))
-            followed.append(follow_visit(self.systems[drop], one.law.take(0), self.series[drop], start, *rules, self.rubbing(drop, one)))
+            visits.append(follow_visit(self.systems[drop], one.law.take(0), self.series[drop], start, *rules, self.rubbing(drop, one)))
             starts.append(start)
-        visits = yield from run_in_lockstep(followed)
         for number, (drop, start, found) in enumerate(zip(drops, starts, visits, strict=True)):
             system = self.systems[drop]
             before, after = (float(np.sum(system.energies(state), axis=0)[system.vibrating].sum()) for state in (start, found.state))
@@ -334,9 +332,9 @@ class VibratingBodies:
             ends[number] = -float(depth), -float(sinking), float(lying.stored(time)[0])
         return ends[:, 0], ends[:, 1], ends[:, 2]
 
-    def growth(self, leg: Leg) -> Coroutine[Floats]:
+    def growth(self, leg: Leg) -> Floats:
         """Return the growth of a small change of each drop by the impact of a leg [-], or nothing where it is not asked for."""
-        return np.zeros(0) if self.neighbours is None else (yield from self.neighbours.follow(leg))
+        return np.zeros(0) if self.neighbours is None else self.neighbours.follow(leg)
 
     def energies(self) -> dict[str, Floats]:
         """Return the entries of the energy balance [J], (B,), with separate ones for the local elements."""

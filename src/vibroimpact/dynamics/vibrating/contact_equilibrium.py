@@ -146,8 +146,7 @@ class ContactEquilibrium:
     def contact(self) -> tuple[float, float]:
         """Stiffness [N/m] and damping [N s/m] of the contact at equilibrium."""
         sag, slow = np.array([self.sag]), np.array([1e-3 * np.sqrt(self.system.gravity[0] * abs(self.sag)) + 1e-12])
-        now = self.local.linearise(sag, slow)
-        stiffness = self.share * float(now.stiffness[0] / now.slope[0])
+        stiffness = self.share * self.local.stiffness_at(self.sag)
         towards, away = (self.local.forces_at_indentation(sag, rate)[1] for rate in (slow, -slow))
         return max(stiffness, _NONE), max(float((towards - away)[0] / (2.0 * slow[0])), 0.0)
 

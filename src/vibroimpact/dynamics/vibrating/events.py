@@ -11,8 +11,8 @@ import numpy as np
 from vibroimpact.arrays import Bools, Floats
 from vibroimpact.dynamics.collocation import Map
 from vibroimpact.dynamics.vibrating.linear_system import State
-from vibroimpact.dynamics.vibrating.receptance import radau_eigenbasis
-from vibroimpact.dynamics.vibrating.solve_stretches import EndCondition
+from vibroimpact.dynamics.vibrating.radau_eigenbasis import radau_eigenbasis
+from vibroimpact.dynamics.vibrating.solve_stretch import EndCondition
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 
 GRID = np.linspace(0.0, 1.0, 33)

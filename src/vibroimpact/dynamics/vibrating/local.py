@@ -4,39 +4,23 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 
 from vibroimpact.arrays import Array
+from vibroimpact.compiled import force_coefficients
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.quasi_static import QuasiStatic
+from vibroimpact.dynamics.core.native import LAWS, force_of
+from vibroimpact.dynamics.core.records import Contacts
 
 _MOST_ITERATIONS = 40
 _STEP = 1e-7  # relative step of finite differences
 _CONVERGED = 1e-8  # relative Newton step, after which the next would be below rounding
 _TABLE_ROWS = 200
 _TENSILE_POINTS, _LEAST_SLOPE = 2000, 0.05  # of the approach by the indentation; at zero a contact snaps off, with 1e-4 less energy lost
-_OFFSETS = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
-"""Steps of indentation and rate for the force and its two finite differences."""
-
-
-class Linearised(NamedTuple):
-    """Forces [N] at indentations of the law, approach of the surfaces there [m], and their derivatives.
-
-    `slope`: of the approach by the indentation [-]. `stiffness`: of the static force by it [N/m]. `dissipative_by_delta` [N/m] and
-    `dissipative_by_rate` [N s/m]: of the dissipative force.
-    """
-
-    static: Array
-    dissipative: Array
-    approach: Array
-    slope: Array
-    stiffness: Array
-    dissipative_by_delta: Array
-    dissipative_by_rate: Array
 
 
 @dataclass(frozen=True)
@@ -53,17 +37,30 @@ class LocalContact:
         The law, of one drop.
     series : QuasiStatic
         The compliance in series with it.
-    approach_speed : float or array
-        Closing speed of the surfaces at this touch [m/s]; an array for stacked contacts.
+    approach_speed : float
+        Closing speed of the surfaces at this touch [m/s].
     """
 
     law: CompliantLaw
     series: QuasiStatic
-    approach_speed: Array
+    approach_speed: float
 
     def forces(self, approach: Array, rate: Array) -> tuple[Array, Array]:
         """Return the static and the dissipative force [N], before clipping, at the approach y [m] and its rate [m/s]."""
         return self.law.forces(self.indentation_at(approach), rate, self.approach_speed)
+
+    @cached_property
+    def record(self) -> Contacts:
+        """The contact as the core takes it."""
+        series = self.series
+        return Contacts(
+            laws=np.array([force_of(type(self.law))], dtype=LAWS),
+            coefficients=force_coefficients(self.law)[None],
+            speed=np.array([float(self.approach_speed)]),
+            release=np.array([self.release_indentation]),
+            release_level=np.array([self.release_level]),
+            series=np.array([[series.linear, series.unit, *series.factors, series.force]], dtype=float),
+        )
 
     # in terms of the indentation of the law ---------------------------------------------------------
 
@@ -71,32 +68,19 @@ class LocalContact:
         """Return the static and the dissipative force [N], before clipping, at an indentation of the law [m] and a rate [m/s]."""
         return self.law.forces(np.maximum(delta, self.release_indentation), rate, self.approach_speed)
 
-    def linearise(self, delta: Array, rate: Array) -> Linearised:
-        """Return forces, approach and derivatives at indentations [m] and rates [m/s], by finite differences; constant beyond release."""
-        held, reached = delta > self.release_indentation, np.maximum(delta, self.release_indentation)
-        step, faster = _STEP * (np.abs(reached).max(axis=0) + 1e-300), _STEP * (np.abs(rate).max(axis=0) + 1e-300)
-        offsets = _OFFSETS.reshape(2, 3, *(1,) * delta.ndim)
-        static, dissipative = self.law.forces(reached + step * offsets[0], rate + faster * offsets[1], self.approach_speed)
-        stiffness = (static[1] - static[0]) * (held / step)
-        approach, slope = delta, np.ones_like(delta)
-        if self.series:
-            yielded, compliance = self.series.linearised(static[0])
-            approach, slope = delta + yielded, 1.0 + compliance * stiffness
-        by_delta, by_rate = (dissipative[1] - dissipative[0]) * (held / step), (dissipative[2] - dissipative[0]) / faster
-        return Linearised(static[0], dissipative[0], approach, slope, stiffness, by_delta, by_rate)
-
-    def refine_indentation(self, delta: Array, approach: Array) -> Array:
-        """Return the indentation of the law at an approach [m] by one Newton step from a close estimate; (B,) for B contacts."""
-        if not self.series:
-            return approach
-        now = self.linearise(delta[None], np.zeros((1, len(delta))))
-        return np.maximum(delta + ((approach - now.approach) / now.slope)[0], self.release_indentation)
-
     def approximate_indentation(self, approach: Array) -> Array:
         """Return the indentation of the law at an approach [m], interpolated in a table."""
         if not self.series:
             return approach
         return np.interp(approach, *self._table(self._scale(approach)))
+
+    def stiffness_at(self, delta: float) -> float:
+        """Return the static stiffness of the law and what is in series with it [N/m], at an indentation of the law [m]."""
+        delta = max(delta, self.release_indentation)
+        step = _STEP * (abs(delta) + 1e-300)
+        static, deeper = self._static(np.array([delta, delta + step])).tolist()
+        stiffness = float(deeper - static) / step
+        return stiffness / (1.0 + float(self.series.linearised(static)[1]) * stiffness) if self.series else stiffness
 
     def energy_at_indentation(self, delta: Array) -> Array:
         """Return the energy stored since touch, at an indentation of the law [J]."""
@@ -206,34 +190,9 @@ class LocalContact:
         return not all(np.all(before[name] == after[name]) for name in before)
 
 
-def stack_contacts(contacts: Sequence[LocalContact]) -> LocalContact:
-    """Return contacts of one law as one contact with arrays of parameters, one value per system.
-
-    It supports `linearise`, `refine_indentation`, `forces_at_indentation` and `work_at_indentation` only.
-    """
-    first, *others = contacts
-    if not others:
-        return first
-    parameters = {}
-    for item in fields(first.law):
-        values = [getattr(contact.law, item.name) for contact in contacts]
-        parameters[item.name] = values[0] if all(value == values[0] for value in values) else np.array(values, dtype=float)
-    series = first.series
-    if any(contact.series is not series for contact in others):
-        parts = [contact.series for contact in contacts]
-        linear, unit, force = (np.array([getattr(part, name) for part in parts]) for name in ("linear", "unit", "force"))
-        series = QuasiStatic(linear, unit, tuple(np.array([part.factors for part in parts]).T), force)
-    stacked = replace(
-        first, series=series, law=first.law.changed(parameters), approach_speed=np.array([contact.approach_speed for contact in contacts])
-    )
-    for level in ("release_indentation", "energy_of_jump"):
-        stacked.__dict__[level] = np.array([getattr(contact, level) for contact in contacts])
-    return stacked
-
-
-def linearise_contacts(contacts: Sequence[LocalContact], delta: Array, rate: Array) -> Linearised:
-    """Return forces and derivatives of c contacts of B systems, at indentations and rates at N nodes (B, c N): (B, c N) each."""
-    size = delta.shape[1] // len(contacts)
-    ranges = [slice(begin, begin + size) for begin in range(0, delta.shape[1], size)]
-    found = [one.linearise(delta[:, part].T, rate[:, part].T) for one, part in zip(contacts, ranges, strict=True)]
-    return Linearised(*(parts[0].T if len(parts) == 1 else np.concatenate(parts).T for parts in zip(*found, strict=True)))
+def contacts_of(contacts: Sequence[LocalContact]) -> Contacts:
+    """Return contacts as the core takes them."""
+    if len(contacts) == 1:
+        return contacts[0].record
+    records = [contact.record for contact in contacts]
+    return Contacts(*(np.concatenate(arrays) for arrays in zip(*records, strict=True)))

@@ -17,7 +17,6 @@ from vibroimpact.arrays import Floats
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.static import undamped_depth
 from vibroimpact.dynamics.collocation import Map
-from vibroimpact.dynamics.lockstep import Coroutine, solve
 from vibroimpact.dynamics.vibrating.active_contact import (
     ActiveContact,
     ContactDefinition,
@@ -26,15 +25,15 @@ from vibroimpact.dynamics.vibrating.active_contact import (
     motion_speed,
     record_peaks,
 )
+from vibroimpact.dynamics.vibrating.contact_view import contact_view
 from vibroimpact.dynamics.vibrating.events import GRID, ZERO_RATE, Event, OtherEvent, first_crossing, first_event
 from vibroimpact.dynamics.vibrating.free_motion import FreePhase, recoil_loss
 from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.vibrating.local import LocalContact
 from vibroimpact.dynamics.vibrating.next_touch import next_touch, time_to_separation
-from vibroimpact.dynamics.vibrating.receptance import contact_view
 from vibroimpact.dynamics.vibrating.recoil import end_of_recoil, recoil_end_value
 from vibroimpact.dynamics.vibrating.rubbing import Rubbing
-from vibroimpact.dynamics.vibrating.solve_stretches import StretchProblem
+from vibroimpact.dynamics.vibrating.solve_stretch import StretchProblem
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 from vibroimpact.dynamics.vibrating.stretch_end import (
     length_before_event,
@@ -107,7 +106,7 @@ class March:
         self.lost, self.plastic = np.zeros(system.number + 1), 0.0
         self.rubbing = rubbing
 
-    def run_until(self, end: float, progress: Callable[[float], None] | None = None) -> Coroutine[None]:
+    def run_until(self, end: float, progress: Callable[[float], None] | None = None) -> None:
         """Advance to a time [s]; a contact in progress is cut off there.
 
         Raises
@@ -123,15 +122,15 @@ class March:
                     f"after {_MOST_STRETCHES} stretches of contact the system is at {self.time:g} s: contacts follow each other ever "
                     "faster, as where a body comes to rest; ask for a shorter duration"
                 )
-            yield from self.step(end - self.time)
+            self.step(end - self.time)
             if progress is not None:
                 progress(self.time / end)
 
-    def step(self, longest: float) -> Coroutine[bool]:
+    def step(self, longest: float) -> bool:
         """Advance by one part of the history of at most a length [s]; return False if it has to be retried with a shorter stretch."""
         pushing = [contact for contact in self.active.values() if contact.pushes]
         if pushing:
-            return (yield from self.step_contact(pushing, longest))
+            return self.step_contact(pushing, longest)
         self.step_free(longest)
         return True
 
@@ -215,7 +214,7 @@ class March:
 
     # under contact forces ---------------------------------------------------------------------------
 
-    def step_contact(self, pushing: list[ActiveContact], longest: float) -> Coroutine[bool]:
+    def step_contact(self, pushing: list[ActiveContact], longest: float) -> bool:
         """Advance by one stretch of contact, up to its first event; return False if it has to be retried with a shorter one."""
         system, state = self.system, self.state
         for contact in pushing:
@@ -236,16 +235,13 @@ class March:
         energy = max(contact.energy for contact in pushing)
         if self.next_length < 1e-12 * span:
             raise NotIntegrable(f"the contact at {self.time:g} s can not be integrated to the tolerance")
-        stretch = yield from solve(
-            self.stretch_problem(
-                pushing, "touch" if any(contact.fresh for contact in pushing) else "inside", min(self.next_length, longest)
-            )
-        )
+        time_map: Map = "touch" if any(contact.fresh for contact in pushing) else "inside"
+        stretch = self.stretch_problem(pushing, time_map, min(self.next_length, longest)).solve()
         event = first_event(stretch, speed, span) if stretch.solved else None
         other = self.first_other_event(stretch) if stretch.solved else None
         # an event of the pushing contacts: also tried if the stretch is not resolved, as the event may be the only reason
         if event is not None and (other is None or event.x <= other.x):
-            found = yield from solve_to_event(stretch, event, self.tolerance, energy, speed, span)
+            found = solve_to_event(stretch, event, self.tolerance, energy, speed, span)
             if found is None:
                 self.next_length = 0.5 * min(self.next_length, length_before_event(stretch, event, self.tolerance, energy))
                 return False
@@ -262,7 +258,7 @@ class March:
             self.accept(pushing, stretch)
             self.next_length = stretch.length * length_growth(stretch, self.tolerance)
             return True
-        ended = yield from solve_to_zero(stretch, other.value, other.x, partial(self.stretch_problem, pushing, stretch.rule.time_map))
+        ended = solve_to_zero(stretch, other.value, other.x, partial(self.stretch_problem, pushing, stretch.rule.time_map))
         if ended is None or first_event(ended, speed, span) is not None:
             self.next_length = 0.5 * stretch.length
             return False

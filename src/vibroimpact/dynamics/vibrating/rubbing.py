@@ -19,29 +19,22 @@ to its end.
 
 from __future__ import annotations
 
-import copy
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cache
+from typing import Literal
 
 import numpy as np
 
-from vibroimpact.arrays import Bools, Floats
+from vibroimpact.arrays import Floats
 from vibroimpact.contact.friction.law import CompliantFriction, TangentialHistory
 from vibroimpact.dynamics.collocation import Map, Rule
-from vibroimpact.dynamics.linear_equations import stacked_matvec
+from vibroimpact.dynamics.core.receptance import surface_motion
+from vibroimpact.dynamics.core.records import Motion
 from vibroimpact.dynamics.oblique.state import Sphere
 from vibroimpact.dynamics.oblique.state import State as Along
+from vibroimpact.dynamics.vibrating.contact_view import ContactView, contact_view
 from vibroimpact.dynamics.vibrating.linear_system import State
-from vibroimpact.dynamics.vibrating.receptance import (
-    NODES_PER_STRETCH,
-    ContactView,
-    RadauEigenbasis,
-    Receptance,
-    StackedSystems,
-    contact_view,
-    radau_eigenbasis,
-)
+from vibroimpact.dynamics.vibrating.radau_eigenbasis import NODES_PER_STRETCH, RadauEigenbasis, radau_eigenbasis
 
 _STEPS = 4  # of the history from each node to the next
 
@@ -150,151 +143,148 @@ def rubbed_view(view: ContactView) -> ContactView:
     return contact_view(view.system.rubbed, tuple(range(len(view.system.rubbed.shape))))
 
 
-class FrictionForces:
-    """Friction forces at the nodes of stretches of B drops, and the motion that they cause; arrays over both directions are (B, 2, N).
+class Friction:
+    """Friction forces at the nodes of a stretch of one drop, and the motion that they cause.
 
-    `force` has three further rows, (B, 5, N), where moments act.
+    `force` (2, N), along x and y [N]; where moments act it has three further rows of these [N m] (5, N).
     """
 
-    def __init__(self, views: Sequence[ContactView], starts: Sequence[State], rubbings: Sequence[Rubbing], basis: RadauEigenbasis) -> None:
-        self.rubbings, self.basis = rubbings, basis
-        self.systems = StackedSystems([rubbed_view(view) for view in views], starts)
-        self.mass, self.pull, self.velocity, force = (
-            np.array([getattr(one, name) for one in rubbings]) for name in ("mass", "pull", "velocity", "force")
-        )
-        self.spin, self.inertia, radius = (np.array([getattr(one, name) for one in rubbings]) for name in ("spin", "inertia", "radius"))
-        self.turn = radius / self.inertia
-        self.force = np.zeros((len(views), self.systems.gravity.shape[1] - 1, NODES_PER_STRETCH))
-        self.force[:, :2] = force[:, :, None]
-        self.histories: list[TangentialHistory] = [one.history for one in rubbings]
-        self.normal, self.microslip = np.zeros((2, len(rubbings)))
+    def __init__(self, view: ContactView, start: State, rubbing: Rubbing, basis: RadauEigenbasis) -> None:
+        self.rubbing = rubbing
+        self.basis = basis
+        self.surfaces = rubbed_view(view).surfaces
+        self.start = rubbed_view(view).start(start)
+        self.turn = rubbing.radius / rubbing.inertia
+        self.force = np.zeros((len(self.start.approach) - 1, NODES_PER_STRETCH))
+        self.force[:2] = rubbing.force[:, None]
+        self.history = rubbing.history
+        self.normal = 0.0
+        self.microslip = 0.0
 
-    def set_length(self, length: Floats) -> None:
-        """Set the lengths of the stretches [s] (B,)."""
-        self.length, self.receptance = length, Receptance(self.systems, self.basis, length)
+    def set_length(self, length: float) -> None:
+        """Set the length of the stretch [s]."""
+        self.length = length
+        self.motion = surface_motion(self.basis.basis, self.surfaces, self.start, length)
 
-    def moving(self, receptance: Receptance) -> Receptance:
-        """Return the motion of the surfaces at the contacts with what friction moves them."""
-        found, normal = copy.copy(receptance), slice(0, NODES_PER_STRETCH)
-        rubbing, flat = slice(NODES_PER_STRETCH, None), self.force.reshape(len(self.force), -1)
-        faster = stacked_matvec(self.receptance.rate_by_force[:, normal, rubbing], flat)
-        found.approach = receptance.approach - stacked_matvec(self.receptance.approach_by_force[:, normal, rubbing], flat)
-        found.rate, found.closing = receptance.rate - faster, receptance.closing - faster
-        return found
+    def moving(self, motion: Motion) -> Motion:
+        """Return the motion of the surfaces at the contact with what friction moves them."""
+        flat = self.force.ravel()
+        rows, columns = slice(0, NODES_PER_STRETCH), slice(NODES_PER_STRETCH, None)
+        closer = self.motion.approach_by_force[rows, columns] @ flat
+        faster = self.motion.rate_by_force[rows, columns] @ flat
+        return motion._replace(approach=motion.approach - closer, rate=motion.rate - faster, closing=motion.closing - faster)
 
-    def follow(self, normal: Floats, iterating: Bools) -> Floats:
-        """Find the friction under normal forces at the nodes [N] (B, N) from the last iterate; return how much it changed [N] (B,)."""
-        before, (of_force, of_moved) = self.force, _between((self.basis.rule.time_map, self.basis.rule.root))
-        steps = np.diff(self._displacements(normal) @ of_moved, axis=2, prepend=0.0)
-        pressed = (normal[:, None] @ of_force)[:, 0]  # system by system, as all products
+    def follow(self, normal: Floats) -> float:
+        """Find the friction under normal forces at the nodes [N] (N,) from the last iterate; return by how much it changed [N]."""
+        start, before = self.rubbing, self.force
+        of_force, of_moved = _between((self.basis.rule.time_map, self.basis.rule.root))
+        steps = np.diff(self._displacements(normal) @ of_moved, axis=1, prepend=0.0)
+        pressed = normal @ of_force
         self.force = before.copy()
-        for number in np.flatnonzero(iterating).tolist():
-            start = self.rubbings[number]
-            history, frictions, slid = start.history, [start.force], [start.history.slid]
-            for node, (force, moved) in enumerate(zip(pressed[number].tolist(), steps[number].T, strict=True), start=1):
-                history, friction = history.after(force, moved)
-                frictions.append(friction)
-                slid.append(history.slid)
-                if node % _STEPS == 0:
-                    self.force[number, :2, node // _STEPS - 1] = friction
-            self.histories[number] = history
-            normals = np.append(start.normal, pressed[number])
-            self.microslip[number] = lost_in_microslip(start.law, normals, np.array(frictions), steps[number].T, np.array(slid))
-            self.normal[number] = normals[-1]
-        if self.force.shape[1] > 2:
-            self.force[iterating, 2:] = self._moments(normal)[iterating]
-        return np.asarray(np.abs(self.force - before).max(axis=(1, 2)))
+        history, frictions, slid = start.history, [start.force], [start.history.slid]
+        for number, (force, moved) in enumerate(zip(pressed, steps.T, strict=True), start=1):
+            history, friction = history.after(force, moved)
+            frictions.append(friction)
+            slid.append(history.slid)
+            if number % _STEPS == 0:
+                self.force[:2, number // _STEPS - 1] = friction
+        self.history = history
+        normals = np.append(start.normal, pressed)
+        self.microslip = lost_in_microslip(start.law, normals, np.array(frictions), steps.T, np.array(slid))
+        self.normal = float(normals[-1])
+        if len(self.force) > 2:
+            self.force[2:] = self._moments(normal)
+        return float(np.abs(self.force - before).max())
 
     def _displacements(self, normal: Floats) -> Floats:
-        """Return the displacements of the surfaces past each other since the start [m]."""
-        rule, across = self.basis.rule, self.length[:, None, None]
-        time = across * rule.time
-        alone = (self.velocity[:, :, None] + 0.5 * self.pull[:, :, None] * time) * time
-        alone -= across**2 * (self._slowed @ rule.integral_twice.T)
-        return np.asarray(alone + (self._surfaces(normal, self.force, "approach") - self.systems.approach[:, 1:, None])[:, :2])
+        """Return the displacements of the surfaces past each other since the start [m] (2, N)."""
+        rule, start = self.basis.rule, self.rubbing
+        time = self.length * rule.time
+        alone = (start.velocity[:, None] + 0.5 * start.pull[:, None] * time) * time
+        alone -= self.length**2 * (self._slowed @ rule.integral_twice.T)
+        moved = self._surfaces(normal, self.force, "approach") - self.start.approach[1:, None]
+        return np.asarray(alone + moved[:2])
 
     @property
     def _slowed(self) -> Floats:
-        """By how much friction slows the contact points [m/s^2]."""
-        return slowing(self.force, self.mass[:, None, None], self.turn[:, None, None])
+        """By how much friction slows the contact point [m/s^2] (2, N)."""
+        return slowing(self.force, self.rubbing.mass, self.turn)
 
-    def _surfaces(self, normal: Floats, force: Floats, what: str) -> Floats:
-        """Return what the surfaces below add to displacement ("approach") or slip ("rate") at the nodes, under friction forces."""
-        every = np.concatenate([normal, force.reshape(len(normal), -1)], axis=1)
-        found = getattr(self.receptance, what) - stacked_matvec(getattr(self.receptance, f"{what}_by_force"), every)
-        return np.asarray(found.reshape(len(normal), -1, NODES_PER_STRETCH)[:, 1:])
+    def _surfaces(self, normal: Floats, force: Floats, what: Literal["approach", "rate"]) -> Floats:
+        """Return what the surface below adds to displacement ("approach") or slip ("rate") at the nodes, under friction forces."""
+        every = np.concatenate([normal, force.ravel()])
+        free, by_force = getattr(self.motion, what), getattr(self.motion, f"{what}_by_force")
+        return np.asarray((free - by_force @ every).reshape(-1, NODES_PER_STRETCH)[1:])
 
     def _moments(self, normal: Floats) -> Floats:
-        """Return the moments at the nodes [N m] (B, 3, N): they act along the spins as these are without them, and end with these."""
-        force, slips = self.force.copy(), self._velocities() + self._surfaces(normal, self.force, "rate")[:, :2]
-        force[:, 2:] = 0.0
-        free = self._spins(force) + self._surfaces(normal, force, "rate")[:, 2:]
+        """Return the moments at the nodes [N m] (3, N): they act along the spins as these are without them, and end with these."""
+        law, load = self.rubbing.law, np.maximum(normal, 0.0)
+        force = self.force.copy()
+        slips = self._velocities() + self._surfaces(normal, self.force, "rate")[:2]
+        force[2:] = 0.0
+        free = self._spins(force) + self._surfaces(normal, force, "rate")[2:]
         size = np.sqrt(_together(free**2))
         along = np.divide(free, size, out=np.zeros_like(free), where=size > 0.0)
-        for number, (one, load) in enumerate(zip(self.rubbings, np.maximum(normal, 0.0), strict=True)):
-            force[number, 2:4] = one.law.rolling_coefficient * one.radius * load
-            rubbed, slip = np.hypot(*force[number, :2]), np.hypot(*slips[number])
-            force[number, 4] = one.law.twisting_moment(load) * one.law.twisting_part(load, rubbed, slip, size[number, 2])
-        force[:, 2:] *= along
-        full = self._spins(force) + self._surfaces(normal, force, "rate")[:, 2:]
-        left, slower = (_together(change * along)[:, :, -1:] for change in (free, free - full))
-        return np.asarray(force[:, 2:] * np.clip(np.divide(left, slower, out=np.ones_like(left), where=slower > left), 0.0, 1.0))
+        force[2:4] = law.rolling_coefficient * self.rubbing.radius * load
+        rubbed, slip = np.hypot(*force[:2]), np.hypot(*slips)
+        force[4] = law.twisting_moment(load) * law.twisting_part(load, rubbed, slip, size[2])
+        force[2:] *= along
+        full = self._spins(force) + self._surfaces(normal, force, "rate")[2:]
+        left, slower = (_together(change * along)[:, -1:] for change in (free, free - full))
+        return np.asarray(force[2:] * np.clip(np.divide(left, slower, out=np.ones_like(left), where=slower > left), 0.0, 1.0))
 
     def _velocities(self) -> Floats:
-        """Return the velocities of the contact points of the spheres at the nodes [m/s] (B, 2, N)."""
-        rule, across = self.basis.rule, self.length[:, None, None]
-        return np.asarray(
-            self.velocity[:, :, None] + self.pull[:, :, None] * (across * rule.time) - across * (self._slowed @ rule.integral.T)
-        )
+        """Return the velocities of the contact point of the sphere at the nodes [m/s] (2, N)."""
+        rule, start = self.basis.rule, self.rubbing
+        free = start.velocity[:, None] + start.pull[:, None] * (self.length * rule.time)
+        return np.asarray(free - self.length * (self._slowed @ rule.integral.T))
 
     def _spins(self, force: Floats) -> Floats:
-        """Return the spins of the spheres at the nodes [rad/s] (B, 3, N), under friction forces and moments."""
-        return np.asarray(self.spin[:, :, None] - self.length[:, None, None] * (self._slowed_spins(force) @ self.basis.rule.integral.T))
+        """Return the spins of the sphere at the nodes [rad/s] (3, N), under friction forces and moments."""
+        return np.asarray(self.rubbing.spin[:, None] - self.length * (self._slowed_spins(force) @ self.basis.rule.integral.T))
 
     def _slowed_spins(self, force: Floats) -> Floats:
-        """Return by how much friction forces and moments slow the spins [rad/s^2] (B, 3, N)."""
-        slowed = force[:, 2:] / self.inertia[:, None, None]
-        slowed[:, :2] += self.turn[:, None, None] * force[:, :2]
+        """Return by how much friction forces and moments slow the spins [rad/s^2] (3, N)."""
+        slowed = force[2:] / self.rubbing.inertia
+        slowed[:2] += self.turn * force[:2]
         return np.asarray(slowed)
 
-    def _spin_imbalances(self, spins: Floats) -> Floats:
-        """Return the error of the balance of energy of the spins, from these at the nodes (B, 3, N): [J] (B,)."""
-        slowed, integral = self._slowed_spins(self.force), self.length[:, None] * self.basis.rule.integral[-1]
-        change = -np.einsum("bkn,bn->bk", slowed, integral)
-        gain = (change * (self.spin + 0.5 * change)).sum(axis=1)
-        return np.asarray(self.inertia * (gain + np.einsum("bkn,bkn,bn->b", slowed, spins, integral)))
+    def _spin_imbalance(self, spins: Floats) -> float:
+        """Return the error of the balance of energy of the spins, from these at the nodes (3, N) [J]."""
+        slowed, integral = self._slowed_spins(self.force), self.length * self.basis.rule.integral[-1]
+        change = -slowed @ integral
+        gain = (change * (self.rubbing.spin + 0.5 * change)).sum()
+        return float(self.rubbing.inertia * (gain + ((slowed * spins) @ integral).sum()))
 
-    def stretches(self, normal: Floats) -> list[RubbedStretch]:
-        """Return the friction through the stretches, under the normal forces at the nodes [N] (B, N)."""
-        rule, across, slowed = self.basis.rule, self.length[:, None, None], self._slowed
-        velocity, below = self._velocities(), self._surfaces(normal, self.force, "rate")
-        own = np.append(velocity, self._spins(self.force), axis=1) if len(self.force[0]) > 2 else velocity
-        slips, of_spins = own + below, self._spin_imbalances(own[:, 2:]) if len(own[0]) > 2 else np.zeros(len(own))
-        time = across[:, :, 0] * rule.time[-1]
-        moved = (self.velocity + 0.5 * self.pull * time) * time - across[:, :, 0] ** 2 * (slowed @ rule.integral_twice[-1])
-        found = []
-        for number, start in enumerate(self.rubbings):
-            length, force, slip = float(self.length[number]), self.force[number], slips[number]
-            taken, given = (length * float(rule.integral[-1] @ (force * rate).sum(axis=0)) for rate in (slip, -below[number]))
-            end = replace(
-                start,
-                velocity=velocity[number, :, -1],
-                displacement=start.displacement + moved[number],
-                force=force[:2, -1],
-                normal=float(self.normal[number]),
-                history=self.histories[number],
-                work=start.work + taken,
-                microslip=start.microslip + float(self.microslip[number]),
-            )
-            gain = 0.5 * (end.velocity - start.velocity) @ (end.velocity + start.velocity) - start.pull @ moved[number]
-            lost = length * float(rule.integral[-1] @ (start.mass * slowed[number] * velocity[number]).sum(axis=0))
-            imbalance = abs(float(start.mass * gain) + lost) + abs(float(of_spins[number]))
-            stretch = RubbedStretch(rule, length, start, end, force, slip, given, imbalance)
-            if len(force) > 2:
-                turned, way = (part[:, 0] for part in stretch.turned(self.length[number : number + 1]))
-                stretch = replace(stretch, end=replace(end, spin=own[number, 2:, -1], turned=turned, turned_way=way))
-            found.append(stretch)
-        return found
+    def stretch(self, normal: Floats) -> RubbedStretch:
+        """Return the friction through the stretch, under the normal forces at the nodes [N] (N,)."""
+        rule, length, slowed, start, force = self.basis.rule, self.length, self._slowed, self.rubbing, self.force
+        weights = length * rule.integral[-1]
+        velocity, below = self._velocities(), self._surfaces(normal, force, "rate")
+        own = np.append(velocity, self._spins(force), axis=0) if len(force) > 2 else velocity
+        slip = own + below
+        of_spins = self._spin_imbalance(own[2:]) if len(own) > 2 else 0.0
+        time = length * rule.time[-1]
+        moved = (start.velocity + 0.5 * start.pull * time) * time - length**2 * (slowed @ rule.integral_twice[-1])
+        taken, given = (float((force * rate).sum(axis=0) @ weights) for rate in (slip, -below))
+        end = replace(
+            start,
+            velocity=velocity[:, -1],
+            displacement=start.displacement + moved,
+            force=force[:2, -1],
+            normal=self.normal,
+            history=self.history,
+            work=start.work + taken,
+            microslip=start.microslip + self.microslip,
+        )
+        gain = 0.5 * (end.velocity - start.velocity) @ (end.velocity + start.velocity) - start.pull @ moved
+        lost = float((start.mass * slowed * velocity).sum(axis=0) @ weights)
+        imbalance = abs(float(start.mass * gain) + lost) + abs(of_spins)
+        stretch = RubbedStretch(rule, length, start, end, force, slip, given, imbalance)
+        if len(force) > 2:
+            turned, way = (part[:, 0] for part in stretch.turned(np.array([length])))
+            stretch = replace(stretch, end=replace(end, spin=own[2:, -1], turned=turned, turned_way=way))
+        return stretch
 
 
 def lost_in_microslip(law: CompliantFriction, normal: Floats, friction: Floats, moved: Floats, slid: Floats) -> float:
@@ -310,8 +300,8 @@ def lost_in_microslip(law: CompliantFriction, normal: Floats, friction: Floats, 
 
 
 def _together(values: Floats) -> Floats:
-    """Return the sums of the parts of both rolling directions, in the place of each, and the part about the normal (B, 3, N)."""
-    return np.stack([values[:, 0] + values[:, 1], values[:, 0] + values[:, 1], values[:, 2]], axis=1)
+    """Return the sums of the parts of both rolling directions, in the place of each, and the part about the normal (3, N)."""
+    return np.stack([values[0] + values[1], values[0] + values[1], values[2]])
 
 
 @cache

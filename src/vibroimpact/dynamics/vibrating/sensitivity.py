@@ -17,13 +17,12 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.contact.roots import locate_maximum
-from vibroimpact.dynamics.lockstep import Coroutine, run_in_lockstep, solve
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.vibrating.free_motion import FreePhase
 from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.vibrating.local import LocalContact
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
-from vibroimpact.dynamics.vibrating.stretch_tangent import TangentProblem
+from vibroimpact.dynamics.vibrating.stretch_tangent import propagate_difference
 
 if TYPE_CHECKING:
     from vibroimpact.dynamics.leg import Leg
@@ -41,7 +40,7 @@ class Neighbours:
         changed = np.broadcast_to(np.asarray(problem.height if by_height else problem.speed, dtype=float), mass.shape)
         self._drops = [_Neighbour(system, value, by_height) for value in (np.sqrt(mass) * changed).tolist()]
 
-    def follow(self, leg: Leg) -> Coroutine[Floats]:
+    def follow(self, leg: Leg) -> Floats:
         """Return the growth of a relative change of the drop by the impact of a leg [-], one value per drop of its contact.
 
         The drop is changed in its height, or in its speed where that is given. The growth is the largest of the relative changes of the
@@ -61,7 +60,8 @@ class Neighbours:
         for piece in leg.contact.pieces:
             assert isinstance(piece.motion, (VibratingStretch, FreePhase))  # of bodies that vibrate
             motions[int(leg.contact_drops[piece.drops[0]])].append(piece.motion)
-        yield from run_in_lockstep(self._drops[drop].pass_visit(parts) for drop, parts in motions.items())
+        for drop, parts in motions.items():
+            self._drops[drop].pass_visit(parts)
         ends = zip(leg.contact_drops, leg.contact.final_rate, strict=True)
         return np.array([self._drops[drop].leave(-float(speed)) for drop, speed in ends])
 
@@ -110,22 +110,22 @@ class _Neighbour:
         self.difference = State(place, speed, before.local * np.exp(-system.rate * length))
         self.separated, self.last_stretch = not inside, None
 
-    def pass_visit(self, motions: Sequence[VibratingStretch | FreePhase]) -> Coroutine[None]:
+    def pass_visit(self, motions: Sequence[VibratingStretch | FreePhase]) -> None:
         """Propagate through the parts of a visit."""
         for motion in motions:
             if isinstance(motion, FreePhase):
                 self.fly(motion.free, motion.length, inside=motion.local is not None)
             else:
-                yield from self.pass_through(motion)
+                self.pass_through(motion)
 
-    def pass_through(self, stretch: VibratingStretch) -> Coroutine[None]:
+    def pass_through(self, stretch: VibratingStretch) -> None:
         """Propagate through a stretch of contact."""
         if self.separated:
             self.begin_contact(stretch)
         elif stretch.contacts[0].local is not self.local:
             self.update_memory(stretch)
-        problem = TangentProblem(stretch, self.difference, _law_variations(stretch.contacts[0].local, self.law_differences))
-        self.difference, force_difference = yield from solve(problem)
+        variations = _law_variations(stretch.contacts[0].local, self.law_differences)
+        self.difference, force_difference = propagate_difference(stretch, self.difference, variations)
         self.force_difference, self.last_stretch = float(force_difference[-1]), stretch
         assert self.visit is not None  # it has touched
         force = float(stretch.force.max())

@@ -11,15 +11,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibroimpact.arrays import Bools, Complex, Floats
+from vibroimpact.arrays import Bools, Floats
 from vibroimpact.dynamics.collocation import Rule
+from vibroimpact.dynamics.core.path import stretch_path
 from vibroimpact.dynamics.vibrating.contact_history import ContactHistory
+from vibroimpact.dynamics.vibrating.contact_view import ContactView
 from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State
-from vibroimpact.dynamics.vibrating.receptance import ContactView, RadauEigenbasis, StackedSystems
+from vibroimpact.dynamics.vibrating.radau_eigenbasis import RadauEigenbasis
 from vibroimpact.dynamics.vibrating.rubbing import RubbedStretch, rubbed_view
 
-_RIGID_ROUNDING = 2e-15  # relative rounding error of the kinetic energy of the rigid motions that move the contacts
-_ROUNDING = 2e-14  # relative rounding error of the energy of the modes, which may far exceed that of a soft contact
 _KEPT = 64
 """Number of stretches whose motion a thread keeps in memory, the last ones that were solved or read: those of a few impacts."""
 
@@ -102,14 +102,17 @@ class VibratingStretch:
     def motion(self) -> StretchMotion:
         """Motion of the coordinates; recomputed from the forces if it is no longer kept."""
         self.keep()
-        view, force, static = self.view, self.force[None], np.array([[contact.static for contact in self.contacts]])
+        view, force = self.view, self.force
+        static = np.stack([contact.static for contact in self.contacts])
         if self.rubbed is not None:
-            view, force = rubbed_view(view), np.concatenate([force, self.rubbed.force[None]], axis=1)
-            static = np.concatenate([static, np.zeros_like(self.rubbed.force[None])], axis=1)
-        systems, length = StackedSystems([view], [self.start]), np.array([self.length])
-        admittance = 1.0 / systems.impedance(length[:, None] * self.basis.values)
-        responses = systems.drive(self.basis, length) * admittance
-        return stretch_motions(systems, self.basis, length, (admittance, responses), force, static)[0]
+            view = rubbed_view(view)
+            force = np.concatenate([force, self.rubbed.force])
+            static = np.concatenate([static, np.zeros_like(self.rubbed.force)])
+        state = (self.start.displacement, self.start.velocity, self.start.local)
+        path = stretch_path(self.basis.basis, view.surfaces, view.coordinates, *state, self.length, force.ravel(), static.ravel())
+        gain, rounding = path.energies.tolist()
+        end = State(path.displacement, path.speed, path.local)
+        return StretchMotion(path.acceleration.T, path.velocity.T, path.massless.T, end, gain, rounding, path.lost)
 
     @property
     def accelerations(self) -> Floats:
@@ -211,70 +214,3 @@ class VibratingStretch:
         gain = self.motion.gain + sum(contact.work for contact in self.contacts)
         gain -= 0.0 if self.rubbed is None else self.rubbed.surface_work
         return bool(abs(gain + self.lost.sum()) <= 0.06 * tolerance * energy + self.motion.rounding)
-
-
-def stretch_motions(
-    systems: StackedSystems, basis: RadauEigenbasis, length: Floats, modes: tuple[Complex, Complex], force: Floats, static: Floats
-) -> list[StretchMotion]:
-    """Return the motion of the coordinates of B systems through stretches.
-
-    Parameters
-    ----------
-    systems : StackedSystems
-        The systems.
-    basis : RadauEigenbasis
-        Eigenbasis of the collocation rule.
-    length : array, shape (B,)
-        Lengths of the stretches [s].
-    modes : tuple of two arrays, shape (B, m, H)
-        Admittances of the modes, and their accelerations without contact forces.
-    force, static : array, shape (B, c, N)
-        Contact forces at the nodes, and their static parts [N].
-    """
-    rule, (admittance, responses), start, across = basis.rule, modes, systems.start, length[:, None]
-    pushed = basis.to_eigenvectors(force)  # (B, c, H)
-    parts = [pushed, basis.to_eigenvectors(static)] if systems.inside else [pushed]
-    driven = sum(_modal_forces(systems.shapes[:, number], part) for number, part in enumerate(parts))
-    accelerations = np.empty((*start.displacement.shape, len(rule.nodes)))
-    accelerations[:, systems.mode_slice] = basis.to_nodes(responses - driven * admittance)
-    load = np.array([view.system.load for view in systems.views])
-    rigid = np.array([view.rigid_shapes for view in systems.views])
-    accelerations[:, systems.rigid_slice] = load[:, systems.rigid_slice, None] - rigid.swapaxes(1, 2) @ force
-    velocities = accelerations @ rule.integral.T
-    velocities *= across[:, :, None]
-    velocities += start.velocity[:, :, None]
-    displacement = start.displacement + velocities @ rule.integral[-1] * across
-    local, massless = start.local, np.zeros((*start.local.shape, len(rule.nodes)))
-    if systems.massless:
-        yielding = _modal_forces(systems.local_mobility, pushed) + (systems.rate * local)[:, :, None] * basis.constant
-        massless = basis.to_nodes(-yielding / (1.0 + systems.rate[:, :, None] * (across * basis.values)[:, None]))
-        local = local + massless @ rule.integral[-1] * across
-    end = State(displacement, velocities[:, :, -1].copy(), local)
-    frequency, damping, springs, mobility = (
-        np.array([getattr(view.system, name) for view in systems.views]) for name in ("angular_frequency", "damping", "rate", "mobility")
-    )
-    lost = np.empty((len(force), accelerations.shape[1] + 1))
-    lost[:, :-1] = damping * (velocities**2 @ rule.integral[-1]) * across
-    lost[:, -1] = (massless**2 @ rule.integral[-1] / mobility).sum(axis=1) * length
-    # as differences of squares, so that motion that the contact does not change causes no rounding error
-    gain = 0.5 * (end.velocity - start.velocity) * (end.velocity + start.velocity)
-    gain += (end.displacement - start.displacement) * (0.5 * frequency**2 * (end.displacement + start.displacement) - load)
-    begun = 0.5 * (start.velocity**2 + (frequency * start.displacement) ** 2)
-    if count := systems.views[0].system.driven:  # the energy of a driven coordinate is not counted, but the work of its drive
-        shapes = np.array([view.system.shape[view.contacts, -count:] for view in systems.views])
-        power = (shapes.swapaxes(1, 2) @ force) * velocities[:, -count:]
-        lost[:, -1 - count : -1] = -(power @ rule.integral[-1]) * across
-        gain[:, -count:] = begun[:, -count:] = 0.0
-    in_springs = 0.5 * (end.local - start.local) * (end.local + start.local) * springs / mobility
-    grown = (gain.sum(axis=1) + in_springs.sum(axis=1)).tolist()
-    active_rigid = np.array([view.active_rigid for view in systems.views])
-    rounding = (begun * np.where(frequency > 0.0, _ROUNDING, _RIGID_ROUNDING * active_rigid)).sum(axis=1).tolist()
-    return [
-        StretchMotion(accelerations[one].T, velocities[one].T, massless[one].T, end.take(one), grown[one], rounding[one], lost[one])
-        for one in range(len(force))
-    ]
-
-
-def _modal_forces(shapes: Floats, forces: Complex) -> Complex:
-    """Return the forces on modes of shapes (B or 1, c, m) by contact forces (B, c, H): (B, m, H)."""
-    return np.asarray((shapes.swapaxes(1, 2) @ forces.view(np.float64)).view(np.complex128))

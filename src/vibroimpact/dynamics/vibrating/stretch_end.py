@@ -10,12 +10,11 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.contact.roots import find_root
 from vibroimpact.dynamics.collocation import Map
-from vibroimpact.dynamics.lockstep import Coroutine, solve
 from vibroimpact.dynamics.vibrating.events import GRID, Event, first_event
 from vibroimpact.dynamics.vibrating.linear_system import State
-from vibroimpact.dynamics.vibrating.receptance import NODES_PER_STRETCH, radau_eigenbasis
+from vibroimpact.dynamics.vibrating.radau_eigenbasis import NODES_PER_STRETCH, radau_eigenbasis
 from vibroimpact.dynamics.vibrating.recoil import along_motion
-from vibroimpact.dynamics.vibrating.solve_stretches import StretchProblem
+from vibroimpact.dynamics.vibrating.solve_stretch import StretchProblem
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 
 _EASY = 0.01  # target roughness of the next stretch, relative to the root of the tolerance
@@ -27,7 +26,7 @@ _AT_END = 1e-12  # relative: an event may lie so far beyond the end of the first
 
 def solve_to_event(
     stretch: VibratingStretch, event: Event, tolerance: float, energy: float, speed: float, span: float
-) -> Coroutine[tuple[Event, VibratingStretch] | None]:
+) -> tuple[Event, VibratingStretch] | None:
     """Return the first event of a stretch, and the stretch solved up to it; None if that fails.
 
     An event of a solution that is not resolved may be spurious, or preceded by another one.
@@ -44,7 +43,7 @@ def solve_to_event(
         Energy [J] and speed [m/s] of the motion, and approximate duration of a contact [s].
     """
     for _ in range(_MOST_ATTEMPTS):
-        ended = yield from solve(_problem_to_event(stretch, event))
+        ended = _problem_to_event(stretch, event).solve()
         if not ended.solved or not 0.0 < ended.length <= (1.0 + _AT_END) * stretch.length:
             return None
         before = first_event(ended, speed, span)
@@ -56,7 +55,7 @@ def solve_to_event(
 
 def solve_to_zero(
     stretch: VibratingStretch, value: Callable[[State], Floats], near: float, problem: Callable[[float], StretchProblem]
-) -> Coroutine[VibratingStretch | None]:
+) -> VibratingStretch | None:
     """Return a stretch solved again up to a zero of a function of the state, as at an event of another contact; None if that fails.
 
     Parameters
@@ -75,7 +74,7 @@ def solve_to_zero(
     length = float(find_root(along_motion(stretch, value), np.array([low]), np.array([high]))[0])
     # Newton's method for the length, with the rate of the function by a finite difference
     for _ in range(_MOST_CORRECTIONS):
-        ended: VibratingStretch = yield from solve(problem(length))
+        ended = problem(length).solve()
         if not ended.solved:
             return None
         step = 1e-6 * length

@@ -16,7 +16,6 @@ from vibroimpact.arrays import Floats
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.quasi_static import QuasiStatic
 from vibroimpact.dynamics.contact import CAPTURED, FAILED, RELEASED, RIDING, SETTLED
-from vibroimpact.dynamics.lockstep import Coroutine
 from vibroimpact.dynamics.vibrating.active_contact import ContactDefinition, closing_speed, locate_highest_peak, motion_speed
 from vibroimpact.dynamics.vibrating.carried_oscillations import SteadyResponse, steady_response
 from vibroimpact.dynamics.vibrating.contact_equilibrium import (
@@ -79,7 +78,7 @@ def follow_visit(
     rest_speed: float = 0.0,
     until: float = np.inf,
     rubbing: Rubbing | None = None,
-) -> Coroutine[Visit]:
+) -> Visit:
     """Follow one drop from first touch to its last release, or to rest.
 
     Parameters
@@ -107,7 +106,7 @@ def follow_visit(
     """
     speed = motion_speed(system, 0, law, closing_speed(system, state, 0))
     march = March(system, [ContactDefinition(law, series, fresh_surface)], state, tolerance, (speed, contact_duration), rubbing)
-    return (yield from _VisitMarch(march, rest_speed, until).run())
+    return _VisitMarch(march, rest_speed, until).run()
 
 
 class _VisitMarch:
@@ -124,11 +123,11 @@ class _VisitMarch:
 
     # one contact after another ----------------------------------------------------------------------
 
-    def run(self) -> Coroutine[Visit]:
+    def run(self) -> Visit:
         """Return the visit."""
         march, contacts = self.march, 1
         while True:
-            outcome = yield from self.contact()
+            outcome = self.contact()
             self.separation_time = march.time
             if outcome != RELEASED:
                 break
@@ -168,7 +167,7 @@ class _VisitMarch:
 
     # one contact -----------------------------------------------------------------------------------
 
-    def contact(self) -> Coroutine[int]:
+    def contact(self) -> int:
         """March through one contact; return its outcome."""
         march, begun = self.march, self.march.time
         while 0 in march.active:
@@ -177,7 +176,7 @@ class _VisitMarch:
             if self.stretches > self.most_stretches or (rides and remaining <= ROUNDING * self.active.span):
                 return self.end_in_contact(RIDING)
             try:
-                taken = yield from march.step(min(remaining if rides else np.inf, self.longest) if self.active.pushes else np.inf)
+                taken = march.step(min(remaining if rides else np.inf, self.longest) if self.active.pushes else np.inf)
             except NotIntegrable:
                 return self.end_in_contact(FAILED)
             if taken and 0 in march.active and self.active.pushes and (self.captured() or self.at_rest()):

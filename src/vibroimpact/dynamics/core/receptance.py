@@ -1,0 +1,328 @@
+r"""Motion of the surfaces at contacts through a stretch, reduced to the nodes of Radau collocation.
+
+Collocation integrates by a matrix Q. In its eigenbasis, with eigenvalues :math:`\lambda`, the modes enter only through the receptances
+between contacts at the complex frequencies :math:`1/\sigma`, :math:`\sigma = h \lambda`,
+
+.. math:: G_{cd}(\sigma) = \sum_i \frac{\chi_{ci} \chi_{di}}{1 + 2 \zeta_i \omega_i \sigma + \omega_i^2 \sigma^2}
+
+so that the number of unknowns does not depend on the number of modes. A mode much faster than the stretch follows the force
+quasi-statically, a slower one is integrated with order 2 N - 1. For rigid motions the receptance is :math:`h^2 Q^2 \sum \chi_c \chi_d`.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vibroimpact.arrays import Complex, Floats
+from vibroimpact.compiled import compiled
+from vibroimpact.dynamics.core.records import Basis, Motion, Start, Surfaces
+
+
+@compiled(lambda t: t.matrix(t.of(Surfaces), t.of(Start)))
+def modal_weights(surfaces: Surfaces, start: Start) -> Floats:
+    """Return the weights of the modes in the sums of `modal_sums` (W, m).
+
+    By part (outside and within the contacts): first of the receptance of each two contacts, then of the spring and damper accelerations of
+    each contact at the start, and last of the rates of the spring accelerations.
+    """
+    parts, contacts, modes = surfaces.shapes.shape
+    weights = np.empty((parts * contacts * (contacts + 2), modes))
+    row = 0
+    for part in range(parts):
+        for contact in range(contacts):
+            for other in range(contacts):
+                for mode in range(modes):
+                    weights[row, mode] = surfaces.shapes[part, contact, mode] * surfaces.shapes[part, other, mode]
+                row += 1
+    for part in range(parts):
+        for contact in range(contacts):
+            for mode in range(modes):
+                spring = surfaces.frequency_squared[mode] * start.displacement[mode]
+                damper = surfaces.damping[mode] * start.velocity[mode]
+                weights[row, mode] = surfaces.shapes[part, contact, mode] * (spring + damper)
+            row += 1
+    for part in range(parts):
+        for contact in range(contacts):
+            for mode in range(modes):
+                spring_rate = surfaces.frequency_squared[mode] * start.velocity[mode]
+                weights[row, mode] = surfaces.shapes[part, contact, mode] * spring_rate
+            row += 1
+    return weights
+
+
+@compiled(lambda t: t.void(t.of(Surfaces), t.matrix, t.matrix, t.real, t.cube))
+def modal_sums(surfaces: Surfaces, weights: Floats, eigenvalues: Floats, length: float, sums: Floats) -> None:
+    """Write the weighted sums over the modes of 1/(1 + d sigma + w^2 sigma^2) at all eigenvalues, as parts (2, W, H), into `sums`."""
+    number = eigenvalues.shape[1]
+    real = np.empty(number)
+    imaginary = np.empty(number)
+    sums[:] = 0.0
+    for mode in range(len(surfaces.damping)):
+        frequency_squared = surfaces.frequency_squared[mode]
+        damping = surfaces.damping[mode]
+        for k in range(number):
+            sigma = length * eigenvalues[0, k]
+            sigma_imaginary = length * eigenvalues[1, k]
+            square = sigma * sigma - sigma_imaginary * sigma_imaginary
+            square_imaginary = 2.0 * sigma * sigma_imaginary
+            impedance = 1.0 + damping * sigma + frequency_squared * square
+            impedance_imaginary = damping * sigma_imaginary + frequency_squared * square_imaginary
+            inverse = 1.0 / (impedance * impedance + impedance_imaginary * impedance_imaginary)
+            real[k] = impedance * inverse
+            imaginary[k] = -impedance_imaginary * inverse
+        for row in range(len(weights)):
+            weight = weights[row, mode]
+            for k in range(number):
+                sums[0, row, k] += weight * real[k]
+                sums[1, row, k] += weight * imaginary[k]
+
+
+@compiled(lambda t: t.void(t.of(Surfaces), t.matrix, t.matrix, t.real, t.cube))
+def modal_slopes(surfaces: Surfaces, weights: Floats, eigenvalues: Floats, length: float, sums: Floats) -> None:
+    """Write the derivatives of the sums of `modal_sums` by sigma into `sums`."""
+    number = eigenvalues.shape[1]
+    real = np.empty(number)
+    imaginary = np.empty(number)
+    sums[:] = 0.0
+    for mode in range(len(surfaces.damping)):
+        frequency_squared = surfaces.frequency_squared[mode]
+        damping = surfaces.damping[mode]
+        for k in range(number):
+            sigma = length * eigenvalues[0, k]
+            sigma_imaginary = length * eigenvalues[1, k]
+            square = sigma * sigma - sigma_imaginary * sigma_imaginary
+            square_imaginary = 2.0 * sigma * sigma_imaginary
+            impedance = 1.0 + damping * sigma + frequency_squared * square
+            impedance_imaginary = damping * sigma_imaginary + frequency_squared * square_imaginary
+            inverse = 1.0 / (impedance * impedance + impedance_imaginary * impedance_imaginary)
+            admittance = impedance * inverse
+            admittance_imaginary = -impedance_imaginary * inverse
+            slope = damping + 2.0 * frequency_squared * sigma
+            slope_imaginary = 2.0 * frequency_squared * sigma_imaginary
+            squared = admittance * admittance - admittance_imaginary * admittance_imaginary
+            squared_imaginary = 2.0 * admittance * admittance_imaginary
+            real[k] = -(slope * squared - slope_imaginary * squared_imaginary)
+            imaginary[k] = -(slope * squared_imaginary + slope_imaginary * squared)
+        for row in range(len(weights)):
+            weight = weights[row, mode]
+            for k in range(number):
+                sums[0, row, k] += weight * real[k]
+                sums[1, row, k] += weight * imaginary[k]
+
+
+@compiled(lambda t: t.void(t.matrix, t.integer, t.complex, t.vector))
+def add_at_nodes(backward: Floats, k: int, coefficient: complex, values: Floats) -> None:
+    """Add what a coefficient in the eigenbasis is at the nodes to `values` (N,)."""
+    for node in range(len(values)):
+        values[node] += backward[2 * k, node] * coefficient.real + backward[2 * k + 1, node] * coefficient.imag
+
+
+@compiled(lambda t: t.void(t.matrix, t.integer, t.complex, t.matrix, t.integer, t.integer))
+def add_matrix(filters: Floats, k: int, operator: complex, matrix: Floats, row: int, column: int) -> None:
+    """Add the matrix on the nodes of an operator in the eigenbasis to the block of `matrix` that begins at a row and a column."""
+    nodes = int(np.sqrt(filters.shape[1]) + 0.5)
+    for node in range(nodes):
+        for other in range(nodes):
+            entry = node * nodes + other
+            change = filters[2 * k, entry] * operator.real + filters[2 * k + 1, entry] * operator.imag
+            matrix[row + node, column + other] += change
+
+
+@compiled(lambda t: t.of(Motion)(t.of(Basis), t.of(Surfaces), t.of(Start), t.real))
+def surface_motion(basis: Basis, surfaces: Surfaces, start: Start, length: float) -> Motion:
+    """Return the motion of the surfaces through a stretch of a length [s]."""
+    parts, contacts, _ = surfaces.shapes.shape
+    nodes = len(basis.time)
+    number = basis.eigenvalues.shape[1]
+    elements = len(surfaces.rate)
+    size = contacts * nodes
+    weights = modal_weights(surfaces, start)
+    sums = np.empty((2, len(weights), number))
+    modal_sums(surfaces, weights, basis.eigenvalues, length, sums)
+
+    outer = np.zeros((contacts, nodes))
+    inner = np.zeros((contacts, nodes))
+    moved = np.zeros((contacts, nodes))
+    approach_by_force = np.zeros((size, size))
+    rate_by_force = np.zeros((size, size))
+    inside = size if parts == 2 else 0
+    approach_by_static = np.zeros((inside, inside))
+    closing_by_static = np.zeros((inside, inside))
+    springs = parts * contacts * contacts
+    spring_rates = springs + parts * contacts
+    for k in range(number):
+        sigma = length * complex(basis.eigenvalues[0, k], basis.eigenvalues[1, k])
+        one = complex(basis.one[0, k], basis.one[1, k])
+        clock = length * complex(basis.clock[0, k], basis.clock[1, k])
+        for contact in range(contacts):
+            rate = 0.0 + 0.0j
+            for part in range(parts):
+                spring = complex(sums[0, springs + part * contacts + contact, k], sums[1, springs + part * contacts + contact, k])
+                row = spring_rates + part * contacts + contact
+                spring_rate = complex(sums[0, row, k], sums[1, row, k])
+                of_part = -sigma * (one * spring + clock * spring_rate)
+                if part == 0:
+                    for element in range(elements):
+                        held = surfaces.incidence[contact, element] * surfaces.rate[element] * start.local[element]
+                        of_part -= one * held / (1.0 + surfaces.rate[element] * sigma)
+                    add_at_nodes(basis.backward, k, of_part, outer[contact])
+                else:
+                    add_at_nodes(basis.backward, k, of_part, inner[contact])
+                rate += of_part
+            add_at_nodes(basis.backward, k, sigma * rate, moved[contact])
+            for other in range(contacts):
+                pair = contact * contacts + other
+                mobility = sigma * complex(sums[0, pair, k], sums[1, pair, k])
+                if contact == other:
+                    for element in range(elements):
+                        mobility += surfaces.mobility[contact, element] / (1.0 + surfaces.rate[element] * sigma)
+                row = contact * nodes
+                column = other * nodes
+                add_matrix(basis.filters, k, sigma * mobility, approach_by_force, row, column)
+                add_matrix(basis.filters, k, mobility, rate_by_force, row, column)
+                if parts == 2:
+                    pair += contacts * contacts
+                    within = sigma * complex(sums[0, pair, k], sums[1, pair, k])
+                    add_matrix(basis.filters, k, sigma * within, approach_by_static, row, column)
+                    add_matrix(basis.filters, k, within, closing_by_static, row, column)
+
+    approach = np.empty(size)
+    rate_of_approach = np.empty(size)
+    closing = np.empty(size)
+    for contact in range(contacts):
+        for node in range(nodes):
+            row = contact * nodes + node
+            time = length * basis.time[node]
+            outer_rate = start.outer_rate[contact] + surfaces.gravity[contact] * time + outer[contact, node]
+            mean_rate = start.outer_rate[contact] + start.inner_rate[contact] + 0.5 * surfaces.gravity[contact] * time
+            rate_of_approach[row] = outer_rate
+            closing[row] = outer_rate + start.inner_rate[contact] + inner[contact, node]
+            approach[row] = start.approach[contact] + time * mean_rate + moved[contact, node]
+            for other in range(contacts):
+                rigid = surfaces.rigid_pairs[contact, other]
+                for force_node in range(nodes):
+                    column = other * nodes + force_node
+                    approach_by_force[row, column] += rigid * length * length * basis.integral_twice[node, force_node]
+                    rate_by_force[row, column] += rigid * length * basis.integral[node, force_node]
+    return Motion(approach, rate_of_approach, closing, approach_by_force, rate_by_force, approach_by_static, closing_by_static)
+
+
+@compiled(lambda t: t.void(t.matrix, t.vector, t.integer, t.complexes))
+def to_eigenbasis(forward: Floats, values: Floats, k: int, coefficients: Complex) -> None:
+    """Write the coefficients of an eigenvector in the nodal values (c N,) of each contact into `coefficients` (c,)."""
+    nodes = len(forward)
+    for contact in range(len(coefficients)):
+        real = 0.0
+        imaginary = 0.0
+        for node in range(nodes):
+            value = values[contact * nodes + node]
+            real += value * forward[node, 2 * k]
+            imaginary += value * forward[node, 2 * k + 1]
+        coefficients[contact] = complex(real, imaginary)
+
+
+@compiled(lambda t: t.matrix(t.of(Basis), t.of(Surfaces), t.of(Start), t.real, t.vector, t.vector))
+def motion_by_length(basis: Basis, surfaces: Surfaces, start: Start, length: float, force: Floats, static: Floats) -> Floats:
+    """Return the derivatives of approach, rate and closing rate at the nodes by the length of a stretch (3, M).
+
+    `force`, `static`: forces and their static parts at the nodes [N] (M,).
+    """
+    parts, contacts, _ = surfaces.shapes.shape
+    nodes = len(basis.time)
+    number = basis.eigenvalues.shape[1]
+    elements = len(surfaces.rate)
+    weights = modal_weights(surfaces, start)
+    sums = np.empty((2, len(weights), number))
+    slopes = np.empty((2, len(weights), number))
+    modal_sums(surfaces, weights, basis.eigenvalues, length, sums)
+    modal_slopes(surfaces, weights, basis.eigenvalues, length, slopes)
+
+    outer = np.zeros((contacts, nodes))
+    inner = np.zeros((contacts, nodes))
+    moved = np.zeros((contacts, nodes))
+    pushed = np.empty(contacts, dtype=np.complex128)
+    pushed_static = np.empty(contacts, dtype=np.complex128)
+    springs = parts * contacts * contacts
+    spring_rates = springs + parts * contacts
+    for k in range(number):
+        value = complex(basis.eigenvalues[0, k], basis.eigenvalues[1, k])
+        sigma = length * value
+        one = complex(basis.one[0, k], basis.one[1, k])
+        clock = complex(basis.clock[0, k], basis.clock[1, k])
+        to_eigenbasis(basis.forward, force, k, pushed)
+        to_eigenbasis(basis.forward, static, k, pushed_static)
+        for contact in range(contacts):
+            rates = 0.0 + 0.0j
+            rate_slopes = 0.0 + 0.0j
+            outer_slope = 0.0 + 0.0j
+            inner_slope = 0.0 + 0.0j
+            for part in range(parts):
+                row = springs + part * contacts + contact
+                spring = complex(sums[0, row, k], sums[1, row, k])
+                spring_slope = complex(slopes[0, row, k], slopes[1, row, k])
+                row = spring_rates + part * contacts + contact
+                spring_rate = complex(sums[0, row, k], sums[1, row, k])
+                spring_rate_slope = complex(slopes[0, row, k], slopes[1, row, k])
+                acceleration = -(one * spring + length * clock * spring_rate)
+                acceleration_slope = -(value * (one * spring_slope + length * clock * spring_rate_slope) + clock * spring_rate)
+                rate = sigma * acceleration
+                rate_slope = value * acceleration + sigma * acceleration_slope
+                if part == 0:
+                    for element in range(elements):
+                        relaxing = 1.0 / (1.0 + surfaces.rate[element] * sigma)
+                        held = surfaces.incidence[contact, element] * surfaces.rate[element] * start.local[element]
+                        rate -= one * held * relaxing
+                        rate_slope += one * value * held * surfaces.rate[element] * relaxing * relaxing
+                    outer_slope = rate_slope
+                else:
+                    inner_slope = rate_slope
+                rates += rate
+                rate_slopes += rate_slope
+            by_force = 0.0 + 0.0j
+            by_force_slope = 0.0 + 0.0j
+            by_static = 0.0 + 0.0j
+            by_static_slope = 0.0 + 0.0j
+            for other in range(contacts):
+                pair = contact * contacts + other
+                accelerance = complex(sums[0, pair, k], sums[1, pair, k])
+                accelerance_slope = complex(slopes[0, pair, k], slopes[1, pair, k])
+                mobility = sigma * accelerance
+                mobility_slope = accelerance + sigma * accelerance_slope
+                if contact == other:
+                    for element in range(elements):
+                        relaxing = 1.0 / (1.0 + surfaces.rate[element] * sigma)
+                        mobility += surfaces.mobility[contact, element] * relaxing
+                        mobility_slope -= surfaces.mobility[contact, element] * surfaces.rate[element] * relaxing * relaxing
+                by_force += (mobility + sigma * mobility_slope) * pushed[other]
+                by_force_slope += mobility_slope * pushed[other]
+                if parts == 2:
+                    pair += contacts * contacts
+                    accelerance = complex(sums[0, pair, k], sums[1, pair, k])
+                    accelerance_slope = complex(slopes[0, pair, k], slopes[1, pair, k])
+                    by_static += (2.0 * sigma * accelerance + sigma * sigma * accelerance_slope) * pushed_static[other]
+                    by_static_slope += (accelerance + sigma * accelerance_slope) * pushed_static[other]
+            moved_slope = value * rates + sigma * rate_slopes - value * (by_force + by_static)
+            add_at_nodes(basis.backward, k, moved_slope, moved[contact])
+            add_at_nodes(basis.backward, k, outer_slope - value * by_force_slope, outer[contact])
+            add_at_nodes(basis.backward, k, inner_slope - value * by_static_slope, inner[contact])
+
+    found = np.empty((3, contacts * nodes))
+    for contact in range(contacts):
+        gravity = surfaces.gravity[contact]
+        speed = start.outer_rate[contact] + start.inner_rate[contact]
+        for node in range(nodes):
+            time = basis.time[node]
+            slowed = 0.0
+            held_back = 0.0
+            for other in range(contacts):
+                rigid = surfaces.rigid_pairs[contact, other]
+                for force_node in range(nodes):
+                    push = rigid * force[other * nodes + force_node]
+                    slowed += push * basis.integral[node, force_node]
+                    held_back += push * basis.integral_twice[node, force_node]
+            row = contact * nodes + node
+            rate = gravity * time + outer[contact, node] - slowed
+            found[0, row] = time * (speed + gravity * length * time) + moved[contact, node] - 2.0 * length * held_back
+            found[1, row] = rate
+            found[2, row] = rate + inner[contact, node]
+    return found

@@ -1,0 +1,414 @@
+"""One stretch of contact: Newton's method for the forces at its nodes, and for its length where an event ends it.
+
+The unknowns are the contact forces and the indentations of the laws at the nodes and, where an event ends the stretch, its length. All
+other quantities are linear in the forces (`receptance`).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.compiled import compiled
+from vibroimpact.dynamics.core.law import indentation_at, is_in_series, linearise
+from vibroimpact.dynamics.core.linear import solve_in_place
+from vibroimpact.dynamics.core.native import evaluate
+from vibroimpact.dynamics.core.receptance import motion_by_length, surface_motion
+from vibroimpact.dynamics.core.records import Basis, Contacts, Histories, Motion, Nodes, Start, Surfaces
+
+GIVEN_LENGTH, AT_LEVEL, AT_NO_FORCE, AT_TURN = 0, 1, 2, 3
+"""What ends a stretch: a given length; an indentation of a law; no force of a law; no rate of an approach."""
+
+MOST_ITERATIONS = 25
+_LENGTH_FACTOR = 3.0  # one iteration lengthens by no more than this times the length, to four times it, or shortens to a quarter
+_CONVERGED = 1e-13
+_STALLED = 1e-11
+_INEXACT = 1e-6  # of a Newton step: least size of the next one, as the derivatives are finite differences
+_TINY = 1e-300
+
+
+@compiled(lambda t: t.vector(t.matrix, t.vector))
+def product(matrix: Floats, vector: Floats) -> Floats:
+    """Return the product of a matrix and a vector."""
+    found = np.empty(len(matrix))
+    for row in range(len(matrix)):
+        total = 0.0
+        for column in range(len(vector)):
+            total += matrix[row, column] * vector[column]
+        found[row] = total
+    return found
+
+
+@compiled(lambda t: t.vector(t.of(Contacts), t.of(Start), t.vector))
+def begun_indentations(contacts: Contacts, start: Start, estimates: Floats) -> Floats:
+    """Return the indentations of the laws at the start [m] (c,) by one Newton step from close estimates."""
+    found = np.empty(len(estimates))
+    linear = np.empty((7, 1))
+    still = np.zeros(1)
+    for contact in range(len(found)):
+        approach = max(start.approach[contact], contacts.release_level[contact])
+        found[contact] = approach
+        if is_in_series(contacts.series[contact]):
+            linearise(
+                contacts.laws[contact],
+                contacts.coefficients[contact],
+                contacts.speed[contact],
+                contacts.release[contact],
+                contacts.series[contact],
+                estimates[contact : contact + 1],
+                still,
+                linear,
+            )
+            nearer = estimates[contact] + (approach - linear[2, 0]) / linear[3, 0]
+            found[contact] = max(nearer, contacts.release[contact])
+    return found
+
+
+@compiled(lambda t: t.of(Nodes)(t.of(Basis), t.of(Surfaces), t.of(Contacts), t.of(Start), t.of(Motion), t.vector, t.vector, t.real))
+def first_guess(
+    basis: Basis, surfaces: Surfaces, contacts: Contacts, start: Start, motion: Motion, begun: Floats, trend: Floats, length: float
+) -> Nodes:
+    """Return a guess of forces and indentations at the nodes, from the forces at the start extrapolated linearly by their `trend` [N/s]."""
+    nodes = len(basis.time)
+    size = len(motion.approach)
+    static = np.empty(size)
+    force = np.empty(size)
+    forces = np.empty(2)
+    for contact in range(len(begun)):
+        rate = start.outer_rate[contact]
+        for element in range(len(surfaces.rate)):
+            rate -= surfaces.incidence[contact, element] * surfaces.rate[element] * start.local[element]
+        reached = max(begun[contact], contacts.release[contact])
+        evaluate(contacts.laws[contact], reached, rate, contacts.speed[contact], contacts.coefficients[contact], forces)
+        for node in range(nodes):
+            later = trend[contact] * length * basis.time[node]
+            static[contact * nodes + node] = forces[0] + later
+            force[contact * nodes + node] = forces[0] + forces[1] + later
+    approach = motion.approach - product(motion.approach_by_force, force)
+    rates = motion.rate - product(motion.rate_by_force, force)
+    if len(motion.approach_by_static):
+        approach -= product(motion.approach_by_static, static)
+    delta = np.empty(size)
+    for contact in range(len(begun)):
+        for node in range(nodes):
+            row = contact * nodes + node
+            delta[row] = indentation_at(
+                contacts.laws[contact],
+                contacts.coefficients[contact],
+                contacts.speed[contact],
+                contacts.release[contact],
+                contacts.series[contact],
+                max(approach[row], contacts.release_level[contact]),
+            )
+            reached = max(delta[row], contacts.release[contact])
+            evaluate(contacts.laws[contact], reached, rates[row], contacts.speed[contact], contacts.coefficients[contact], forces)
+            static[row] = 0.0
+            force[row] = forces[0] + forces[1]
+    return Nodes(static, force, delta)
+
+
+@compiled(lambda t: t.real(t.of(Surfaces), t.of(Motion), t.real))
+def force_scale(surfaces: Surfaces, motion: Motion, length: float) -> float:
+    """Return a scale of the forces [N], for motions that change their rate within the stretch."""
+    scale = 0.0
+    nodes = len(motion.rate) // len(surfaces.mass)
+    for contact in range(len(surfaces.mass)):
+        fastest = 0.0
+        for node in range(nodes):
+            fastest = max(fastest, abs(motion.rate[contact * nodes + node]))
+        scale = max(scale, surfaces.mass[contact] * (fastest / length + abs(surfaces.gravity[contact])))
+    return scale
+
+
+@compiled(lambda t: t.matrix(t.of(Contacts), t.of(Motion), t.of(Nodes)))
+def linearised_laws(contacts: Contacts, motion: Motion, now: Nodes) -> Floats:
+    """Return forces, approach and derivatives of all laws at the nodes (7, M), as `law.linearise` gives them."""
+    rate = motion.rate - product(motion.rate_by_force, now.force)
+    size = len(rate)
+    nodes = size // len(contacts.laws)
+    linear = np.empty((7, size))
+    of_contact = np.empty((7, nodes))
+    for contact in range(len(contacts.laws)):
+        first = contact * nodes
+        linearise(
+            contacts.laws[contact],
+            contacts.coefficients[contact],
+            contacts.speed[contact],
+            contacts.release[contact],
+            contacts.series[contact],
+            now.delta[first : first + nodes],
+            rate[first : first + nodes],
+            of_contact,
+        )
+        for row in range(7):
+            for node in range(nodes):
+                linear[row, first + node] = of_contact[row, node]
+    return linear
+
+
+@compiled(lambda t: t.matrix(t.matrix, t.of(Motion), t.matrix))
+def indentations_by(linear: Floats, motion: Motion, columns: Floats) -> Floats:
+    """Return the changes of the indentations (M, r) for changes of the approach that forces do not cause [m] (M, r)."""
+    size = len(columns)
+    found = columns.copy()
+    if not len(motion.approach_by_static):
+        for row in range(size):
+            for column in range(columns.shape[1]):
+                found[row, column] /= linear[3, row]
+        return found
+    matrix = np.empty((size, size))
+    for row in range(size):
+        for column in range(size):
+            matrix[row, column] = motion.approach_by_static[row, column] * linear[4, column]
+        matrix[row, row] += linear[3, row]
+    solve_in_place(matrix, found)
+    return found
+
+
+@compiled(
+    lambda t: t.tuple(t.vector, t.vector, t.real)(
+        t.of(Basis), t.of(Surfaces), t.of(Start), t.of(Motion), t.matrix, t.of(Nodes), t.real, t.integer, t.real, t.integer
+    )
+)
+def newton_step(
+    basis: Basis,
+    surfaces: Surfaces,
+    start: Start,
+    motion: Motion,
+    linear: Floats,
+    now: Nodes,
+    length: float,
+    event: int,
+    level: float,
+    event_contact: int,
+) -> tuple[Floats, Floats, float]:
+    r"""Return the Newton steps of the indentations, the forces (M,) and the length, to be subtracted.
+
+    With the approach y that belongs to an indentation, the equations are :math:`y(\delta) = y_0(h) - G(h) F - G_s(h) F_s(\delta)` and
+    :math:`F = F_{law}(\delta, \dot y_0(h) - R(h) F)`. The indentations are eliminated from the linearised equations.
+    """
+    size = len(now.force)
+    nodes = len(basis.time)
+    inside = len(motion.approach_by_static) > 0
+    # approach by forces, residual of the approach, and minus the approach by the length, each divided by that of the indentations
+    columns = np.empty((size, size + 2))
+    missing = linear[2] - motion.approach + product(motion.approach_by_force, now.force)
+    if inside:
+        missing += product(motion.approach_by_static, linear[0])
+    by_length = np.zeros((3, size))
+    if event != GIVEN_LENGTH:
+        by_length = motion_by_length(basis, surfaces, start, length, now.force, linear[0])
+    for row in range(size):
+        for column in range(size):
+            columns[row, column] = motion.approach_by_force[row, column]
+        columns[row, size] = missing[row]
+        columns[row, size + 1] = -by_length[0, row]
+    by = indentations_by(linear, motion, columns)
+
+    unknowns = size if event == GIVEN_LENGTH else size + 1  # the last one is the relative change of the length
+    matrix = np.empty((unknowns, unknowns))
+    right = np.empty((unknowns, 1))
+    for row in range(size):
+        force_by_delta = linear[4, row] + linear[5, row]
+        for column in range(size):
+            matrix[row, column] = linear[6, row] * motion.rate_by_force[row, column] + force_by_delta * by[row, column]
+        matrix[row, row] += 1.0
+        right[row, 0] = now.force[row] - (linear[0, row] + linear[1, row]) + force_by_delta * by[row, size]
+        if event != GIVEN_LENGTH:
+            matrix[row, size] = (force_by_delta * by[row, size + 1] - linear[6, row] * by_length[1, row]) * length
+    if event != GIVEN_LENGTH:
+        last = (event_contact + 1) * nodes - 1
+        unit = _TINY
+        slope = 0.0
+        residual = 0.0
+        for column in range(size):
+            matrix[size, column] = 0.0
+        if event == AT_NO_FORCE:
+            matrix[size, last] = 1.0
+            unit = 1.0
+            residual = now.force[last]
+        elif event == AT_TURN:
+            slope = by_length[2, last]
+            residual = motion.closing[last]
+            for column in range(size):
+                by_rate = motion.rate_by_force[last, column]
+                matrix[size, column] = -by_rate
+                residual -= by_rate * now.force[column]
+                unit = max(unit, abs(by_rate))
+            if inside:
+                for node in range(size):
+                    by_static = motion.closing_by_static[last, node]
+                    within = by_static * linear[4, node]
+                    for column in range(size):
+                        matrix[size, column] += within * by[node, column]
+                    slope += within * by[node, size + 1]
+                    residual += within * by[node, size] - by_static * linear[0, node]
+        else:
+            slope = -by[last, size + 1]
+            residual = now.delta[last] - level - by[last, size]
+            for column in range(size):
+                matrix[size, column] = -by[last, column]
+                unit = max(unit, abs(by[last, column]))
+        for column in range(size):
+            matrix[size, column] /= unit
+        matrix[size, size] = slope / unit * length
+        right[size, 0] = residual / unit
+    solve_in_place(matrix, right)
+
+    force_step = right[:size, 0].copy()
+    length_step = 0.0 if event == GIVEN_LENGTH else right[size, 0] * length
+    delta_step = np.empty(size)
+    for row in range(size):
+        change = by[row, size] - by[row, size + 1] * length_step
+        for column in range(size):
+            change -= by[row, column] * force_step[column]
+        delta_step[row] = change
+    return delta_step, force_step, length_step
+
+
+@compiled(
+    lambda t: t.tuple(t.of(Nodes), t.real, t.real, t.boolean)(
+        t.of(Basis), t.of(Surfaces), t.of(Contacts), t.of(Start), t.of(Motion), t.of(Nodes), t.real, t.real, t.integer, t.real, t.integer
+    )
+)
+def improved(
+    basis: Basis,
+    surfaces: Surfaces,
+    contacts: Contacts,
+    start: Start,
+    motion: Motion,
+    now: Nodes,
+    length: float,
+    scale: float,
+    event: int,
+    level: float,
+    event_contact: int,
+) -> tuple[Nodes, float, float, bool]:
+    """Return the next iterate of the nodes and of the length [s], the relative size of the step, and whether the problem is well posed."""
+    linear = linearised_laws(contacts, motion, now)
+    # a negative compliance in series that exceeds that of the law makes the problem ill-posed
+    if not linear[3].min() > 0.0:
+        return now, length, np.inf, False
+    delta_step, force_step, length_step = newton_step(basis, surfaces, start, motion, linear, now, length, event, level, event_contact)
+    size = len(now.force)
+    static = np.empty(size)
+    force = np.empty(size)
+    delta = np.empty(size)
+    largest_step = 0.0
+    largest_force = 0.0
+    for row in range(size):
+        by_static = linear[4, row] * delta_step[row]
+        static[row] = linear[0, row] - by_static
+        delta[row] = now.delta[row] - delta_step[row]
+        force[row] = now.force[row] - force_step[row]
+        largest_step = max(largest_step, max(abs(force_step[row]), abs(by_static)))
+        largest_force = max(largest_force, abs(force[row]))
+    step_size = largest_step / (scale + largest_force)
+    if event != GIVEN_LENGTH:
+        length_step = min(max(length_step, -_LENGTH_FACTOR * length), _LENGTH_FACTOR / (1.0 + _LENGTH_FACTOR) * length)
+        length -= length_step
+        step_size = max(step_size, abs(length_step) / length)
+    return Nodes(static, force, delta), length, step_size, bool(np.isfinite(force).all())
+
+
+@compiled(lambda t: t.boolean(t.real, t.real))
+def is_converged(size: float, last_size: float) -> bool:
+    """Is the next step of Newton's method below rounding, after two relative steps? Convergence is quadratic, but for the derivatives."""
+    next_size = size * min(max((size / last_size) ** 2, _INEXACT), 1.0)
+    return next_size < _CONVERGED or (size < _STALLED and size > 0.3 * last_size)
+
+
+@compiled(
+    lambda t: t.tuple(t.of(Nodes), t.of(Motion), t.real, t.boolean)(
+        t.of(Basis), t.of(Surfaces), t.of(Contacts), t.of(Start), t.of(Nodes), t.of(Motion), t.real, t.integer, t.real, t.integer
+    )
+)
+def solve_stretch(
+    basis: Basis,
+    surfaces: Surfaces,
+    contacts: Contacts,
+    start: Start,
+    guess: Nodes,
+    motion: Motion,
+    length: float,
+    event: int,
+    level: float,
+    event_contact: int,
+) -> tuple[Nodes, Motion, float, bool]:
+    """Return forces and indentations at the nodes, the motion of the surfaces, the length [s], and whether the method converged.
+
+    Parameters
+    ----------
+    guess : Nodes
+        Where the iteration begins.
+    motion : Motion
+        The motion of the surfaces through the given length.
+    length : float
+        Length of the stretch [s]; with an event, its first guess.
+    event, level, event_contact : int, float, int
+        What ends the stretch, at which indentation [m] if so, and which contact it belongs to.
+    """
+    now = guess
+    scale = force_scale(surfaces, motion, length)
+    size = np.inf
+    for _ in range(MOST_ITERATIONS):
+        last_size = size
+        now, length, size, well_posed = improved(basis, surfaces, contacts, start, motion, now, length, scale, event, level, event_contact)
+        if not (well_posed and np.isfinite(size)):
+            break
+        if event != GIVEN_LENGTH:
+            motion = surface_motion(basis, surfaces, start, length)
+        if is_converged(size, last_size):
+            return now, motion, length, True
+    return now, motion, length, False
+
+
+@compiled(lambda t: t.of(Histories)(t.of(Basis), t.of(Surfaces), t.of(Contacts), t.of(Start), t.vector, t.of(Nodes), t.of(Motion), t.real))
+def contact_histories(
+    basis: Basis, surfaces: Surfaces, contacts: Contacts, start: Start, begun: Floats, found: Nodes, motion: Motion, length: float
+) -> Histories:
+    """Return motion and energy of the contacts through a solved stretch; `begun`: indentations of the laws at the start [m] (c,)."""
+    nodes = len(basis.time)
+    number = len(begun)
+    approaches = motion.approach - product(motion.approach_by_force, found.force)
+    if len(motion.approach_by_static):
+        approaches -= product(motion.approach_by_static, found.static)
+    rates = motion.rate - product(motion.rate_by_force, found.force)
+    approach = np.empty((number, nodes + 1))
+    rate = np.empty((number, nodes + 1))
+    delta = np.empty((number, nodes + 1))
+    dissipated = np.zeros(number)
+    roughness = 0.0
+    for contact in range(number):
+        first = contact * nodes
+        approach[contact, 0] = max(start.approach[contact], contacts.release_level[contact])
+        delta[contact, 0] = begun[contact]
+        begun_rate = start.outer_rate[contact]
+        in_series = False
+        for element in range(len(surfaces.rate)):
+            begun_rate -= surfaces.incidence[contact, element] * surfaces.rate[element] * start.local[element]
+            in_series = in_series or surfaces.incidence[contact, element] != 0.0
+        if in_series:  # the rate of a massless element jumps with the force
+            begun_rate = 0.0
+            for node in range(nodes):
+                begun_rate += basis.at_start[node] * rates[first + node]
+        rate[contact, 0] = begun_rate
+        fastest = abs(begun_rate)
+        for node in range(nodes):
+            approach[contact, node + 1] = approaches[first + node]
+            rate[contact, node + 1] = rates[first + node]
+            delta[contact, node + 1] = found.delta[first + node]
+            fastest = max(fastest, abs(rates[first + node]))
+            power = (found.force[first + node] - found.static[first + node]) * rates[first + node]
+            dissipated[contact] += length * basis.integral[nodes - 1, node] * power
+        largest = surfaces.mass[contact] * fastest / length
+        last = 0.0
+        for order in range(nodes):
+            coefficient = 0.0
+            for node in range(nodes):
+                coefficient += basis.spectrum[order, node] * found.force[first + node]
+            largest = max(largest, abs(coefficient))
+            if order >= nodes - 2:
+                last = max(last, abs(coefficient))
+        roughness = max(roughness, last / largest)
+    return Histories(approach, rate, delta, dissipated, roughness)

@@ -1,0 +1,118 @@
+"""A linear system reduced to some of its contacts, as the core takes it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from functools import cached_property
+
+import numpy as np
+
+from vibroimpact.arrays import Bools, Floats
+from vibroimpact.dynamics.core.records import Coordinates, Start, Surfaces
+from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State
+
+_RIGID_ROUNDING = 2e-15  # relative rounding error of the kinetic energy of the rigid motions that move the contacts
+_ROUNDING = 2e-14  # relative rounding error of the energy of the modes, which may far exceed that of a soft contact
+
+
+class ContactModes:
+    """The modes and massless elements of a system, restricted to some of its contacts.
+
+    `rigid`: number of rigid motions, which are the first coordinates. `inside`: does a mode lie within the contacts? `shapes` (1 or 2, c,
+    m), `frequency_squared`, `damping` (m,), `rate` (k,), `incidence`, `mobility` (c, k): as in `core.records.Surfaces`.
+    """
+
+    def __init__(self, system: LinearSystem, contacts: Sequence[int]) -> None:
+        rows = list(contacts)
+        self.rigid = int(system.rigid.sum())
+        assert system.rigid[: self.rigid].all()  # rigid motions come first
+        self.frequency_squared = system.angular_frequency[self.rigid :] ** 2
+        self.damping = np.ascontiguousarray(system.damping[self.rigid :])
+        outer = system.outer_shape[rows][:, self.rigid :]
+        inner = system.inner_shape[rows][:, self.rigid :]
+        self.inside = bool(inner.any())
+        self.shapes = np.stack([outer, inner] if self.inside else [outer])
+        self.rate = system.rate
+        self.incidence = np.ascontiguousarray(system.local_incidence[rows])
+        self.mobility = self.incidence * system.mobility
+
+
+class ContactView:
+    """A linear system reduced to some of its contacts.
+
+    `modes`: its modes, which several systems may share. `surfaces`, `coordinates`: what the core computes with.
+    """
+
+    def __init__(self, system: LinearSystem, contacts: Sequence[int], modes: ContactModes) -> None:
+        rows = list(contacts)
+        self.system = system
+        self.contacts = rows
+        self.modes = modes
+        self.rigid_shapes = np.ascontiguousarray(system.shape[rows][:, : modes.rigid])
+        self.offset = system.offset[rows]
+        self.surfaces = Surfaces(
+            frequency_squared=modes.frequency_squared,
+            damping=modes.damping,
+            shapes=modes.shapes,
+            rigid_pairs=self.rigid_shapes @ self.rigid_shapes.T,
+            mass=np.ascontiguousarray(system.mass[rows]),
+            gravity=np.ascontiguousarray(system.gravity[rows]),
+            rate=modes.rate,
+            incidence=modes.incidence,
+            mobility=modes.mobility,
+        )
+
+    @property
+    def mass(self) -> Floats:
+        """Effective masses of the rigid motions at the contacts [kg] (c,)."""
+        return self.surfaces.mass
+
+    @property
+    def active_rigid(self) -> Bools:
+        """Mask of the rigid motions that move the contacts (n,)."""
+        return np.asarray(self.system.rigid_shape[self.contacts].any(axis=0))
+
+    @cached_property
+    def coordinates(self) -> Coordinates:
+        """All coordinates of the system."""
+        system = self.system
+        return Coordinates(
+            frequency=system.angular_frequency,
+            damping=system.damping,
+            load=system.load,
+            rigid_shapes=self.rigid_shapes,
+            driven_shapes=np.ascontiguousarray(system.shape[self.contacts][:, system.number - system.driven :]),
+            rate=system.rate,
+            mobility=system.mobility,
+            rounding=np.where(system.rigid, _RIGID_ROUNDING * self.active_rigid, _ROUNDING),
+        )
+
+    @cached_property
+    def without_load(self) -> ContactView:
+        """The same without gravity and gaps, for the difference of two motions."""
+        system = self.system
+        free = replace(system, offset=np.zeros_like(system.offset), load=np.zeros_like(system.load))
+        return ContactView(free, self.contacts, self.modes)
+
+    def start(self, state: State) -> Start:
+        """Return the state of the surfaces in a state of the system."""
+        modes = self.modes
+        place = np.ascontiguousarray(state.displacement[modes.rigid :])
+        speed = np.ascontiguousarray(state.velocity[modes.rigid :])
+        outer_rate = self.rigid_shapes @ state.velocity[: modes.rigid] + modes.shapes[0] @ speed
+        inner_rate = modes.shapes[1] @ speed if modes.inside else np.zeros_like(outer_rate)
+        moved = self.rigid_shapes @ state.displacement[: modes.rigid] + modes.shapes.sum(axis=0) @ place
+        approach = self.offset + moved + modes.incidence @ state.local
+        return Start(place, speed, state.local, approach, outer_rate, inner_rate)
+
+
+def contact_view(system: LinearSystem, contacts: Iterable[int]) -> ContactView:
+    """Return a system reduced to some of its contacts; cached."""
+    numbers = tuple(contacts)
+    if numbers not in system.views:
+        if numbers not in system.shared_modes:
+            system.shared_modes[numbers] = ContactModes(system, numbers)
+        system.views[numbers] = ContactView(system, numbers, system.shared_modes[numbers])
+    found: ContactView = system.views[numbers]
+    return found

@@ -1,0 +1,60 @@
+"""The Radau rule of a stretch of contact, and the eigenbasis of its integration matrix."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+
+from vibroimpact.arrays import Complex, Floats
+from vibroimpact.dynamics.collocation import Map, Rule, collocation_rule
+from vibroimpact.dynamics.core.records import Basis
+
+NODES_PER_STRETCH = 12
+"""Nodes of a stretch: with more the eigenvectors of the integration matrix are too ill-conditioned, with fewer the stretches are too short.
+"""
+
+
+@dataclass(frozen=True)
+class RadauEigenbasis:
+    """A collocation rule, and what the core needs of it."""
+
+    rule: Rule
+    basis: Basis
+
+
+@cache
+def radau_eigenbasis(time_map: Map, root: int) -> RadauEigenbasis:
+    """Return the Radau rule under a time map, with the eigenbasis of its integration matrix."""
+    rule = collocation_rule(NODES_PER_STRETCH, time_map, root)
+    values, vectors = np.linalg.eig(rule.integral)
+    half = np.flatnonzero(values.imag >= 0.0)
+    values = values[half].astype(np.complex128)
+    paired = values.imag > 0.0
+    vectors = np.where(paired, 2.0, 1.0) * vectors[:, half]  # the sum of a conjugate pair is twice the real part of one
+    parts = np.stack([vectors.real, -vectors.imag], axis=2)  # (N, H, 2)
+    kept = np.stack([np.ones_like(paired), paired], axis=1)
+    back = np.zeros((len(half), 2, NODES_PER_STRETCH))
+    back[kept] = np.linalg.inv(parts[:, kept])  # inverse of the real matrix, so that a round trip is exact to rounding
+    inverse = back[:, 0] + 1j * back[:, 1]
+    filters = (vectors.T[:, :, None] * inverse[:, None, :]).reshape(len(half), -1)
+    basis = Basis(
+        time=rule.time,
+        integral=rule.integral,
+        integral_twice=rule.integral_twice,
+        spectrum=rule.coefficients * rule.slope,
+        at_start=rule.weights_at_start[:, 0],
+        eigenvalues=_parts(values),
+        one=_parts(inverse.sum(axis=1)),
+        clock=_parts(inverse @ rule.time),
+        forward=back.reshape(-1, NODES_PER_STRETCH).T,
+        backward=parts.reshape(NODES_PER_STRETCH, -1).T,
+        filters=np.stack([filters.real, -filters.imag], axis=1).reshape(2 * len(half), -1),
+    )
+    return RadauEigenbasis(rule, Basis(*(np.ascontiguousarray(array) for array in basis)))
+
+
+def _parts(values: Complex | Floats) -> Floats:
+    """Return the real and the imaginary parts as rows."""
+    return np.stack([values.real, values.imag])
