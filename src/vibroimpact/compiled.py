@@ -8,10 +8,12 @@ drops are computed, since loading numba takes some tenths of a second.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import cache
 from importlib.util import find_spec
 from typing import Any, cast
+
+import numpy as np
 
 from vibroimpact.compiler.function_values import force_at, force_coefficients, interpreted_force
 from vibroimpact.compiler.marks import Function, scalar, scalar_as
@@ -19,6 +21,7 @@ from vibroimpact.compiler.marks import Function, scalar, scalar_as
 __all__ = [
     "compiled",
     "force_address",
+    "force_addresses",
     "force_at",
     "force_coefficients",
     "force_function",
@@ -103,6 +106,11 @@ def force_address(law_class: type[Any]) -> Any:
     """
     force = force_function(law_class)
     return force if why_not_compiled() else force.address()
+
+
+def force_addresses(law_classes: Iterable[type[Any]]) -> Any:
+    """Return what `force_address` does of several laws, as an array."""
+    return np.array([force_address(law_class) for law_class in law_classes], dtype=object if why_not_compiled() else np.int64)
 
 
 @cache

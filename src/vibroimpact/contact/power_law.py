@@ -59,6 +59,8 @@ class SphereLaw(CompliantLaw):
 def _power_of_float(delta: float, exponent: float) -> float:
     if exponent == 1.5:
         return delta * math.sqrt(delta)
+    if exponent == 1.0:
+        return delta
     return float(delta**exponent)
 
 

@@ -8,11 +8,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numpy as np
-
 from vibroimpact.arrays import Floats
-from vibroimpact.compiled import compiled
-from vibroimpact.dynamics.core.native import evaluate
+from vibroimpact.compiled import compiled, force_at
 
 _LEAST_RADIUS = 1e-9
 _STEP = 1e-7  # relative step of finite differences
@@ -44,21 +41,20 @@ def is_in_series(series: Floats) -> bool:
     return bool(series[0] != 0.0 or series[1] != 0.0)
 
 
-@compiled(lambda t: t.real(t.integer, t.vector, t.real, t.real, t.vector, t.real))
+@compiled(lambda t: t.real(t.address, t.vector, t.real, t.real, t.vector, t.real))
 def indentation_at(law: Any, coefficients: Floats, speed: float, release: float, series: Floats, approach: float) -> float:
     """Return the indentation of a law [m] at an approach of the surfaces [m], at least that of release, to 1e-8 of it."""
     if not is_in_series(series):
         return max(approach, release)
-    forces = np.empty(2)
+    force = force_at(law)
     delta = max(approach, release)
     low = release
     for _ in range(_MOST_ITERATIONS):
         step = _STEP * (abs(delta) + _TINY)
-        evaluate(law, delta, 0.0, speed, coefficients, forces)
-        static = forces[0]
-        evaluate(law, delta + step, 0.0, speed, coefficients, forces)
+        static, _ = force(delta, 0.0, speed, coefficients)
+        deeper, _ = force(delta + step, 0.0, speed, coefficients)
         yielded, compliance = series_indentation(series, static)
-        slope = 1.0 + compliance * (forces[0] - static) / step
+        slope = 1.0 + compliance * (deeper - static) / step
         excess = delta + yielded - approach
         if excess < 0.0:
             low = delta
@@ -76,7 +72,7 @@ def indentation_at(law: Any, coefficients: Floats, speed: float, release: float,
     return delta
 
 
-@compiled(lambda t: t.void(t.integer, t.vector, t.real, t.real, t.vector, t.vector, t.vector, t.matrix))
+@compiled(lambda t: t.void(t.address, t.vector, t.real, t.real, t.vector, t.vector, t.vector, t.matrix))
 def linearise(
     law: Any, coefficients: Floats, speed: float, release: float, series: Floats, delta: Floats, rate: Floats, linear: Floats
 ) -> None:
@@ -92,21 +88,19 @@ def linearise(
         fastest = max(fastest, abs(rate[node]))
     step = _STEP * (deepest + _TINY)
     faster = _STEP * (fastest + _TINY)
-    forces = np.empty(2)
+    force = force_at(law)
     in_series = is_in_series(series)
     for node in range(len(delta)):
         held = delta[node] > release
         reached = max(delta[node], release)
-        evaluate(law, reached, rate[node], speed, coefficients, forces)
-        static = forces[0]
-        dissipative = forces[1]
+        static, dissipative = force(reached, rate[node], speed, coefficients)
         stiffness = 0.0
         by_delta = 0.0
         if held:
-            evaluate(law, reached + step, rate[node], speed, coefficients, forces)
-            stiffness = (forces[0] - static) / step
-            by_delta = (forces[1] - dissipative) / step
-        evaluate(law, reached, rate[node] + faster, speed, coefficients, forces)
+            deeper_static, deeper_dissipative = force(reached + step, rate[node], speed, coefficients)
+            stiffness = (deeper_static - static) / step
+            by_delta = (deeper_dissipative - dissipative) / step
+        _, faster_dissipative = force(reached, rate[node] + faster, speed, coefficients)
         approach = delta[node]
         slope = 1.0
         if in_series:
@@ -119,4 +113,4 @@ def linearise(
         linear[3, node] = slope
         linear[4, node] = stiffness
         linear[5, node] = by_delta
-        linear[6, node] = (forces[1] - dissipative) / faster
+        linear[6, node] = (faster_dissipative - dissipative) / faster

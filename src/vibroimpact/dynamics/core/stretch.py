@@ -9,10 +9,9 @@ from __future__ import annotations
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.compiled import compiled
+from vibroimpact.compiled import compiled, force_at
 from vibroimpact.dynamics.core.law import indentation_at, is_in_series, linearise
 from vibroimpact.dynamics.core.linear import solve_in_place
-from vibroimpact.dynamics.core.native import evaluate
 from vibroimpact.dynamics.core.receptance import motion_by_length, surface_motion
 from vibroimpact.dynamics.core.records import Basis, Contacts, Histories, Motion, Nodes, Start, Surfaces
 
@@ -73,17 +72,17 @@ def first_guess(
     size = len(motion.approach)
     static = np.empty(size)
     force = np.empty(size)
-    forces = np.empty(2)
     for contact in range(len(begun)):
         rate = start.outer_rate[contact]
         for element in range(len(surfaces.rate)):
             rate -= surfaces.incidence[contact, element] * surfaces.rate[element] * start.local[element]
         reached = max(begun[contact], contacts.release[contact])
-        evaluate(contacts.laws[contact], reached, rate, contacts.speed[contact], contacts.coefficients[contact], forces)
+        law = force_at(contacts.laws[contact])
+        begun_static, begun_dissipative = law(reached, rate, contacts.speed[contact], contacts.coefficients[contact])
         for node in range(nodes):
             later = trend[contact] * length * basis.time[node]
-            static[contact * nodes + node] = forces[0] + later
-            force[contact * nodes + node] = forces[0] + forces[1] + later
+            static[contact * nodes + node] = begun_static + later
+            force[contact * nodes + node] = begun_static + begun_dissipative + later
     approach = motion.approach - product(motion.approach_by_force, force)
     rates = motion.rate - product(motion.rate_by_force, force)
     if len(motion.approach_by_static):
@@ -101,9 +100,10 @@ def first_guess(
                 max(approach[row], contacts.release_level[contact]),
             )
             reached = max(delta[row], contacts.release[contact])
-            evaluate(contacts.laws[contact], reached, rates[row], contacts.speed[contact], contacts.coefficients[contact], forces)
+            law = force_at(contacts.laws[contact])
+            of_law, dissipative = law(reached, rates[row], contacts.speed[contact], contacts.coefficients[contact])
             static[row] = 0.0
-            force[row] = forces[0] + forces[1]
+            force[row] = of_law + dissipative
     return Nodes(static, force, delta)
 
 

@@ -10,10 +10,9 @@ from functools import cached_property
 import numpy as np
 
 from vibroimpact.arrays import Array
-from vibroimpact.compiled import force_coefficients
+from vibroimpact.compiled import force_addresses, force_coefficients
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.quasi_static import QuasiStatic
-from vibroimpact.dynamics.core.native import LAWS, force_of
 from vibroimpact.dynamics.core.records import Contacts
 
 _MOST_ITERATIONS = 40
@@ -54,7 +53,7 @@ class LocalContact:
         """The contact as the core takes it."""
         series = self.series
         return Contacts(
-            laws=np.array([force_of(type(self.law))], dtype=LAWS),
+            laws=force_addresses([type(self.law)]),
             coefficients=force_coefficients(self.law)[None],
             speed=np.array([float(self.approach_speed)]),
             release=np.array([self.release_indentation]),
