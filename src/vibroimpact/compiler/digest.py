@@ -53,7 +53,7 @@ class Digest:
     def _add(self, value: Any) -> None:
         if isinstance(getattr(value, "py_func", None), FunctionType):
             self.callees[value] = None
-            self._words.append(getattr(value, "signature_text", ""))
+            self._words.append(getattr(getattr(value, "compiled", value), "signature_text", ""))
             value = value.py_func
         if isinstance(value, FunctionType):
             self._add_function(cast(FunctionType, self._replaced.get(value, value)))

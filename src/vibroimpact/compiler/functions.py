@@ -14,6 +14,7 @@ from numba.extending import overload
 from vibroimpact.compiler import types
 from vibroimpact.compiler.code_cache import CodeCache
 from vibroimpact.compiler.code_store import compiling_alone
+from vibroimpact.compiler.deferred import DeferredFunction
 from vibroimpact.compiler.digest import Digest, NotDigestible
 from vibroimpact.compiler.function_values import force_at
 from vibroimpact.compiler.intrinsics import force_of_address
@@ -94,7 +95,7 @@ class CompiledFunction(CPUDispatcher):  # type: ignore[misc]
                 digest = Digest(self.py_func, _REPLACED)
             except NotDigestible:  # it is then compiled in each process
                 return False
-            self._callees = [callee for callee in digest.callees if isinstance(callee, CompiledFunction)]
+            self._callees = [callee.compiled for callee in digest.callees if isinstance(callee, DeferredFunction)]
             self._cache = CodeCache(self.py_func, f"{digest.text} {self.signature_text} {self.targetoptions}")
         return self._cache.has_code(self.targetctx)
 
