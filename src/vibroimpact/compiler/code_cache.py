@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import hashlib
+import io
 import pickle
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from numba.core import caching, compiler, serialize
+from numba.core import caching, compiler, environment, serialize
 from numba.core.codegen import ll
 from numba.core.runtime import _nrt_python, rtsys
 
@@ -55,13 +57,15 @@ class CodeCache(caching._Cache):  # type: ignore[misc]
         data = load_code(self.folder(target_context), self._file)
         if data is None:
             return None
-        if self._is_own:
-            _register_runtime(target_context)
-        else:
-            target_context.refresh()  # packages that extend numba may be needed
         try:
-            return compiler.CompileResult._rebuild(target_context, *pickle.loads(data))
-        except Exception:  # of whatever a pickle raises
+            if self._is_own:
+                _register_runtime(target_context)
+                parts = _Unpickler(io.BytesIO(data)).load()
+            else:
+                target_context.refresh()  # packages that extend numba may be needed
+                parts = pickle.loads(data)
+            return compiler.CompileResult._rebuild(target_context, *parts)
+        except Exception:  # whatever a pickle raises
             return None
 
     def save_overload(self, sig: Any, data: Any) -> None:
@@ -90,3 +94,25 @@ def _register_runtime(target_context: Any) -> None:
             ll.add_symbol(name if name.startswith("_") else f"NRT_{name}", address)
     except Exception:  # of another version of numba
         rtsys.initialize(target_context)
+
+
+class _Unpickler(pickle.Unpickler):
+    """Reads code without loading the modules of numba that it was made by, for a tenth of a second or two."""
+
+    def find_class(self, module: str, name: str) -> Any:
+        if (module, name) == (environment.__name__, "_rebuild_env"):
+            return _environment
+        return super().find_class(module, name)
+
+
+def _environment(module: str, constants: list[Any], name: str) -> Any:
+    """Return what numba keeps for a function: its globals, which only interpreted parts read, and its constants."""
+    if module in sys.modules or not module.startswith("numba."):
+        return environment._rebuild_env(module, constants, name)
+    kept = environment.lookup_environment(name)
+    if kept is None:
+        kept = environment.Environment({"__name__": module})
+        kept.consts[:] = constants
+        kept.env_name = name
+        environment.Environment._memo[name] = kept
+    return kept
