@@ -15,6 +15,7 @@ from typing import Any, cast
 
 import numpy as np
 
+from vibroimpact.compiler.deferred import DeferredFunction
 from vibroimpact.compiler.function_values import force_at, force_coefficients, interpreted_force
 from vibroimpact.compiler.marks import Function, scalar, scalar_as
 
@@ -58,11 +59,9 @@ def compiled(signature: Callable[[Any], Any]) -> Callable[[Function], Function]:
     """
 
     def compile_function(function: Function) -> Function:
-        if why_not_compiled():
+        if _why_switched_off():
             return function
-        from vibroimpact.compiler.functions import CompiledFunction
-
-        return cast(Function, CompiledFunction(function, signature))
+        return cast(Function, DeferredFunction(function, signature, why_not_compiled))
 
     return compile_function
 
@@ -116,14 +115,21 @@ def force_addresses(law_classes: Iterable[type[Any]]) -> Any:
 @cache
 def why_not_compiled() -> str:
     """Return why nothing is compiled, in words, or "" if it is."""
+    if reason := _why_switched_off():
+        return reason
+    try:
+        import numba
+    except Exception as error:  # ImportError where NumPy is too new for it, OSError where a library of it cannot be loaded
+        return f"numba cannot be loaded: {error}"
+    return "switched off in the configuration of numba" if numba.config.DISABLE_JIT else ""
+
+
+def _why_switched_off() -> str:
+    """Return why nothing is compiled, as far as it is known before numba is loaded, or ""."""
     if os.environ.get(SWITCH) == "0":
         return f"switched off by {SWITCH}=0"
     if os.environ.get(_SWITCH_OF_NUMBA, "0") not in ("", "0"):
         return f"switched off by {_SWITCH_OF_NUMBA}"
     if find_spec("numba") is None:
         return "numba is not installed"
-    try:
-        import numba
-    except Exception as error:  # ImportError where NumPy is too new for it, OSError where a library of it cannot be loaded
-        return f"numba cannot be loaded: {error}"
-    return "switched off in the configuration of numba" if numba.config.DISABLE_JIT else ""
+    return ""

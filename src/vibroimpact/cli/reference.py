@@ -141,7 +141,7 @@ def doctor(
     ] = False,
     as_json: Json = False,
 ) -> None:
-    """Show versions, compiled code and the store of modes, and test this program."""
+    """Show versions and what is kept on disk, and test this program."""
     from vibroimpact.cli.doctor import diagnose, diagnosis_rows, first_rebound_error
     from vibroimpact.runs.text import versions_table
 

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import hashlib
+import io
 import pickle
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from numba.core import caching, compiler, serialize
+from numba.core import caching, compiler, environment, serialize
 from numba.core.codegen import ll
 from numba.core.runtime import _nrt_python, rtsys
 
@@ -18,7 +20,7 @@ _OWN_PACKAGE = "vibroimpact."
 
 
 class CodeCache(caching._Cache):  # type: ignore[misc]
-    """Compiled code of a function in the project's own folder, under its digest and signature; damage counts as absence.
+    """Compiled code of a function in the project's own folder, under its digest; damage counts as absence.
 
     Numba's own cache looks at the file of a function and not at its callees, does not survive damaged files, and takes a folder for all
     that use numba in this process.
@@ -28,13 +30,12 @@ class CodeCache(caching._Cache):  # type: ignore[misc]
     function : callable
         The Python function.
     digest : str
-        Its digest, with that of its callees.
+        What it is compiled from, with its callees, its signature and the options.
     """
 
     def __init__(self, function: Callable[..., Any], digest: str) -> None:
-        self._name = function.__name__
+        self._file = f"{function.__name__}-{hashlib.sha256(digest.encode()).hexdigest()[:32]}"
         self._is_own = function.__module__.startswith(_OWN_PACKAGE)
-        self._digest = digest
         self.trouble = ""
         """Why the code is not on the disk, or ""."""
 
@@ -47,29 +48,31 @@ class CodeCache(caching._Cache):  # type: ignore[misc]
         """Return the folder of the code."""
         return machine_folder(str(target_context.codegen().magic_tuple()))
 
-    def has_code(self, sig: Any, target_context: Any) -> bool:
-        """Is the code for a signature on the disk?"""
-        return has_code(self.folder(target_context), self._file(sig))
+    def has_code(self, target_context: Any) -> bool:
+        """Is the code on the disk? It may be damaged."""
+        return has_code(self.folder(target_context), self._file)
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """Return the compiled function for a signature, or None."""
-        data = load_code(self.folder(target_context), self._file(sig))
+        """Return the compiled function, or None."""
+        data = load_code(self.folder(target_context), self._file)
         if data is None:
             return None
-        if self._is_own:
-            _register_runtime(target_context)
-        else:
-            target_context.refresh()  # packages that extend numba may be needed
         try:
-            return compiler.CompileResult._rebuild(target_context, *pickle.loads(data))
-        except Exception:  # of whatever a pickle raises
+            if self._is_own:
+                _register_runtime(target_context)
+                parts = _Unpickler(io.BytesIO(data)).load()
+            else:
+                target_context.refresh()  # packages that extend numba may be needed
+                parts = pickle.loads(data)
+            return compiler.CompileResult._rebuild(target_context, *parts)
+        except Exception:  # whatever a pickle raises
             return None
 
     def save_overload(self, sig: Any, data: Any) -> None:
         """Keep a compiled function, unless its code holds addresses of this process."""
         if data.library.has_dynamic_globals or not all(lifted.can_cache for lifted in data.lifted):
             return
-        self.trouble = save_code(self.folder(data.target_context), self._file(sig), serialize.dumps(data._reduce()))
+        self.trouble = save_code(self.folder(data.target_context), self._file, serialize.dumps(data._reduce()))
 
     def enable(self) -> None:
         """Do nothing: it is always enabled."""
@@ -79,9 +82,6 @@ class CodeCache(caching._Cache):  # type: ignore[misc]
 
     def flush(self) -> None:
         """Do nothing."""
-
-    def _file(self, sig: Any) -> str:
-        return f"{self._name}-{hashlib.sha256(f'{self._digest} {sig}'.encode()).hexdigest()[:32]}"
 
 
 def _register_runtime(target_context: Any) -> None:
@@ -94,3 +94,25 @@ def _register_runtime(target_context: Any) -> None:
             ll.add_symbol(name if name.startswith("_") else f"NRT_{name}", address)
     except Exception:  # of another version of numba
         rtsys.initialize(target_context)
+
+
+class _Unpickler(pickle.Unpickler):
+    """Reads code without loading the modules of numba that it was made by, for a tenth of a second or two."""
+
+    def find_class(self, module: str, name: str) -> Any:
+        if (module, name) == (environment.__name__, "_rebuild_env"):
+            return _environment
+        return super().find_class(module, name)
+
+
+def _environment(module: str, constants: list[Any], name: str) -> Any:
+    """Return what numba keeps for a function: its globals, which only interpreted parts read, and its constants."""
+    if module in sys.modules or not module.startswith("numba."):
+        return environment._rebuild_env(module, constants, name)
+    kept = environment.lookup_environment(name)
+    if kept is None:
+        kept = environment.Environment({"__name__": module})
+        kept.consts[:] = constants
+        kept.env_name = name
+        environment.Environment._memo[name] = kept
+    return kept

@@ -53,6 +53,7 @@ class Digest:
     def _add(self, value: Any) -> None:
         if isinstance(getattr(value, "py_func", None), FunctionType):
             self.callees[value] = None
+            self._words.append(getattr(getattr(value, "compiled", value), "signature_text", ""))
             value = value.py_func
         if isinstance(value, FunctionType):
             self._add_function(cast(FunctionType, self._replaced.get(value, value)))
@@ -67,6 +68,8 @@ class Digest:
             self._words.append(f"{type(value).__qualname__} {value!r}")
         elif isinstance(value, ModuleType):
             self._words.append(f"module {value.__name__}")
+        elif isinstance(value, type) and issubclass(value, tuple):
+            self._words.append(f"{value.__qualname__} {getattr(value, '_fields', ())}")
         elif isinstance(value, type | BuiltinFunctionType | np.ufunc) or _package(value) in _KNOWN_PACKAGES:
             self._words.append(f"{_package(value)} {getattr(value, '__qualname__', value)!r}")
         else:

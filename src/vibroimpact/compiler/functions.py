@@ -14,6 +14,7 @@ from numba.extending import overload
 from vibroimpact.compiler import types
 from vibroimpact.compiler.code_cache import CodeCache
 from vibroimpact.compiler.code_store import compiling_alone
+from vibroimpact.compiler.deferred import DeferredFunction
 from vibroimpact.compiler.digest import Digest, NotDigestible
 from vibroimpact.compiler.function_values import force_at
 from vibroimpact.compiler.intrinsics import force_of_address
@@ -80,6 +81,12 @@ class CompiledFunction(CPUDispatcher):  # type: ignore[misc]
         self.disable_compile()
         self._is_ready = True
 
+    @property
+    def signature_text(self) -> str:
+        """The signature, with all that it says of named tuples."""
+        signature = self._signature_of(types)
+        return " ".join([str(signature), *map(_fields, (signature.return_type, *signature.args))])
+
     def _is_on_disk(self) -> bool:
         """Is the code on the disk? From now on numba asks for it there."""
         _register()
@@ -88,9 +95,9 @@ class CompiledFunction(CPUDispatcher):  # type: ignore[misc]
                 digest = Digest(self.py_func, _REPLACED)
             except NotDigestible:  # it is then compiled in each process
                 return False
-            self._callees = [callee for callee in digest.callees if isinstance(callee, CompiledFunction)]
-            self._cache = CodeCache(self.py_func, digest.text)
-        return self._cache.has_code(self._signature_of(types), self.targetctx)
+            self._callees = [callee.compiled for callee in digest.callees if isinstance(callee, DeferredFunction)]
+            self._cache = CodeCache(self.py_func, f"{digest.text} {self.signature_text} {self.targetoptions}")
+        return self._cache.has_code(self.targetctx)
 
     def _alone(self) -> Any:
         return compiling_alone(self._cache.folder(self.targetctx)) if isinstance(self._cache, CodeCache) else nullcontext()
@@ -138,10 +145,17 @@ def _register() -> None:
     if not _REPLACED:
         _REPLACED[force_at] = force_at
         overload(force_at)(lambda address: lambda address: force_of_address(address))
-    while len(_REPLACED) <= len(SCALAR):
-        function, of_floats = SCALAR[len(_REPLACED) - 1]
+    for function, of_floats in SCALAR:
+        if function in _REPLACED:
+            continue
         _REPLACED[function] = of_floats or function
         overload(function, jit_options=_OPTIONS, strict=False)(_replacing(_REPLACED[function]))
+
+
+def _fields(kind: Any) -> str:
+    """Return the names of the members of a named tuple, which the name of its type leaves out."""
+    members = [_fields(member) for member in getattr(kind, "types", ())]
+    return " ".join([str(getattr(kind, "fields", "")), *members])
 
 
 def _replacing(body: Callable[..., Any]) -> Callable[..., Any]:

@@ -1,0 +1,47 @@
+"""A function that is compiled when it is first called, and for which numba is not loaded before that."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cached_property, update_wrapper
+from typing import Any
+
+
+class DeferredFunction:
+    """A function of the core in place of the compiled one.
+
+    Parameters
+    ----------
+    function : callable
+        The Python function.
+    signature : callable
+        Returns numba's signature from `vibroimpact.compiler.types`.
+    why_not : callable
+        Returns why nothing is compiled, or "".
+    """
+
+    def __init__(self, function: Callable[..., Any], signature: Callable[[Any], Any], why_not: Callable[[], str]) -> None:
+        update_wrapper(self, function)
+        self.py_func = function
+        self._signature = signature
+        self._why_not = why_not
+
+    @cached_property
+    def compiled(self) -> Any:
+        """The compiled function; the Python function if numba turns out not to load."""
+        if self._why_not():
+            return self.py_func
+        from vibroimpact.compiler.functions import CompiledFunction
+
+        return CompiledFunction(self.py_func, self._signature)
+
+    @property
+    def _numba_type_(self) -> Any:  # what numba asks for where a function that it compiles calls this one
+        return self.compiled._numba_type_
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Compile the function, unless that was done, and call it."""
+        return self.compiled(*arguments)
+
+    def __reduce__(self) -> str:
+        return self.py_func.__qualname__  # pickled by its name, as Python's functions are
