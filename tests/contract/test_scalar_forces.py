@@ -14,7 +14,7 @@ import pytest
 
 import vibroimpact as vi
 from support import plain_case
-from vibroimpact.compiled import _SCALAR
+from vibroimpact.compiler.marks import SCALAR as _SCALAR
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.hunt_crossley import HuntCrossley
