@@ -6,9 +6,11 @@ code makes one of an address by `force_at` and its like. Without a compiler all 
 
 from __future__ import annotations
 
-from collections import OrderedDict
 from collections.abc import Callable
+from functools import lru_cache
+from itertools import count
 from typing import Any
+from weakref import WeakValueDictionary
 
 import numpy as np
 
@@ -25,10 +27,12 @@ LAW_FUNCTIONS = {
 MOST_COEFFICIENTS = 24
 """Largest number of coefficients of a law."""
 
-_MOST_HELD = 10_000
+_NUMBERS = count(1)
 
-_HELD: OrderedDict[int, Any] = OrderedDict()
-"""The last laws without functions of floats, which are called by number; one that is called stays."""
+_HELD: WeakValueDictionary[int, Any] = WeakValueDictionary()
+"""Laws without functions of floats, by the numbers by which they are called; no number is given twice."""
+
+_MOST_CHANGED = 256  # laws under other memories that are kept, since a law is called many times under each
 
 
 def force_at(address: Any) -> Any:
@@ -54,62 +58,85 @@ def compressed_at(address: Any) -> Any:
 def law_coefficients(law: Any) -> Floats:
     """Return the coefficients of a contact law for its functions.
 
-    For a law that has only methods this is a number by which the law itself is called.
+    For a law that has only methods these are a number, by which the law itself is called, and its memories; the law must be kept as long
+    as they are used, those that `compressed` has made of them included.
     """
     coefficients = np.zeros(MOST_COEFFICIENTS)
-    if type(law).scalar_forces is not None:
-        coefficients[: len(law.coefficients)] = law.coefficients
+    if type(law).missing_functions():
+        memories = tuple(law.memories().values())
+        coefficients[0] = _number(law)
+        coefficients[1 : 1 + len(memories)] = memories
     else:
-        coefficients[0] = _hold(law)
+        coefficients[: len(law.coefficients)] = law.coefficients
     return coefficients
 
 
 def interpreted_function(law_class: type[Any], kind: str) -> Callable[..., Any]:
-    """Return a function of a law as a Python function of floats and coefficients; `kind`: of `LAW_FUNCTIONS`."""
-    function: Callable[..., Any] | None = getattr(law_class, LAW_FUNCTIONS[kind])
-    return _OF_HELD[kind] if function is None else function
+    """Return a function of a law as a Python function of floats and coefficients; `kind`: of `LAW_FUNCTIONS`.
+
+    Of a law that lacks any of the four it is one that calls its methods.
+    """
+    function: Callable[..., Any] = _OF_HELD[kind] if law_class.missing_functions() else getattr(law_class, LAW_FUNCTIONS[kind])
+    return function
 
 
-def _hold(law: Any) -> int:
-    _HELD[id(law)] = law
-    _HELD.move_to_end(id(law))
-    while len(_HELD) > _MOST_HELD:
-        _HELD.popitem(last=False)
-    return id(law)
-
-
-def _held(coefficients: Floats) -> Any:
-    number = int(coefficients[0])
-    _HELD.move_to_end(number)
-    return _HELD[number]
-
-
-def _forces_of_held(delta: float, delta_dot: float, approach_speed: float, coefficients: Floats) -> tuple[float, float]:
+def forces_of_held(delta: float, delta_dot: float, approach_speed: float, coefficients: Any) -> tuple[float, float]:
+    """Return the forces of the law with the number and the memories that `law_coefficients` returned."""
     static, dissipative = _held(coefficients).forces(delta, delta_dot, approach_speed)
     return float(static), float(dissipative)
 
 
-def _energies_of_held(delta: float, coefficients: Floats) -> tuple[float, float]:
+def energies_of_held(delta: float, coefficients: Any) -> tuple[float, float]:
+    """Return elastic energy and plastic work of such a law."""
     law = _held(coefficients)
     return float(law.elastic_energy(delta)), float(law.plastic_work(delta))
 
 
-def _levels_of_held(coefficients: Floats) -> tuple[float, float, float, float, float]:
+def levels_of_held(coefficients: Any) -> tuple[float, ...]:
+    """Return the levels of such a law; any compression may change a memory, and no more than two breakpoints are known."""
     law = _held(coefficients)
-    breakpoints = [*(float(level) for level in law.breakpoints), np.inf, np.inf]
-    # the memory of a law whose levels are not known may change at any indentation
-    memory = -np.inf if law.memories() else np.inf
-    return float(law.touch_level), float(law.release_level), memory, breakpoints[0], breakpoints[1]
+    touch_level = float(law.touch_level)
+    memory_level = touch_level if law.memories() else np.inf
+    first, second = (*map(float, law.breakpoints), np.inf, np.inf)[:2]
+    return touch_level, float(law.release_level), memory_level, first, second
 
 
-def _compressed_of_held(deepest: float, coefficients: Floats, changed: Floats) -> None:
+def compress_held(deepest: float, coefficients: Any, changed: Any) -> None:
+    """Write the coefficients of such a law after compression, which differ in its memories."""
     changed[:] = coefficients
-    changed[0] = _hold(_held(coefficients).after_compression(deepest))
+    memories = _held(coefficients).after_compression(deepest).memories().values()
+    for index, memory in enumerate(memories):
+        changed[1 + index] = float(memory)
+
+
+def _number(law: Any) -> int:
+    """Return the number of a law; a copy of a law, which comes with the number of that, gets its own."""
+    number = int(vars(law).get("_number", 0))
+    if _HELD.get(number) is not law:
+        number = vars(law)["_number"] = next(_NUMBERS)
+        _HELD[number] = law
+    return number
+
+
+def _held(coefficients: Any) -> Any:
+    number = int(coefficients[0])
+    return _under(number, tuple(coefficients[1 : 1 + len(_memories(number))]))
+
+
+@lru_cache(maxsize=_MOST_CHANGED)
+def _memories(number: int) -> tuple[str, ...]:
+    return tuple(_HELD[number].memories())
+
+
+@lru_cache(maxsize=_MOST_CHANGED)
+def _under(number: int, memories: tuple[float, ...]) -> Any:
+    """Return a law under other memories than its own; it lives on here, but its original does not."""
+    return _HELD[number].changed(dict(zip(_memories(number), memories, strict=True)))
 
 
 _OF_HELD: dict[str, Callable[..., Any]] = {
-    "force": _forces_of_held,
-    "energies": _energies_of_held,
-    "levels": _levels_of_held,
-    "compressed": _compressed_of_held,
+    "force": forces_of_held,
+    "energies": energies_of_held,
+    "levels": levels_of_held,
+    "compressed": compress_held,
 }

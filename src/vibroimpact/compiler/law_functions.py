@@ -8,7 +8,7 @@ from typing import Any
 
 from numba import objmode
 
-from vibroimpact.compiler.function_values import LAW_FUNCTIONS, interpreted_function
+from vibroimpact.compiler.function_values import interpreted_function
 from vibroimpact.compiler.functions import CompiledFunction
 from vibroimpact.errors import SlowLawWarning
 
@@ -26,8 +26,8 @@ def compiled_law_function(law_class: type[Any], kind: str) -> CompiledFunction:
     """Return a function of a law as a function value, compiled once a process; `kind`: of `LAW_FUNCTIONS`."""
     source = interpreted_function(law_class, kind)
     if source not in _COMPILED:
-        attribute = LAW_FUNCTIONS[kind]
-        reason = _why_not_compiled(source, kind) if getattr(law_class, attribute) is not None else f"it has no `{attribute}`"
+        missing = law_class.missing_functions()
+        reason = f"it has no {_listed(missing)}" if missing else _why_not_compiled(source, kind)
         if reason:
             _COMPILED[source] = CompiledFunction(_CALLING[kind](source), _signature(kind), nogil=False)
             _COMPILED[source].ready()
@@ -110,6 +110,11 @@ _CALLING = {
     "levels": _calling_levels,
     "compressed": _calling_compressed,
 }
+
+
+def _listed(names: list[str]) -> str:
+    quoted = [f"`{name}`" for name in names]
+    return quoted[0] if len(quoted) == 1 else f"{', '.join(quoted[:-1])} and {quoted[-1]}"
 
 
 def _first_reason(error: Exception) -> str:

@@ -19,7 +19,6 @@ from vibroimpact.dynamics.core.events import (
     NO_PUSH,
     PARTED,
     TENSION_CUT,
-    TENSION_KEPT,
     TURN,
     first_event,
 )
@@ -31,7 +30,7 @@ from vibroimpact.dynamics.core.flight import (
     state_after,
     time_to_separation,
 )
-from vibroimpact.dynamics.core.law import approach_at, law_after, law_indentation, static_work, stored_energy
+from vibroimpact.dynamics.core.law import law_after, law_indentation, static_work, stored_energy
 from vibroimpact.dynamics.core.path import stretch_path
 from vibroimpact.dynamics.core.receptance import surface_motion
 from vibroimpact.dynamics.core.records import (
@@ -202,9 +201,7 @@ def attempt(
         ends = AT_TURN
     nodes, motion, length, solved = solve_stretch(basis, surfaces, contacts, start, guess, motion, length, ends, event.level, 0)
     contact = contact_histories(basis, surfaces, contacts, start, begun, nodes, motion, length)
-    path = stretch_path(
-        basis, surfaces, coordinates, state.displacement, state.velocity, state.local, length, nodes.force, nodes.static
-    )
+    path = stretch_path(basis, surfaces, coordinates, state.displacement, state.velocity, state.local, length, nodes.force, nodes.static)
     number = len(basis.time)
     closing = contact.rate[0].copy()
     if surfaces.shapes.shape[0] == 2:
@@ -533,9 +530,7 @@ def follow_contact(
         contacts = contacts_of(law)
         begun = begun_indentations(contacts, start, np.array([delta]))
         given = Event(NO_EVENT, 0.0, min(next_length, longest))
-        tried = attempt(
-            basis, system, surfaces, coordinates, law, manner, state, start, contacts, begun, no_guess, trend, False, given
-        )
+        tried = attempt(basis, system, surfaces, coordinates, law, manner, state, start, contacts, begun, no_guess, trend, False, given)
         event = no_event
         if tried.event.kind != NO_EVENT:
             # also tried if the stretch is not resolved, as the event may be the only reason
@@ -617,7 +612,5 @@ def follow_contact(
             if is_near_rest(system, law, state, force):
                 outcome = NEAR_REST
                 break
-    now = Progress(
-        time, next_length, delta, force, trend, closing, fresh, pushes, steps, memories, largest_force, deepest
-    )
+    now = Progress(time, next_length, delta, force, trend, closing, fresh, pushes, steps, memories, largest_force, deepest)
     return outcome, part, now, state, law

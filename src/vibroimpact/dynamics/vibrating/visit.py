@@ -15,8 +15,8 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.quasi_static import QuasiStatic
-from vibroimpact.dynamics.core import contact as core
 from vibroimpact.dynamics.contact import CAPTURED, FAILED, RELEASED, RIDING, SETTLED
+from vibroimpact.dynamics.core import contact as core
 from vibroimpact.dynamics.vibrating.active_contact import ContactDefinition, closing_speed, locate_highest_peak, motion_speed
 from vibroimpact.dynamics.vibrating.carried_oscillations import SteadyResponse, steady_response
 from vibroimpact.dynamics.vibrating.compiled_contact import CompiledContact, Limits
