@@ -153,10 +153,7 @@ def _register() -> None:
 
 
 def _inserting(of_address: Any) -> Callable[..., Any]:
-    def replacement(address: Any) -> Callable[..., Any]:
-        return lambda address: of_address(address)
-
-    return replacement
+    return lambda address: lambda address: of_address(address)
 
 
 def _fields(kind: Any) -> str:

@@ -61,8 +61,8 @@ from vibroimpact.dynamics.core.stretch import (
 )
 
 RELEASED, CAPTURED, RIDES, TOO_STIFF, NEAR_REST, FULL = 0, 1, 2, 3, 4, 5
-"""How a contact goes on: released; too little energy to leave; in contact at the end of the time or of the steps; not to be integrated; near
-equilibrium, which is to be looked at; no room for a further part.
+"""How a contact goes on: released; too little energy to leave; in contact at the end of the time or of the steps; not to be integrated;
+near equilibrium, which is to be looked at; no room for a further part.
 """
 
 ENDS_AT_NO_FORCE = 1

@@ -89,8 +89,11 @@ class CompiledContact:
         """Follow the contact until something is to be decided; bring the march up to there, and return how it goes on."""
         march, outcome = self.march, core.FULL
         while outcome == core.FULL:
+            touch, inside, release = self.bases
             outcome, count, self.progress, self.state, self.law = core.follow_contact(
-                *(one.basis for one in self.bases),
+                touch.basis,
+                inside.basis,
+                release.basis,
                 march.system.record,
                 self.view.surfaces,
                 self.view.coordinates,
