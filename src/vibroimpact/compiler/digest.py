@@ -27,11 +27,6 @@ class Digest:
     replaced : mapping
         The functions that compiled code calls in place of others.
 
-    Attributes
-    ----------
-    callees : dict
-        The compiled functions that it calls, directly or through others, as keys.
-
     Raises
     ------
     NotDigestible
@@ -39,7 +34,6 @@ class Digest:
     """
 
     def __init__(self, function: Callable[..., Any], replaced: Mapping[Any, Callable[..., Any]]) -> None:
-        self.callees: dict[Any, None] = {}
         self._replaced = replaced
         self._words: list[str] = []
         self._numbers: dict[int, int] = {}
@@ -52,7 +46,6 @@ class Digest:
 
     def _add(self, value: Any) -> None:
         if isinstance(getattr(value, "py_func", None), FunctionType):
-            self.callees[value] = None
             self._words.append(getattr(getattr(value, "compiled", value), "signature_text", ""))
             value = value.py_func
         if isinstance(value, FunctionType):
