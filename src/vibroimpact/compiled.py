@@ -8,24 +8,35 @@ drops are computed, since loading numba takes some tenths of a second.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from functools import cache
 from importlib.util import find_spec
 from typing import Any, cast
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from vibroimpact.compiler.deferred import DeferredFunction
-from vibroimpact.compiler.function_values import force_at, force_coefficients, interpreted_force
+from vibroimpact.compiler.function_values import (
+    LAW_FUNCTIONS,
+    compressed_at,
+    energies_at,
+    force_at,
+    interpreted_function,
+    law_coefficients,
+    levels_at,
+)
 from vibroimpact.compiler.marks import Function, scalar, scalar_as
 
 __all__ = [
     "compiled",
-    "force_address",
-    "force_addresses",
+    "compressed_at",
+    "energies_at",
     "force_at",
-    "force_coefficients",
-    "force_function",
+    "law_addresses",
+    "law_coefficients",
+    "law_function",
+    "levels_at",
     "scalar",
     "scalar_as",
     "why_not_compiled",
@@ -66,50 +77,60 @@ def compiled(signature: Callable[[Any], Any]) -> Callable[[Function], Function]:
     return compile_function
 
 
-def force_function(law_class: type[Any]) -> Any:
-    """Return the force of a contact law as a function value of the type `force`; without a compiler the Python function.
+def law_function(law_class: type[Any], kind: str = "force") -> Any:
+    """Return a function of a contact law as a function value; without a compiler the Python function.
 
-    It takes indentation [m], its rate [m/s], approach speed [m/s] and the coefficients that `force_coefficients` returns, and returns
-    static and dissipative force [N]. A law that numba cannot compile is called in Python from compiled code; a `SlowLawWarning` says so.
+    A law that numba cannot compile is called in Python from compiled code; a `SlowLawWarning` says so.
 
     Parameters
     ----------
     law_class : type
         Class of the law, a `CompliantLaw`.
+    kind : {"force", "energies", "levels", "compressed"}
+        Which of its functions.
     """
     if why_not_compiled():
-        return interpreted_force(law_class)
-    from vibroimpact.compiler.law_forces import compiled_force
+        return interpreted_function(law_class, kind)
+    from vibroimpact.compiler.law_functions import compiled_law_function
 
-    return compiled_force(law_class)
+    return compiled_law_function(law_class, kind)
 
 
-def force_address(law_class: type[Any]) -> Any:
-    """Return what a compiled function takes from Python as an `address`, and makes the force of a law of by `force_at`.
+def law_addresses(law_class: type[Any]) -> Any:
+    """Return what compiled functions take from Python for the four functions of a law, and make them of by `force_at` and its like.
 
     Parameters
     ----------
     law_class : type
         Class of the law, a `CompliantLaw`.
+
+    Returns
+    -------
+    array, shape (4,)
+        Of its force, energies, levels and change by compression.
 
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> @compiled(lambda t: t.real(t.address, t.real, t.vector))
-    ... def static_force(address, delta, coefficients):
-    ...     force = force_at(address)
+    >>> @compiled(lambda t: t.real(t.integers, t.real, t.vector))
+    ... def static_force(addresses, delta, coefficients):
+    ...     force = force_at(addresses[0])
     ...     return force(delta, 0.0, 1.0, coefficients)[0]
     >>> law = vi.find_contact_law("hunt-crossley")(stiffness=2.0, restitution=0.5)
-    >>> static_force(force_address(type(law)), 4.0, force_coefficients(law))
+    >>> static_force(law_addresses(type(law)), 4.0, law_coefficients(law))
     16.0
     """
-    force = force_function(law_class)
-    return force if why_not_compiled() else force.address()
+    if law_class not in _ADDRESSES:
+        functions = [law_function(law_class, kind) for kind in LAW_FUNCTIONS]
+        _ADDRESSES[law_class] = (
+            np.array(functions, dtype=object)
+            if why_not_compiled()
+            else np.array([function.address() for function in functions], dtype=np.int64)
+        )
+    return _ADDRESSES[law_class]
 
 
-def force_addresses(law_classes: Iterable[type[Any]]) -> Any:
-    """Return what `force_address` does of several laws, as an array."""
-    return np.array([force_address(law_class) for law_class in law_classes], dtype=object if why_not_compiled() else np.int64)
+_ADDRESSES: WeakKeyDictionary[type[Any], Any] = WeakKeyDictionary()
 
 
 @cache

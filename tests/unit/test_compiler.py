@@ -23,11 +23,12 @@ import pytest
 
 import vibroimpact as vi
 import vibroimpact.dynamics.core
-from vibroimpact.compiled import SWITCH, compiled, force_address, force_at, force_coefficients, force_function, why_not_compiled
+from vibroimpact.compiled import SWITCH, compiled, force_at, law_addresses, law_coefficients, law_function, why_not_compiled
 from vibroimpact.compiler import code_store, notice
 from vibroimpact.compiler.code_store import PLACE, load_code, save_code
-from vibroimpact.compiler.deferred import DEFERRED, DeferredFunction
+from vibroimpact.compiler.deferred import DeferredFunction
 from vibroimpact.compiler.digest import Digest
+from vibroimpact.compiler.marks import DEFERRED
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.hunt_crossley import HuntCrossley
 
@@ -148,8 +149,8 @@ def largest_of(values: np.ndarray) -> float:
 @pytest.mark.parametrize("law", [HuntCrossley(stiffness=1e9, restitution=0.6), Hertz(stiffness=1e9)], ids=lambda law: law.name)
 def test_a_law_is_called_by_value_and_by_address(law: vi.ContactLaw) -> None:
     expected = pytest.approx(work_of_arrays(law), rel=1e-14)
-    assert work(10, force_function(type(law)), force_coefficients(law)) == expected
-    assert work_of_law(10, force_address(type(law)), force_coefficients(law)) == expected
+    assert work(10, law_function(type(law)), law_coefficients(law)) == expected
+    assert work_of_law(10, law_addresses(type(law))[0], law_coefficients(law)) == expected
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -180,13 +181,13 @@ class NotCompilable(Hertz):
 @pytest.mark.parametrize("law", [OfArrays(stiffness=1e9), NotCompilable(stiffness=1e9)], ids=lambda law: law.name)
 def test_a_law_that_is_not_compiled_is_called_and_says_so_once(law: vi.ContactLaw) -> None:
     with pytest.warns(vi.errors.SlowLawWarning, match=f"the law {law.name} is not compiled, and its force takes microseconds"):
-        address = force_address(type(law))
-    coefficients = force_coefficients(law)
+        address = law_addresses(type(law))[0]
+    coefficients = law_coefficients(law)
     expected = pytest.approx(work_of_arrays(law), rel=1e-14)
     assert work_of_law(10, address, coefficients) == expected
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        assert work_of_law(10, force_address(type(law)), coefficients) == expected
+        assert work_of_law(10, law_addresses(type(law))[0], coefficients) == expected
     with ThreadPoolExecutor(4) as threads:
         assert set(threads.map(lambda _: work_of_law(500, address, coefficients), range(8))) == {work_of_law(500, address, coefficients)}
 
@@ -205,9 +206,9 @@ class Failing(Hertz):
 def test_an_error_of_a_law_reaches_the_caller() -> None:
     law = Failing(stiffness=1.0)
     with pytest.warns(vi.errors.SlowLawWarning):
-        address = force_address(Failing)
+        address = law_addresses(Failing)[0]
     with pytest.raises(vi.InputError, match="no force"):
-        work_of_law(10, address, force_coefficients(law))
+        work_of_law(10, address, law_coefficients(law))
 
 
 # on the disk

@@ -6,8 +6,7 @@ from collections.abc import Callable
 from functools import cached_property, update_wrapper
 from typing import Any
 
-DEFERRED: list[DeferredFunction] = []
-"""All functions of this process that are compiled when they are first called."""
+from vibroimpact.compiler.marks import DEFERRED
 
 
 class DeferredFunction:

@@ -13,6 +13,9 @@ _KNOWN_PACKAGES = ("numpy", "math", "cmath", "operator", "builtins", "numba")
 """Packages whose versions are in the name of the folder, so that their functions need only be named."""
 
 
+_OWN_PACKAGE = "vibroimpact"
+
+
 class NotDigestible(Exception):
     """A function refers to something whose content is not known."""
 
@@ -34,6 +37,8 @@ class Digest:
     """
 
     def __init__(self, function: Callable[..., Any], replaced: Mapping[Any, Callable[..., Any]]) -> None:
+        self.is_own = True
+        """Are all functions those of this package, or of NumPy and the like?"""
         self._replaced = replaced
         self._words: list[str] = []
         self._numbers: dict[int, int] = {}
@@ -76,6 +81,7 @@ class Digest:
             self._words.append(f"function {self._numbers[id(function)]}")
             return
         self._numbers[id(function)] = len(self._numbers)
+        self.is_own &= _package(function) == _OWN_PACKAGE
         self._add_code(function.__code__, function.__doc__)
         self._add(function.__defaults__)
         for name, value in _used(function):

@@ -1,12 +1,14 @@
-"""The force of a contact law as a function value, which compiled functions pass on and call.
+"""The functions of a contact law as function values, which compiled functions pass on and call.
 
-From Python a law is given by the address of its machine code, as numba takes some 40 us to make a function value of an argument; compiled
-code makes one of the address by `force_at`. Without a compiler both are the Python function.
+From Python a law is given by the addresses of its machine code, as numba takes some 40 us to make a function value of an argument; compiled
+code makes one of an address by `force_at` and its like. Without a compiler all of them are the Python function.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import lru_cache
+from itertools import count
 from typing import Any
 from weakref import WeakValueDictionary
 
@@ -14,39 +16,127 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 
+LAW_FUNCTIONS = {
+    "force": "scalar_forces",
+    "energies": "scalar_energies",
+    "levels": "scalar_levels",
+    "compressed": "scalar_compressed",
+}
+"""The functions of a law, in the order of `law_addresses`, with the attributes of its class that hold them."""
+
 MOST_COEFFICIENTS = 24
 """Largest number of coefficients of a law."""
 
+_NUMBERS = count(1)
+
 _HELD: WeakValueDictionary[int, Any] = WeakValueDictionary()
-"""Laws without a force of floats, which are called by number."""
+"""Laws without functions of floats, by the numbers by which they are called; no number is given twice."""
+
+_MOST_CHANGED = 256  # laws under other memories that are kept, since a law is called many times under each
 
 
 def force_at(address: Any) -> Any:
-    """Return the function value at an address that `force_address` returned; for use in compiled functions."""
+    """Return the function value of a law's force at an address; for use in compiled functions."""
     return address
 
 
-def force_coefficients(law: Any) -> Floats:
-    """Return the coefficients of a contact law for `force_function`.
+def energies_at(address: Any) -> Any:
+    """Return the function value of a law's energies at an address; for use in compiled functions."""
+    return address
 
-    For a law that has only `forces` this is a number by which the law itself is called; it must be kept as long as that is used.
+
+def levels_at(address: Any) -> Any:
+    """Return the function value of a law's levels at an address; for use in compiled functions."""
+    return address
+
+
+def compressed_at(address: Any) -> Any:
+    """Return the function value of a law's change by compression at an address; for use in compiled functions."""
+    return address
+
+
+def law_coefficients(law: Any) -> Floats:
+    """Return the coefficients of a contact law for its functions.
+
+    For a law that has only methods these are a number, by which the law itself is called, and its memories; the law must be kept as long
+    as they are used, those that `compressed` has made of them included.
     """
     coefficients = np.zeros(MOST_COEFFICIENTS)
-    if type(law).scalar_forces is not None:
-        coefficients[: len(law.coefficients)] = law.coefficients
+    if type(law).missing_functions():
+        memories = tuple(law.memories().values())
+        coefficients[0] = _number(law)
+        coefficients[1 : 1 + len(memories)] = memories
     else:
-        _HELD[id(law)] = law
-        coefficients[0] = id(law)
+        coefficients[: len(law.coefficients)] = law.coefficients
     return coefficients
 
 
-def interpreted_force(law_class: type[Any]) -> Callable[..., Any]:
-    """Return the force of a law as a Python function of floats and coefficients."""
-    scalar_forces: Callable[..., Any] | None = law_class.scalar_forces
-    return forces_of_held if scalar_forces is None else scalar_forces
+def interpreted_function(law_class: type[Any], kind: str) -> Callable[..., Any]:
+    """Return a function of a law as a Python function of floats and coefficients; `kind`: of `LAW_FUNCTIONS`.
+
+    Of a law that lacks any of the four it is one that calls its methods.
+    """
+    function: Callable[..., Any] = _OF_HELD[kind] if law_class.missing_functions() else getattr(law_class, LAW_FUNCTIONS[kind])
+    return function
 
 
-def forces_of_held(delta: float, delta_dot: float, approach_speed: float, coefficients: Floats) -> tuple[float, float]:
-    """Return the forces of the law with the number that `force_coefficients` returned."""
-    static, dissipative = _HELD[int(coefficients[0])].forces(delta, delta_dot, approach_speed)
+def forces_of_held(delta: float, delta_dot: float, approach_speed: float, coefficients: Any) -> tuple[float, float]:
+    """Return the forces of the law with the number and the memories that `law_coefficients` returned."""
+    static, dissipative = _held(coefficients).forces(delta, delta_dot, approach_speed)
     return float(static), float(dissipative)
+
+
+def energies_of_held(delta: float, coefficients: Any) -> tuple[float, float]:
+    """Return elastic energy and plastic work of such a law."""
+    law = _held(coefficients)
+    return float(law.elastic_energy(delta)), float(law.plastic_work(delta))
+
+
+def levels_of_held(coefficients: Any) -> tuple[float, ...]:
+    """Return the levels of such a law; any compression may change a memory, and no more than two breakpoints are known."""
+    law = _held(coefficients)
+    touch_level = float(law.touch_level)
+    memory_level = touch_level if law.memories() else np.inf
+    first, second = (*map(float, law.breakpoints), np.inf, np.inf)[:2]
+    return touch_level, float(law.release_level), memory_level, first, second
+
+
+def compress_held(deepest: float, coefficients: Any, changed: Any) -> None:
+    """Write the coefficients of such a law after compression, which differ in its memories."""
+    changed[:] = coefficients
+    memories = _held(coefficients).after_compression(deepest).memories().values()
+    for index, memory in enumerate(memories):
+        changed[1 + index] = float(memory)
+
+
+def _number(law: Any) -> int:
+    """Return the number of a law; a copy of a law, which comes with the number of that, gets its own."""
+    number = int(vars(law).get("_number", 0))
+    if _HELD.get(number) is not law:
+        number = vars(law)["_number"] = next(_NUMBERS)
+        _HELD[number] = law
+    return number
+
+
+def _held(coefficients: Any) -> Any:
+    number = int(coefficients[0])
+    return _under(number, tuple(coefficients[1 : 1 + len(_memories(number))]))
+
+
+@lru_cache(maxsize=_MOST_CHANGED)
+def _memories(number: int) -> tuple[str, ...]:
+    return tuple(_HELD[number].memories())
+
+
+@lru_cache(maxsize=_MOST_CHANGED)
+def _under(number: int, memories: tuple[float, ...]) -> Any:
+    """Return a law under other memories than its own; it lives on here, but its original does not."""
+    return _HELD[number].changed(dict(zip(_memories(number), memories, strict=True)))
+
+
+_OF_HELD: dict[str, Callable[..., Any]] = {
+    "force": forces_of_held,
+    "energies": energies_of_held,
+    "levels": levels_of_held,
+    "compressed": compress_held,
+}

@@ -12,14 +12,11 @@ from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import CPUDispatcher
 from numba.extending import overload
 
-from vibroimpact.compiler import types
+from vibroimpact.compiler import function_values, intrinsics, types
 from vibroimpact.compiler.code_cache import CodeCache
 from vibroimpact.compiler.code_store import compiling_alone
-from vibroimpact.compiler.deferred import DEFERRED
 from vibroimpact.compiler.digest import Digest, NotDigestible
-from vibroimpact.compiler.function_values import force_at
-from vibroimpact.compiler.intrinsics import force_of_address
-from vibroimpact.compiler.marks import SCALAR
+from vibroimpact.compiler.marks import DEFERRED, SCALAR
 from vibroimpact.compiler.notice import say_how_long, say_trouble
 
 _OPTIONS = {"error_model": "numpy"}
@@ -95,7 +92,8 @@ class CompiledFunction(CPUDispatcher):  # type: ignore[misc]
                 digest = Digest(self.py_func, _REPLACED)
             except NotDigestible:  # it is then compiled in each process
                 return False
-            self._cache = CodeCache(self.py_func, f"{digest.text} {self.signature_text} {self.targetoptions}")
+            text = f"{digest.text} {self.signature_text} {self.targetoptions}"
+            self._cache = CodeCache(self.py_func.__name__, text, digest.is_own)
         return self._cache.has_code(self.targetctx)
 
     def _alone(self) -> Any:
@@ -151,13 +149,22 @@ def _seconds() -> float:
 def _register() -> None:
     """Tell numba of the functions that were marked since the last time."""
     if not _REPLACED:
-        _REPLACED[force_at] = force_at
-        overload(force_at)(lambda address: lambda address: force_of_address(address))
+        for kind in function_values.LAW_FUNCTIONS:
+            at = getattr(function_values, f"{kind}_at")
+            _REPLACED[at] = at
+            overload(at)(_inserting(getattr(intrinsics, f"{kind}_of_address")))
     for function, of_floats in SCALAR:
         if function in _REPLACED:
             continue
         _REPLACED[function] = of_floats or function
         overload(function, jit_options=_OPTIONS, strict=False)(_replacing(_REPLACED[function]))
+
+
+def _inserting(of_address: Any) -> Callable[..., Any]:
+    def replacement(address: Any) -> Callable[..., Any]:
+        return lambda address: of_address(address)
+
+    return replacement
 
 
 def _fields(kind: Any) -> str:

@@ -10,15 +10,24 @@ from numba.extending import intrinsic
 from vibroimpact.compiler import types
 
 
-@intrinsic  # type: ignore[untyped-decorator]
-def force_of_address(typing_context: Any, address: Any) -> Any:
-    """Return the function value at an address."""
+def _function_of_address(kind: Any) -> Any:
+    """Return an intrinsic function that makes a function value of a kind from an address."""
 
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        pointer = builder.inttoptr(arguments[0], cgutils.voidptr_t)
-        value = cgutils.create_struct_proxy(types.force)(context, builder)
-        value.jit_addr = pointer
-        value.c_addr = pointer  # not called where there is the other
-        return value._getvalue()
+    @intrinsic  # type: ignore[untyped-decorator]
+    def of_address(typing_context: Any, address: Any) -> Any:
+        def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            pointer = builder.inttoptr(arguments[0], cgutils.voidptr_t)
+            value = cgutils.create_struct_proxy(kind)(context, builder)
+            value.jit_addr = pointer
+            value.c_addr = pointer  # not called where there is the other
+            return value._getvalue()
 
-    return types.force(types.integer), generate
+        return kind(types.integer), generate
+
+    return of_address
+
+
+force_of_address = _function_of_address(types.force)
+energies_of_address = _function_of_address(types.energies)
+levels_of_address = _function_of_address(types.levels)
+compressed_of_address = _function_of_address(types.compressed)

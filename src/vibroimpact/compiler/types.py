@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import sys
+from types import ModuleType
+
 from numba import types
 
 real = types.float64
@@ -25,6 +28,15 @@ pair = types.UniTuple(real, 2)
 force = types.FunctionType(pair(real, real, real, vector))
 """The force of a contact law: indentation, its rate, approach speed and coefficients give static and dissipative force."""
 
+energies = types.FunctionType(pair(real, vector))
+"""Of a contact law: indentation and coefficients give elastic energy and plastic work."""
+
+levels = types.FunctionType(types.UniTuple(real, 5)(vector))
+"""Of a contact law: coefficients give the indentations at touch, release, change of memory, and two breakpoints."""
+
+compressed = types.FunctionType(real(real, vector, vector))
+"""Of a contact law: a deepest indentation and coefficients give the coefficients after it, which are written into the last argument."""
+
 
 def tuple(*members: types.Type) -> types.Type:
     """Return the type of a tuple, from those of its members."""
@@ -32,7 +44,13 @@ def tuple(*members: types.Type) -> types.Type:
 
 
 def of(kind: type) -> types.Type:
-    """Return the type of a named tuple whose members are annotated with names of types, as `Vector`."""
-    members = [globals()[annotation.__forward_arg__.lower()] for annotation in kind.__annotations__.values()]
+    """Return the type of a named tuple whose members are annotated with names of types, as `Vector`, or of other named tuples."""
+    module = sys.modules[kind.__module__]
+    members = [_member(annotation.__forward_arg__, module) for annotation in kind.__annotations__.values()]
     alike = len(set(members)) == 1
     return types.NamedUniTuple(members[0], len(members), kind) if alike else types.NamedTuple(members, kind)
+
+
+def _member(name: str, module: ModuleType) -> types.Type:
+    found = globals().get(name.lower())
+    return found if isinstance(found, types.Type) else of(getattr(module, name))

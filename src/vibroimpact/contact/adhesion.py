@@ -11,7 +11,7 @@ import numpy as np
 from vibroimpact.arrays import Array
 from vibroimpact.compiled import scalar
 from vibroimpact.contact.choice import where
-from vibroimpact.contact.law import CompliantLaw, ScalarForces
+from vibroimpact.contact.law import CompliantLaw, Levels, ScalarEnergies, ScalarForces, ScalarLevels
 from vibroimpact.contact.mixins import ElasticPairLaw
 from vibroimpact.contact.parameters import parameter
 
@@ -43,29 +43,40 @@ def _forces(delta: Array, delta_dot: Array, approach_speed: Array, coefficients:
     return (4.0 / 3.0 * cube - 2.0) * cube * unit_force, unit_dashpot * (z * z) * delta_dot
 
 
+@scalar
+def _energies(delta: Array, coefficients: Any) -> tuple[Array, Array]:
+    unit_indentation, unit_energy = coefficients[0], coefficients[3]
+    z = _stable_root(delta / unit_indentation)
+    cube = z * z * z
+    return (((8.0 / 15.0 * cube - 4.0 / 3.0) * cube + 0.5) * cube * z + 0.3) * unit_energy, 0.0 * delta
+
+
+@scalar
+def _levels(coefficients: Any) -> Levels:
+    return 0.0, _PULL_OFF_INDENTATION * coefficients[0], np.inf, np.inf, np.inf
+
+
 @dataclass(frozen=True, kw_only=True)
 class AdhesiveLaw(ElasticPairLaw, CompliantLaw):
     r"""Base of the laws with adhesion after Johnson, Kendall and Roberts (1971).
 
     .. math:: F = \frac{4 E^* a^3}{3 R} - \sqrt{8 \pi w E^* a^3},\qquad \delta = \frac{a^2}{R} - \sqrt{\frac{2 \pi w a}{E^*}}
 
-    on the branch of the larger contact radius a, from first touch at :math:`\delta = 0` to pull-off at the smallest indentation.
+    on the branch of the larger contact radius a, from first touch at :math:`\delta = 0` to pull-off at the smallest indentation. The
+    elastic energy is counted from zero indentation; at pull-off it is the energy lost.
     """
 
     contact_end = "pull-off"
     tension = "kept"
     scalar_forces: ClassVar[ScalarForces | None] = staticmethod(_forces)
+    scalar_energies: ClassVar[ScalarEnergies | None] = staticmethod(_energies)
+    scalar_levels: ClassVar[ScalarLevels | None] = staticmethod(_levels)
 
     work_of_adhesion: Array = parameter("work of adhesion w", "J/m^2", detail="Work of adhesion :math:`w`.", example=0.5, above=0)
 
-    @property
-    def release_level(self) -> Array:
-        """Indentation at pull-off [m], negative."""
-        return _PULL_OFF_INDENTATION * self._unit_indentation
-
     def contact_radius(self, delta: Array) -> Array:
         """Return the contact radius a [m]."""
-        z = self._z(delta)
+        z = _stable_root(delta / self._unit_indentation)
         return self._radius_at_zero * z * z
 
     @property
@@ -75,16 +86,10 @@ class AdhesiveLaw(ElasticPairLaw, CompliantLaw):
 
     @cached_property
     def coefficients(self) -> tuple[Array, ...]:
-        """The units of indentation, force and dashpot constant by which the contact is made dimensionless."""
+        """The units of indentation, force, dashpot constant and energy by which the contact is made dimensionless."""
         unit_force = self.effective_modulus * self._radius_at_zero**3 / self.effective_radius
-        return self._unit_indentation, unit_force, self.dashpot_per_radius * self._radius_at_zero
-
-    def elastic_energy(self, delta: Array) -> Array:
-        """Return the integral of the static force from zero indentation [J]; at pull-off it is the energy lost."""
-        z = self._z(delta)
-        cube = z * z * z
-        unit = self.effective_modulus * self._radius_at_zero**5 / self.effective_radius**2
-        return (((8.0 / 15.0 * cube - 4.0 / 3.0) * cube + 0.5) * cube * z + 0.3) * unit
+        unit_energy = self.effective_modulus * self._radius_at_zero**5 / self.effective_radius**2
+        return self._unit_indentation, unit_force, self.dashpot_per_radius * self._radius_at_zero, unit_energy
 
     @property
     def _radius_at_zero(self) -> Array:
@@ -94,6 +99,3 @@ class AdhesiveLaw(ElasticPairLaw, CompliantLaw):
     @property
     def _unit_indentation(self) -> Array:
         return self._radius_at_zero**2 / self.effective_radius
-
-    def _z(self, delta: Array) -> Array:
-        return _stable_root(delta / self._unit_indentation)

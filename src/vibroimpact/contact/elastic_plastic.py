@@ -2,37 +2,97 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 
 from vibroimpact.arrays import Array
 from vibroimpact.compiled import scalar
 from vibroimpact.contact.choice import where
-from vibroimpact.contact.law import CompliantLaw
+from vibroimpact.contact.law import CompliantLaw, Levels, ScalarCompressed, ScalarEnergies, ScalarForces, ScalarLevels, copy_coefficients
 from vibroimpact.contact.parameters import memory
 from vibroimpact.contact.power_law import power
 
+OfIndentation = Callable[[Array, Any], Array]
+"""A function of indentation and coefficients, marked by `compiled.scalar`."""
+
+
+class LoadingCurve(NamedTuple):
+    """The curve of loading: functions of an indentation on it [m], and of the coefficients of the law.
+
+    force: loading force [N]. work: its integral from zero indentation [J]. recovery: elastic recovery on unloading from there [m].
+    """
+
+    force: OfIndentation
+    work: OfIndentation
+    recovery: OfIndentation
+
+
+class LawFunctions(NamedTuple):
+    """What follows from a loading curve: functions of floats of a law, and `dent`, the coefficients 1, 2, 3 and 5 of a dented contact."""
+
+    forces: ScalarForces
+    energies: ScalarEnergies
+    compressed: ScalarCompressed
+    dent: Callable[[Array, Any], tuple[Array, Array, Array, Array]]
+
 
 @scalar
-def static_force(delta: Array, loading: Array, coefficients: Any) -> Array:
-    """Return the force of unloading below the largest indentation so far, and that of loading beyond it [N].
-
-    Parameters
-    ----------
-    delta : float or array
-        Indentation [m].
-    loading : float or array
-        Force on the loading curve [N] at the indentation, or at the largest so far where that is larger.
-    coefficients : array or tuple
-        The first five coefficients of an elastic-plastic law.
-    """
+def _levels(coefficients: Any) -> Levels:
     loaded_to, touch_level = coefficients[0], coefficients[1]
-    recovery, largest_force, exponent = coefficients[2], coefficients[3], coefficients[4]
-    unloading = largest_force * power(np.maximum(delta - touch_level, 0.0) / recovery, exponent)
-    return where(delta < loaded_to, unloading, loading)
+    return touch_level, touch_level, loaded_to, loaded_to, np.inf
+
+
+def law_functions(curve: LoadingCurve) -> LawFunctions:
+    """Return the functions of floats of an elastic-plastic law.
+
+    Its coefficients are largest indentation so far, touch level, elastic recovery, largest force, exponent of unloading, and plastic loss
+    so far; those of the loading curve follow. The recovery is one where nothing has been loaded, and the largest force zero, so that no
+    force is 0/0.
+    """
+    loading_force, loading_work, loading_recovery = curve
+
+    @scalar
+    def forces(delta: Array, delta_dot: Array, approach_speed: Array, coefficients: Any) -> tuple[Array, Array]:
+        loaded_to, touch_level = coefficients[0], coefficients[1]
+        recovery, largest_force, exponent = coefficients[2], coefficients[3], coefficients[4]
+        loading = loading_force(np.maximum(delta, loaded_to), coefficients)
+        unloading = largest_force * power(np.maximum(delta - touch_level, 0.0) / recovery, exponent)
+        force = where(delta < loaded_to, unloading, loading)
+        return force, 0.0 * force
+
+    @scalar
+    def energies(delta: Array, coefficients: Any) -> tuple[Array, Array]:
+        loaded_to, exponent, plastic_loss = coefficients[0], coefficients[4], coefficients[5]
+        deepest = np.maximum(delta, loaded_to)
+        recovery = loading_recovery(deepest, coefficients)
+        recovered = loading_force(deepest, coefficients) * recovery / (exponent + 1.0)
+        recovery_left = np.maximum(delta - (deepest - recovery), 0.0) / where(recovery > 0.0, recovery, 1.0)
+        lost = loading_work(deepest, coefficients) - recovered - plastic_loss
+        return recovered * power(recovery_left, exponent + 1.0), where(delta > loaded_to, lost, 0.0)
+
+    @scalar
+    def dent(loaded_to: Array, coefficients: Any) -> tuple[Array, Array, Array, Array]:
+        recovery = loading_recovery(loaded_to, coefficients)
+        force = loading_force(loaded_to, coefficients)
+        plastic_loss = loading_work(loaded_to, coefficients) - force * recovery / (coefficients[4] + 1.0)
+        return loaded_to - recovery, where(recovery > 0.0, recovery, 1.0), force, plastic_loss
+
+    @scalar
+    def compressed(deepest: float, coefficients: Any, changed: Any) -> None:
+        copy_coefficients(deepest, coefficients, changed)
+        if deepest > coefficients[0]:
+            touch_level, recovery, largest_force, plastic_loss = dent(deepest, coefficients)
+            changed[0] = deepest
+            changed[1] = touch_level
+            changed[2] = recovery
+            changed[3] = largest_force
+            changed[5] = plastic_loss
+
+    return LawFunctions(forces, energies, compressed, dent)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,8 +102,7 @@ class ElasticPlasticLaw(CompliantLaw):
     .. math:: F = F_m \left(\frac{\delta - \delta_r}{\delta_m - \delta_r}\right)^q
 
     from the largest indentation :math:`(\delta_m, F_m)` to the residual indentation :math:`\delta_r`; reloading follows the same
-    curve. A law defines the loading force, its work, and the elastic recovery :math:`\delta_m - \delta_r`; its `scalar_forces` take
-    the loading force and `static_force`.
+    curve. A law defines its `loading_curve`, from which its functions of floats follow, and the `loading_coefficients` of this.
     """
 
     contact_end = "zero-force"
@@ -52,51 +111,46 @@ class ElasticPlasticLaw(CompliantLaw):
     unloading_exponent: ClassVar[float] = 1.5
     """The exponent q of unloading, 1.5 for a Hertzian contact."""
 
+    yields = True
+    scalar_levels: ClassVar[ScalarLevels | None] = staticmethod(_levels)
+    loading_curve: ClassVar[LoadingCurve]
+    """Force, work and recovery of loading, as functions of floats; the coefficients of the curve begin with index 6."""
+
+    _functions: ClassVar[LawFunctions]
+
     loaded_to: Array = memory("deepest indentation so far", "m")
 
-    def loading_force(self, delta: Array) -> Array:
-        """Return the force on the loading curve [N]."""
-        raise NotImplementedError
-
-    def loading_work(self, delta: Array) -> Array:
-        """Return the integral of the loading force from zero indentation [J]."""
-        raise NotImplementedError
-
-    def elastic_recovery(self, deepest: Array) -> Array:
-        """Return the elastic recovery on unloading: largest less residual indentation [m]."""
-        raise NotImplementedError
+    def __init_subclass__(cls, **options: Any) -> None:
+        if "loading_curve" in vars(cls):
+            cls._functions = law_functions(cls.loading_curve)
+            cls.scalar_forces = staticmethod(cls._functions.forces)
+            cls.scalar_energies = staticmethod(cls._functions.energies)
+            cls.scalar_compressed = staticmethod(cls._functions.compressed)
+        super().__init_subclass__(**options)
 
     @property
-    def touch_level(self) -> Array:
-        """The residual indentation [m], at which contact begins and ends."""
-        return self.loaded_to - self._unloading[0]
-
-    @property
-    def breakpoints(self) -> tuple[Array, ...]:
-        """The largest indentation so far, beyond which the loading curve is followed."""
-        return (self.loaded_to,)
+    def loading_coefficients(self) -> tuple[Array, ...]:
+        """The coefficients of the loading curve."""
+        raise NotImplementedError
 
     @cached_property
     def coefficients(self) -> tuple[Array, ...]:
-        """Largest indentation so far, touch level, elastic recovery, largest force and exponent of unloading; a law adds its own.
+        """Those of a dented contact, which `law_functions` lists, and those of the loading curve."""
+        exponent, own = self._undented[4], self._undented[6:]
+        touch_level, recovery, largest_force, plastic_loss = self._functions.dent(self.loaded_to, self._undented)
+        return self.loaded_to, touch_level, recovery, largest_force, exponent, plastic_loss, *own
 
-        The recovery is one where nothing has been loaded, and the largest force zero, so that no force is 0/0.
-        """
-        recovery, largest_force = self._unloading
-        return self.loaded_to, self.touch_level, np.where(recovery > 0.0, recovery, 1.0), largest_force, self.unloading_exponent
+    def loading_force(self, delta: Array) -> Array:
+        """Return the force on the loading curve [N]."""
+        return self.loading_curve.force(delta, self._undented)
 
-    def elastic_energy(self, delta: Array) -> Array:
-        """Return the energy recovered on unloading [J]."""
-        deepest = np.maximum(delta, self.loaded_to)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            part = self.elastic_recovery(deepest)
-            recovery_left = np.maximum(delta - (deepest - part), 0.0) / part
-            return np.where(part > 0.0, self._unloading_work(deepest) * recovery_left ** (self.unloading_exponent + 1.0), 0.0)
+    def loading_work(self, delta: Array) -> Array:
+        """Return the integral of the loading force from zero indentation [J]."""
+        return self.loading_curve.work(delta, self._undented)
 
-    def plastic_work(self, delta: Array) -> Array:
-        """Return the plastic work of loading beyond the largest indentation so far [J]."""
-        deepest = np.maximum(delta, self.loaded_to)
-        return self._plastic_loss(deepest) - self._plastic_loss(self.loaded_to)
+    def elastic_recovery(self, deepest: Array) -> Array:
+        """Return the elastic recovery on unloading: largest less residual indentation [m]."""
+        return self.loading_curve.recovery(deepest, self._undented)
 
     def after_compression(self, deepest: Array) -> Self:
         """Return the law with the new largest indentation."""
@@ -116,12 +170,9 @@ class ElasticPlasticLaw(CompliantLaw):
         return np.where(deepest > self.loaded_to, np.sqrt(np.minimum(self._unloading_work(deepest) / energy, 1.0)), 1.0)[()]
 
     @cached_property
-    def _unloading(self) -> tuple[Array, Array]:
-        """The elastic recovery [m] and the force [N] at the largest indentation so far."""
-        return self.elastic_recovery(self.loaded_to), self.loading_force(self.loaded_to)
+    def _undented(self) -> tuple[Array, ...]:
+        """The coefficients of a fresh contact, which the loading curve takes."""
+        return 0.0, 0.0, 1.0, 0.0, self.unloading_exponent, 0.0, *self.loading_coefficients
 
     def _unloading_work(self, deepest: Array) -> Array:
         return self.loading_force(deepest) * self.elastic_recovery(deepest) / (self.unloading_exponent + 1.0)
-
-    def _plastic_loss(self, deepest: Array) -> Array:
-        return self.loading_work(deepest) - self._unloading_work(deepest)

@@ -10,8 +10,9 @@ import numpy as np
 
 from vibroimpact.arrays import Array
 from vibroimpact.compiled import scalar
-from vibroimpact.contact.law import CompliantLaw, ScalarForces
+from vibroimpact.contact.law import CompliantLaw, ScalarEnergies, ScalarForces
 from vibroimpact.contact.parameters import parameter
+from vibroimpact.contact.power_law import spring_energies
 
 
 @scalar
@@ -27,6 +28,7 @@ class KelvinVoigtLaw(CompliantLaw):
     contact_end = "zero-indentation"
     tension = "kept"
     scalar_forces: ClassVar[ScalarForces | None] = staticmethod(_forces)
+    scalar_energies: ClassVar[ScalarEnergies | None] = staticmethod(spring_energies)
 
     stiffness: Array = parameter("spring stiffness k", "N/m", detail="Spring stiffness :math:`k`.", example=2e6, above=0)
 
@@ -39,10 +41,6 @@ class KelvinVoigtLaw(CompliantLaw):
     def coefficients(self) -> tuple[Array, ...]:
         """Stiffness and dashpot constant."""
         return self.stiffness, self.dashpot
-
-    def elastic_energy(self, delta: Array) -> Array:
-        r"""Return :math:`k \delta^2/2` [J]."""
-        return 0.5 * self.stiffness * delta * delta
 
     def closed_form_restitution(self, mass: Array, speed: Array) -> Array:
         r"""Return :math:`\exp(-\pi\beta/\sqrt{1 - \beta^2})` with :math:`\beta = c/(2\sqrt{k m})`, independent of the speed."""

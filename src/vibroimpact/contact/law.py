@@ -6,8 +6,9 @@ A law is a frozen dataclass in a file of its own under `vibroimpact.contact.laws
 * `departure`, if it is not as its sources have it;
 * its parameters, each with `parameter(...)`: meaning, unit, range, default;
 * the state variables on which its force depends, if any, each with `memory(...)`;
-* and, if it is a `CompliantLaw`, when its contact ends, whether its force may be tensile, and the force: a function `scalar_forces`,
-  which compiled code calls with floats and everything else with arrays, and the `coefficients` it is called with.
+* and, if it is a `CompliantLaw`, when its contact ends, whether its force may be tensile, and functions that compiled code calls with
+  floats and everything else with arrays, and the `coefficients` they are called with: `scalar_forces` and `scalar_energies`, and, if it
+  has a memory or breakpoints, `scalar_levels` and `scalar_compressed`.
 """
 
 from __future__ import annotations
@@ -21,10 +22,44 @@ from typing import Any, ClassVar, Literal, Self
 import numpy as np
 
 from vibroimpact.arrays import Array
+from vibroimpact.compiled import scalar
 from vibroimpact.contact.parameters import Parameters
 
 ScalarForces = Callable[[Array, Array, Array, Any], tuple[Array, Array]]
 """A function of indentation [m], its rate [m/s], approach speed [m/s] and coefficients: static and dissipative force [N]."""
+
+ScalarEnergies = Callable[[Array, Any], tuple[Array, Array]]
+"""A function of indentation [m] and coefficients: elastic energy, and plastic work since the state of the coefficients [J]."""
+
+Levels = tuple[Array, Array, Array, Array, Array]
+"""Indentations [m]: of touch, of release, beyond which compression changes the memory, and two breakpoints; infinite if there is none."""
+
+ScalarLevels = Callable[[Any], Levels]
+"""A function of coefficients: the levels of a law."""
+
+ScalarCompressed = Callable[[float, Any, Any], None]
+"""A function of indentation [m] and coefficients, which writes the coefficients after compression to there into its last argument."""
+
+_METHODS = {
+    "scalar_forces": ("forces",),
+    "scalar_energies": ("elastic_energy", "plastic_work"),
+    "scalar_levels": ("touch_level", "release_level", "breakpoints"),
+    "scalar_compressed": ("after_compression",),
+}
+"""The functions of floats of a law, and the methods that stand for each in a law that is not compiled."""
+
+
+@scalar
+def levels_of_smooth_contact(coefficients: Any) -> Levels:
+    """Return the levels of a law without memory and breakpoints, whose contact begins and ends at zero indentation [m]."""
+    return 0.0, 0.0, np.inf, np.inf, np.inf
+
+
+@scalar
+def copy_coefficients(deepest: float, coefficients: Any, changed: Any) -> None:
+    """Write the coefficients as they are into `changed`, which is all that compression does to a law without memory."""
+    for index in range(len(changed)):
+        changed[index] = coefficients[index]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,8 +111,8 @@ class CompliantLaw(ContactLaw):
 
     Examples
     --------
-    A law gives its force as one function of floats or arrays, and the coefficients of this function. One that defines `forces`
-    instead works as well, but is not compiled.
+    A law gives its force and its energies as functions of floats or arrays, and the coefficients of these functions. One that defines
+    `forces` and `elastic_energy` instead works as well, but is not compiled.
 
     >>> import vibroimpact as vi
     >>> law = vi.find_contact_law("hertz")(stiffness=2.0)
@@ -98,37 +133,63 @@ class CompliantLaw(ContactLaw):
     lasting: ClassVar[bool] = False
     """Does the state persist, as a dent does, for the next impact on the same spot?"""
 
-    @property
-    def touch_level(self) -> Array:
-        """Indentation [m] at which contact begins: zero, or the depth of the dent."""
-        return 0.0
-
-    @property
-    def release_level(self) -> Array:
-        """Indentation [m] at which contact ends; negative for adhesive contacts."""
-        return self.touch_level
-
-    @property
-    def breakpoints(self) -> tuple[Array, ...]:
-        """Indentations [m], ascending, at which the force is not smooth; integration steps end there."""
-        return ()
+    yields: ClassVar[bool] = False
+    """Does the law define plastic work?"""
 
     scalar_forces: ClassVar[ScalarForces | None] = None
     """The force as a function of floats, marked by `compiled.scalar`; a law that has none defines `forces`, and is not compiled."""
 
+    scalar_energies: ClassVar[ScalarEnergies | None] = None
+    """Elastic energy and plastic work as a function of floats; a law that has none defines `elastic_energy`, and is not compiled."""
+
+    scalar_levels: ClassVar[ScalarLevels | None] = staticmethod(levels_of_smooth_contact)
+    """Where contact begins and ends, where compression changes the memory, and two breakpoints, as a function of floats."""
+
+    scalar_compressed: ClassVar[ScalarCompressed | None] = staticmethod(copy_coefficients)
+    """The coefficients after compression as a function of floats, which writes them; a law with a memory defines its own."""
+
+    # what the methods below evaluate: the functions of the law, or those of its base where the law defines the methods anew
     _array_forces: ClassVar[ScalarForces | None] = None
-    """What `forces` evaluates: `scalar_forces` of the law, or of its base where the law defines `forces` anew."""
+    _array_energies: ClassVar[ScalarEnergies | None] = None
+    _array_levels: ClassVar[ScalarLevels] = staticmethod(levels_of_smooth_contact)
 
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)
-        if cls.scalar_forces is not None:
-            cls._array_forces = staticmethod(cls.scalar_forces)
-        if "forces" in vars(cls) and "scalar_forces" not in vars(cls):
-            cls.scalar_forces = None  # compiled code would pass over the new `forces`
+        for function, methods in _METHODS.items():
+            if getattr(cls, function) is not None:
+                setattr(cls, function.replace("scalar", "_array"), staticmethod(getattr(cls, function)))
+            if function not in vars(cls) and any(method in vars(cls) for method in methods):
+                setattr(cls, function, None)  # compiled code would pass over the new method
+        if "plastic_work" in vars(cls):
+            cls.yields = True
+
+    @classmethod
+    def missing_functions(cls) -> list[str]:
+        """Return the names of the functions of floats that the law lacks; it is compiled if it has all."""
+        return [function for function in _METHODS if getattr(cls, function) is None]
+
+    @property
+    def touch_level(self) -> Array:
+        """Indentation [m] at which contact begins: zero, or the depth of the dent."""
+        return self._levels[0]
+
+    @property
+    def release_level(self) -> Array:
+        """Indentation [m] at which contact ends; negative for adhesive contacts."""
+        return self._levels[1]
+
+    @property
+    def breakpoints(self) -> tuple[Array, ...]:
+        """Indentations [m], ascending, at which the force is not smooth; integration steps end there."""
+        return tuple(level for level in self._levels[3:] if np.any(np.isfinite(level)))
+
+    @cached_property
+    def _levels(self) -> Levels:
+        return type(self)._array_levels(self.coefficients)
 
     @cached_property
     def coefficients(self) -> tuple[Array, ...]:
-        """The numbers from which `scalar_forces` computes the force, made once from parameters and memory.
+        """The numbers that the functions of floats take, made once from parameters and memory.
 
         They are floats, or arrays with one value per drop; compiled code has them as an array of floats, one drop at a time.
         """
@@ -154,16 +215,17 @@ class CompliantLaw(ContactLaw):
 
         The sum of it and the plastic work is the integral of the static force from `touch_level`.
         """
-        raise NotImplementedError
-
-    @property
-    def yields(self) -> bool:
-        """Does the law define plastic work?"""
-        return type(self).plastic_work is not CompliantLaw.plastic_work
+        return self._energies(delta)[0]
 
     def plastic_work(self, delta: Array) -> Array:
         """Return the plastic work from the present state to the indentation `delta` [J]."""
-        return np.zeros_like(delta)
+        return self._energies(delta)[1] if self.yields else np.zeros_like(delta)
+
+    def _energies(self, delta: Array) -> tuple[Array, Array]:
+        array_energies = type(self)._array_energies
+        if array_energies is None:
+            raise NotImplementedError(f"{type(self).__name__} has neither `scalar_energies` nor `elastic_energy`")
+        return array_energies(delta, self.coefficients)
 
     def after_compression(self, deepest: Array) -> Self:
         """Return the law with its state after compression to the indentation `deepest` [m]."""

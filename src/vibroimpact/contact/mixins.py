@@ -3,13 +3,28 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
 from vibroimpact.arrays import Array
-from vibroimpact.contact.law import CompliantLaw, ContactLaw
+from vibroimpact.compiled import scalar
+from vibroimpact.contact.choice import where
+from vibroimpact.contact.law import CompliantLaw, ContactLaw, Levels, ScalarCompressed, ScalarLevels, copy_coefficients
 from vibroimpact.contact.parameters import memory, parameter
+
+
+@scalar
+def _two_phase_levels(coefficients: Any) -> Levels:
+    return 0.0, 0.0, where(coefficients[2] > 0.0, np.inf, 0.0), np.inf, np.inf
+
+
+@scalar
+def _turn(deepest: float, coefficients: Any, changed: Any) -> None:
+    copy_coefficients(deepest, coefficients, changed)
+    if deepest > 0.0:
+        changed[1] = coefficients[3]
+        changed[2] = 1.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -49,11 +64,26 @@ class ViscoelasticLaw(CompliantLaw):
 
 @dataclass(frozen=True, kw_only=True)
 class TwoPhaseLaw(CompliantLaw):
-    """Mixin of the laws whose force differs in compression and restitution; the state tells the phase."""
+    """Mixin of the laws whose dissipative force differs in compression and restitution; the state tells the phase."""
+
+    scalar_levels: ClassVar[ScalarLevels | None] = staticmethod(_two_phase_levels)
+    scalar_compressed: ClassVar[ScalarCompressed | None] = staticmethod(_turn)
 
     turned: Array = memory(
         "has the indentation passed its first maximum? 1 if so", detail="1 once the indentation has passed its first maximum."
     )
+
+    def coefficients_by_phase(self, stiffness: Array, compression: Array, restitution: Array) -> tuple[Array, ...]:
+        """Return the coefficients: stiffness, the constant of the dissipative force in this phase, `turned`, and that in restitution.
+
+        Parameters
+        ----------
+        stiffness : float or array
+            The first coefficient.
+        compression, restitution : float or array
+            The constant of the dissipative force in either phase.
+        """
+        return stiffness, np.where(self.turned > 0.0, restitution, compression), self.turned, restitution
 
     def after_compression(self, deepest: Array) -> Self:
         """Return the law for the restitution phase, of the drops whose indentation has been positive."""

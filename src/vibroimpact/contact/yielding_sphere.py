@@ -3,35 +3,69 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from vibroimpact.arrays import Array
 from vibroimpact.compiled import scalar
 from vibroimpact.contact.choice import where
-from vibroimpact.contact.elastic_plastic import ElasticPlasticLaw, static_force
+from vibroimpact.contact.elastic_plastic import ElasticPlasticLaw, LoadingCurve, OfIndentation
+from vibroimpact.contact.law import Levels, ScalarLevels
 from vibroimpact.contact.mixins import ElasticPairLaw
 from vibroimpact.contact.pair import hertz_stiffness
-from vibroimpact.contact.power_law import power
 
 
 @scalar
-def yielded_indentation(delta: Array, coefficients: Any) -> Array:
-    """Return the indentation [m] at which the plastic force is taken: at least the largest so far, and that at yield."""
-    loaded_to, yield_indentation = coefficients[0], coefficients[5]
-    return np.maximum(np.maximum(delta, loaded_to), yield_indentation)
+def hertzian_radius(delta: Array, coefficients: Any) -> Array:
+    """Return the contact radius of a sphere by Hertz [m], at an indentation [m]."""
+    return np.sqrt(coefficients[9] * delta)
 
 
 @scalar
-def yielding_sphere_forces(delta: Array, plastic: Array, coefficients: Any) -> tuple[Array, Array]:
-    """Return the forces [N] of a yielding sphere at an indentation [m] from the plastic force [N] at the yielded indentation."""
-    loaded_to, yield_indentation, stiffness = coefficients[0], coefficients[5], coefficients[6]
-    deepest = np.maximum(delta, loaded_to)
-    elastic = stiffness * power(np.minimum(deepest, yield_indentation), 1.5)
-    force = static_force(delta, where(deepest > yield_indentation, plastic, elastic), coefficients)
-    return force, 0.0 * force
+def _levels(coefficients: Any) -> Levels:
+    loaded_to, touch_level, yield_indentation = coefficients[0], coefficients[1], coefficients[6]
+    return touch_level, touch_level, loaded_to, np.maximum(yield_indentation, loaded_to), np.inf
+
+
+def yielding_sphere(plastic_force: OfIndentation, plastic_work: OfIndentation, contact_radius: OfIndentation) -> LoadingCurve:
+    """Return the loading curve of a sphere that is Hertzian up to yield.
+
+    Its coefficients, from index 6, are yield indentation, Hertz's stiffness, effective modulus and effective radius; a law adds its own.
+
+    Parameters
+    ----------
+    plastic_force : callable
+        Loading force beyond yield [N].
+    plastic_work : callable
+        Its integral from the yield indentation [J].
+    contact_radius : callable
+        Contact radius beyond yield [m].
+    """
+
+    @scalar
+    def force(delta: Array, coefficients: Any) -> Array:
+        yield_indentation, stiffness = coefficients[6], coefficients[7]
+        elastic = np.minimum(delta, yield_indentation)
+        plastic = plastic_force(np.maximum(delta, yield_indentation), coefficients)
+        return where(delta > yield_indentation, plastic, stiffness * elastic * np.sqrt(elastic))
+
+    @scalar
+    def work(delta: Array, coefficients: Any) -> Array:
+        yield_indentation, stiffness = coefficients[6], coefficients[7]
+        elastic = np.minimum(delta, yield_indentation)
+        plastic = plastic_work(np.maximum(delta, yield_indentation), coefficients)
+        # exactly nothing up to yield, despite rounding
+        return 0.4 * stiffness * elastic**2 * np.sqrt(elastic) + where(delta > yield_indentation, plastic, 0.0)
+
+    @scalar
+    def recovery(deepest: Array, coefficients: Any) -> Array:
+        yield_indentation, effective_modulus = coefficients[6], coefficients[8]
+        yielded = np.maximum(deepest, yield_indentation)
+        plastic = 0.75 * plastic_force(yielded, coefficients) / (effective_modulus * contact_radius(yielded, coefficients))
+        return where(deepest > yield_indentation, plastic, deepest)
+
+    return LoadingCurve(force, work, recovery)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,60 +78,32 @@ class YieldingSphereLaw(ElasticPairLaw, ElasticPlasticLaw):
 
     .. math:: \delta_m - \delta_r = \frac{3 F_m}{4 E^* a_m}
 
-    (Thornton 1997, J. Appl. Mech. 64, 383-386). A law defines the plastic force as a function that compiled code calls, from which its
-    `scalar_forces` follow by `yielding_sphere_forces`.
+    (Thornton 1997, J. Appl. Mech. 64, 383-386). A law takes its `loading_curve` from `yielding_sphere`.
     """
+
+    scalar_levels: ClassVar[ScalarLevels | None] = staticmethod(_levels)
 
     @property
     def yield_indentation(self) -> Array:
         """Indentation at yield [m]."""
         raise NotImplementedError
 
-    def plastic_force(self, delta: Array) -> Array:
-        """Return the loading force beyond `yield_indentation` [N]."""
-        raise NotImplementedError
-
-    def plastic_loading_work(self, delta: Array) -> Array:
-        """Return the integral of `plastic_force` from `yield_indentation` [J]."""
-        raise NotImplementedError
-
-    def contact_radius(self, delta: Array) -> Array:
-        """Return the contact radius beyond `yield_indentation` [m]."""
-        return np.sqrt(self.effective_radius * delta)
-
     @property
-    def breakpoints(self) -> tuple[Array, ...]:
-        """The yield indentation, or the largest indentation so far if that is larger."""
-        return (np.maximum(self.yield_indentation, self.loaded_to),)
-
-    @cached_property
-    def coefficients(self) -> tuple[Array, ...]:
-        """Those of unloading, yield indentation and Hertz's stiffness; a law adds those of its plastic force."""
-        return *super().coefficients, self.yield_indentation, self.stiffness
+    def plastic_coefficients(self) -> tuple[Array, ...]:
+        """The coefficients of loading beyond yield."""
+        raise NotImplementedError
 
     @property
     def stiffness(self) -> Array:
         """Hertz's stiffness [N/m^1.5]."""
         return hertz_stiffness(self.effective_modulus, self.effective_radius)
 
-    def loading_force(self, delta: Array) -> Array:
-        """Return Hertz's force up to the yield indentation, the plastic force beyond [N]."""
-        yielded, elastic = self._split(delta)
-        return np.where(delta > elastic, self.plastic_force(yielded), self.stiffness * elastic * np.sqrt(elastic))
+    @property
+    def loading_coefficients(self) -> tuple[Array, ...]:
+        """Yield indentation, Hertz's stiffness, effective modulus and radius, and those of loading beyond yield."""
+        sphere = self.yield_indentation, self.stiffness, self.effective_modulus, self.effective_radius
+        return *sphere, *self.plastic_coefficients
 
-    def loading_work(self, delta: Array) -> Array:
-        """Return the integral of the loading force from zero [J]."""
-        yielded, elastic = self._split(delta)
-        plastic = np.where(delta > elastic, self.plastic_loading_work(yielded), 0.0)  # exactly zero up to yield, despite rounding
-        return 0.4 * self.stiffness * elastic**2 * np.sqrt(elastic) + plastic
-
-    def elastic_recovery(self, deepest: Array) -> Array:
-        """Return the elastic recovery [m], which is the full indentation up to yield."""
-        yielded, elastic = self._split(deepest)
-        recovery = 0.75 * self.plastic_force(yielded) / (self.effective_modulus * self.contact_radius(yielded))
-        return np.where(deepest > elastic, recovery, deepest)
-
-    def _split(self, delta: Array) -> tuple[Array, Array]:
-        """Return the indentation clipped from below and from above at the yield indentation [m]."""
-        at_yield = self.yield_indentation
-        return np.maximum(delta, at_yield), np.minimum(delta, at_yield)
+    def contact_radius(self, delta: Array) -> Array:
+        """Return the contact radius beyond `yield_indentation` [m]."""
+        return hertzian_radius(delta, self._undented)

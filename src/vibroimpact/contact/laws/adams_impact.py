@@ -10,7 +10,7 @@ import numpy as np
 
 from vibroimpact.arrays import Array
 from vibroimpact.compiled import scalar
-from vibroimpact.contact.law import ScalarForces
+from vibroimpact.contact.law import Levels, ScalarForces, ScalarLevels
 from vibroimpact.contact.parameters import inherited_parameter, parameter
 from vibroimpact.contact.power_law import PowerLaw, power
 
@@ -22,6 +22,12 @@ def _forces(delta: Array, delta_dot: Array, approach_speed: Array, coefficients:
     s = np.minimum(delta / full_damping_penetration, 1.0)
     damping = damping_max * (s * s * (3.0 - 2.0 * s))
     return stiffness * power(delta, exponent), damping * delta_dot
+
+
+@scalar
+def _levels(coefficients: Any) -> Levels:
+    # the second derivative of STEP jumps where the damping is full
+    return 0.0, 0.0, np.inf, coefficients[3], np.inf
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,6 +59,7 @@ class AdamsImpact(PowerLaw):
     contact_end = "zero-indentation"
     tension = "cut"
     scalar_forces: ClassVar[ScalarForces | None] = staticmethod(_forces)
+    scalar_levels: ClassVar[ScalarLevels | None] = staticmethod(_levels)
     free_parameter = "damping_max"
 
     stiffness: Array = inherited_parameter(
@@ -67,11 +74,6 @@ class AdamsImpact(PowerLaw):
         above=0,
         default=1e-4,
     )
-
-    @property
-    def breakpoints(self) -> tuple[Array, ...]:
-        """The penetration of full damping, at which the second derivative of STEP jumps."""
-        return (self.full_damping_penetration,)
 
     @cached_property
     def coefficients(self) -> tuple[Array, ...]:

@@ -8,9 +8,10 @@ from typing import Any, ClassVar
 
 from vibroimpact.arrays import Array
 from vibroimpact.compiled import scalar
-from vibroimpact.contact.law import ScalarForces
+from vibroimpact.contact.law import ScalarEnergies, ScalarForces
 from vibroimpact.contact.mixins import TwoPhaseLaw
 from vibroimpact.contact.parameters import parameter
+from vibroimpact.contact.power_law import spring_energies
 
 
 @scalar
@@ -53,18 +54,15 @@ class AdamsPoisson(TwoPhaseLaw):
     contact_end = "zero-indentation"
     tension = "none"
     scalar_forces: ClassVar[ScalarForces | None] = staticmethod(_forces)
+    scalar_energies: ClassVar[ScalarEnergies | None] = staticmethod(spring_energies)
 
     penalty: Array = parameter("penalty p", "N/m", detail="Penalty :math:`p`.", example=2e6, above=0)
     restitution: Array = parameter("restitution e", detail="Restitution :math:`e`.", example=0.7, above=0, at_most=1)
 
     @cached_property
     def coefficients(self) -> tuple[Array, ...]:
-        """Penalty, and the part of the force that is lost: 1 - e^2 once the indentation has turned, nothing before."""
-        return self.penalty, (1.0 - self.restitution * self.restitution) * self.turned
-
-    def elastic_energy(self, delta: Array) -> Array:
-        r"""Return :math:`p \delta^2/2` [J], a part of which is lost in restitution."""
-        return 0.5 * self.penalty * delta * delta
+        """Penalty, and the part of the force that is lost by phase: 1 - e^2 once the indentation has turned, nothing before."""
+        return self.coefficients_by_phase(self.penalty, 0.0, 1.0 - self.restitution * self.restitution)
 
     def closed_form_restitution(self, mass: Array, speed: Array) -> Array:
         """Return the restitution asked for."""

@@ -53,8 +53,8 @@ class Jankowski(RestitutionForMassLaw, SphereLaw, TwoPhaseLaw):
 
     @cached_property
     def coefficients(self) -> tuple[Array, ...]:
-        """Stiffness, and the dashpot constant, which is zero once the indentation has turned."""
+        """Stiffness, and the dashpot constant, which is zero once the indentation has turned, by phase."""
         e = self.restitution
         ratio = 4.5 * np.sqrt(5.0) * (1.0 - e * e) / (e * (e * (9.0 * np.pi - 16.0) + 16.0))
         dashpot = 2.0 * ratio * np.sqrt(self.effective_mass * self.stiffness)
-        return self.stiffness, dashpot * (1.0 - self.turned)
+        return self.coefficients_by_phase(self.stiffness, dashpot, 0.0)

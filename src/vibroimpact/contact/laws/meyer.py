@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
 
 from vibroimpact.arrays import Array
 from vibroimpact.compiled import scalar, scalar_as
-from vibroimpact.contact.law import ScalarForces
+from vibroimpact.contact.elastic_plastic import LoadingCurve
+from vibroimpact.contact.law import Levels, ScalarLevels
 from vibroimpact.contact.parameters import parameter
 from vibroimpact.contact.power_law import power
-from vibroimpact.contact.yielding_sphere import YieldingSphereLaw, yielded_indentation, yielding_sphere_forces
+from vibroimpact.contact.yielding_sphere import YieldingSphereLaw, yielding_sphere
 
 _AT_YIELD, _FULLY_PLASTIC = 1.6, 2.8  # largest pressure at first yield, and mean pressure when fully plastic, over the yield strength
 _RISE = 1.5 * _FULLY_PLASTIC / _AT_YIELD  # ratio of the mean pressures, which is two thirds of the largest one at first yield
@@ -52,18 +52,40 @@ def _relative_radius(relative_indentation: Array, meyer_index: Array, full_radiu
 
 
 @scalar
-def _plastic_force(delta: Array, yield_indentation: Array, yield_force: Array, meyer_index: Array, full_radius: Array) -> Array:
-    x = _relative_radius(delta / yield_indentation, meyer_index, full_radius)
+def _radius(delta: Array, coefficients: Any) -> Array:
+    """Return the contact radius relative to that at yield [-], at an indentation beyond yield [m]."""
+    yield_indentation, meyer_index, full_radius = coefficients[6], coefficients[11], coefficients[12]
+    return _relative_radius(delta / yield_indentation, meyer_index, full_radius)
+
+
+@scalar
+def _contact_radius(delta: Array, coefficients: Any) -> Array:
+    return _radius(delta, coefficients) * np.sqrt(coefficients[9] * coefficients[6])
+
+
+@scalar
+def _plastic_force(delta: Array, coefficients: Any) -> Array:
+    yield_force, meyer_index = coefficients[10], coefficients[11]
+    x = _radius(delta, coefficients)
     return yield_force * np.minimum(power(x, meyer_index), _RISE * x * x)
 
 
 @scalar
-def _forces(delta: Array, delta_dot: Array, approach_speed: Array, coefficients: Any) -> tuple[Array, Array]:
-    yield_indentation, yield_force = coefficients[5], coefficients[7]
-    meyer_index, full_radius = coefficients[8], coefficients[9]
-    deepest = yielded_indentation(delta, coefficients)
-    plastic = _plastic_force(deepest, yield_indentation, yield_force, meyer_index, full_radius)
-    return yielding_sphere_forces(delta, plastic, coefficients)
+def _plastic_work(delta: Array, coefficients: Any) -> Array:
+    yield_indentation, yield_force = coefficients[6], coefficients[10]
+    n, full_radius = coefficients[11], coefficients[12]
+    x = _radius(delta, coefficients)
+    rising = np.minimum(x, full_radius)
+    work = (rising ** (n + 2.0) - 1.0) / (n + 2.0) + 0.5 * (n - 1.0) * (rising ** (2.0 * n - 1.0) - 1.0) / (2.0 * n - 1.0)
+    work = work + _RISE * ((x**4 - rising**4) / 4.0 + _RISE * (x**3 - rising**3) / 6.0)
+    return yield_force * yield_indentation * work
+
+
+@scalar
+def _levels(coefficients: Any) -> Levels:
+    loaded_to, touch_level, yield_indentation, full_radius = coefficients[0], coefficients[1], coefficients[6], coefficients[12]
+    at_full = yield_indentation * 0.5 * full_radius * (full_radius + _RISE)
+    return touch_level, touch_level, loaded_to, np.maximum(yield_indentation, loaded_to), np.maximum(at_full, loaded_to)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -114,7 +136,8 @@ class Meyer(YieldingSphereLaw):
         "between them (Meyer), the depth of a spherical dent, and Hertz's unloading."
     )
     free_parameter = "yield_strength"
-    scalar_forces: ClassVar[ScalarForces | None] = staticmethod(_forces)
+    loading_curve: ClassVar[LoadingCurve] = yielding_sphere(_plastic_force, _plastic_work, _contact_radius)
+    scalar_levels: ClassVar[ScalarLevels | None] = staticmethod(_levels)
 
     yield_strength: Array = parameter(
         "yield strength Y",
@@ -137,43 +160,18 @@ class Meyer(YieldingSphereLaw):
         r"""Indentation :math:`\delta_y` at yield [m]."""
         return self.effective_radius * (0.5 * np.pi * _AT_YIELD * self.yield_strength / self.effective_modulus) ** 2
 
-    @property
-    def breakpoints(self) -> tuple[Array, ...]:
-        """The indentations at yield and at full plasticity, or the largest so far where that is larger."""
-        at_full = self.yield_indentation * 0.5 * self._full_radius * (self._full_radius + _RISE)
-        return (np.maximum(self.yield_indentation, self.loaded_to), np.maximum(at_full, self.loaded_to))
-
     def contact_radius(self, delta: Array) -> Array:
         """Return the contact radius beyond the yield indentation [m]."""
-        return self._relative_radius_at(delta) * np.sqrt(self.effective_radius * self.yield_indentation)
+        return _contact_radius(delta, self._undented)
 
-    def plastic_force(self, delta: Array) -> Array:
-        """Return the loading force beyond the yield indentation [N]."""
-        return _plastic_force(delta, self.yield_indentation, self._yield_force, self.meyer_index, self._full_radius)
-
-    def plastic_loading_work(self, delta: Array) -> Array:
-        """Return the integral of the plastic force from the yield indentation [J]."""
-        n, x = self.meyer_index, self._relative_radius_at(delta)
-        rising = np.minimum(x, self._full_radius)
-        work = (rising ** (n + 2.0) - 1.0) / (n + 2.0) + 0.5 * (n - 1.0) * (rising ** (2.0 * n - 1.0) - 1.0) / (2.0 * n - 1.0)
-        work = work + _RISE * ((x**4 - rising**4) / 4.0 + _RISE * (x**3 - rising**3) / 6.0)
-        return self._yield_force * self.yield_indentation * work
-
-    @cached_property
-    def coefficients(self) -> tuple[Array, ...]:
-        """Those of a yielding sphere, force at yield, Meyer's index and the relative radius at full plasticity."""
-        return *super().coefficients, self._yield_force, self.meyer_index, self._full_radius
-
-    def _relative_radius_at(self, delta: Array) -> Array:
-        """Return the contact radius relative to that at yield [-], at indentations from that at yield on [m]."""
-        return _relative_radius(delta / self.yield_indentation, self.meyer_index, self._full_radius)
+    @property
+    def plastic_coefficients(self) -> tuple[Array, ...]:
+        """Force at yield, Meyer's index and the relative radius at full plasticity."""
+        yield_force = self.stiffness * self.yield_indentation * np.sqrt(self.yield_indentation)
+        return yield_force, self.meyer_index, self._full_radius
 
     @property
     def _full_radius(self) -> Array:
         """Contact radius at full plasticity, relative to that at yield [-]; infinite for a pressure that does not rise."""
         with np.errstate(divide="ignore", over="ignore"):
             return _RISE ** np.divide(1.0, self.meyer_index - 2.0)
-
-    @property
-    def _yield_force(self) -> Array:
-        return self.stiffness * self.yield_indentation * np.sqrt(self.yield_indentation)

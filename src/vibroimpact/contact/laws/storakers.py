@@ -3,31 +3,32 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
 
 from vibroimpact.arrays import Array
 from vibroimpact.compiled import scalar
-from vibroimpact.contact.law import ScalarForces
+from vibroimpact.contact.elastic_plastic import LoadingCurve
 from vibroimpact.contact.parameters import parameter
 from vibroimpact.contact.power_law import power
-from vibroimpact.contact.yielding_sphere import YieldingSphereLaw, yielded_indentation, yielding_sphere_forces
+from vibroimpact.contact.yielding_sphere import YieldingSphereLaw, hertzian_radius, yielding_sphere
 
 
 @scalar
-def _plastic_force(delta: Array, yield_force: Array, plastic_stiffness: Array, exponent: Array, power_at_yield: Array) -> Array:
+def _plastic_force(delta: Array, coefficients: Any) -> Array:
+    yield_force, plastic_stiffness = coefficients[10], coefficients[11]
+    exponent, power_at_yield = coefficients[12], coefficients[13]
     return yield_force + plastic_stiffness * (power(delta, exponent) - power_at_yield)
 
 
 @scalar
-def _forces(delta: Array, delta_dot: Array, approach_speed: Array, coefficients: Any) -> tuple[Array, Array]:
-    yield_force, plastic_stiffness = coefficients[7], coefficients[8]
-    exponent, power_at_yield = coefficients[9], coefficients[10]
-    deepest = yielded_indentation(delta, coefficients)
-    plastic = _plastic_force(deepest, yield_force, plastic_stiffness, exponent, power_at_yield)
-    return yielding_sphere_forces(delta, plastic, coefficients)
+def _plastic_work(delta: Array, coefficients: Any) -> Array:
+    yield_indentation, yield_force, plastic_stiffness = coefficients[6], coefficients[10], coefficients[11]
+    exponent, power_at_yield, next_power_at_yield = coefficients[12], coefficients[13], coefficients[14]
+    constant = yield_force - plastic_stiffness * power_at_yield
+    rise = exponent + 1.0
+    return constant * (delta - yield_indentation) + plastic_stiffness * (power(delta, rise) - next_power_at_yield) / rise
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,7 +78,7 @@ class Storakers(YieldingSphereLaw):
         "without hardening, for which the restitution far above yield would be 1.48 times as high."
     )
     free_parameter = "yield_strength"
-    scalar_forces: ClassVar[ScalarForces | None] = staticmethod(_forces)
+    loading_curve: ClassVar[LoadingCurve] = yielding_sphere(_plastic_force, _plastic_work, hertzian_radius)
 
     yield_strength: Array = parameter(
         "yield strength Y",
@@ -100,27 +101,12 @@ class Storakers(YieldingSphereLaw):
         slope = self._power * self._plastic_stiffness
         return (slope / (1.5 * self.stiffness)) ** (1.0 / (1.5 - self._power))
 
-    def plastic_force(self, delta: Array) -> Array:
-        """Return the loading force beyond the yield indentation [N]."""
-        return _plastic_force(delta, *self._plastic_coefficients)
-
-    def plastic_loading_work(self, delta: Array) -> Array:
-        """Return the integral of the plastic force from the yield indentation [J]."""
-        yield_force, plastic_stiffness, exponent, power_at_yield = self._plastic_coefficients
-        at_yield, rise = self.yield_indentation, exponent + 1.0
-        constant = yield_force - plastic_stiffness * power_at_yield
-        return constant * (delta - at_yield) + plastic_stiffness * (delta**rise - at_yield**rise) / rise
-
-    @cached_property
-    def coefficients(self) -> tuple[Array, ...]:
-        """Those of a yielding sphere, and those of the plastic force."""
-        return *super().coefficients, *self._plastic_coefficients
-
-    @cached_property
-    def _plastic_coefficients(self) -> tuple[Array, ...]:
-        """The force at yield, the stiffness of the plastic force, its exponent, and the yield indentation to this power."""
+    @property
+    def plastic_coefficients(self) -> tuple[Array, ...]:
+        """The force at yield, the stiffness of the plastic force, its exponent n, and the powers n and n + 1 of the yield indentation."""
         at_yield, exponent = self.yield_indentation, self._power
-        return self.stiffness * at_yield**1.5, self._plastic_stiffness, exponent, at_yield**exponent
+        yield_force = self.stiffness * at_yield**1.5
+        return yield_force, self._plastic_stiffness, exponent, at_yield**exponent, at_yield ** (exponent + 1.0)
 
     @property
     def _power(self) -> Array:

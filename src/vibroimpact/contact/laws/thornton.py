@@ -3,28 +3,27 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
 
 from vibroimpact.arrays import Array
 from vibroimpact.compiled import scalar
-from vibroimpact.contact.law import ScalarForces
+from vibroimpact.contact.elastic_plastic import LoadingCurve
 from vibroimpact.contact.parameters import parameter
-from vibroimpact.contact.yielding_sphere import YieldingSphereLaw, yielded_indentation, yielding_sphere_forces
+from vibroimpact.contact.yielding_sphere import YieldingSphereLaw, hertzian_radius, yielding_sphere
 
 
 @scalar
-def _plastic_force(delta: Array, yield_indentation: Array, yield_force: Array, slope: Array) -> Array:
+def _plastic_force(delta: Array, coefficients: Any) -> Array:
+    yield_indentation, yield_force, slope = coefficients[6], coefficients[10], coefficients[11]
     return yield_force + slope * (delta - yield_indentation)
 
 
 @scalar
-def _forces(delta: Array, delta_dot: Array, approach_speed: Array, coefficients: Any) -> tuple[Array, Array]:
-    yield_indentation, yield_force, slope = coefficients[5], coefficients[7], coefficients[8]
-    plastic = _plastic_force(yielded_indentation(delta, coefficients), yield_indentation, yield_force, slope)
-    return yielding_sphere_forces(delta, plastic, coefficients)
+def _plastic_work(delta: Array, coefficients: Any) -> Array:
+    yield_indentation, yield_force, slope = coefficients[6], coefficients[10], coefficients[11]
+    return (yield_force + 0.5 * slope * (delta - yield_indentation)) * (delta - yield_indentation)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,7 +64,7 @@ class Thornton(YieldingSphereLaw):
     equation = "F = 4/3 E* sqrt(R) delta^1.5 up to yield, F_y + pi R p_y (delta - delta_y) beyond; unloading Hertz's, of a flatter sphere"
     source = "Thornton 1997, J. Appl. Mech. 64:383"
     free_parameter = "yield_pressure"
-    scalar_forces: ClassVar[ScalarForces | None] = staticmethod(_forces)
+    loading_curve: ClassVar[LoadingCurve] = yielding_sphere(_plastic_force, _plastic_work, hertzian_radius)
 
     yield_pressure: Array = parameter(
         "limiting contact pressure p_y",
@@ -81,25 +80,9 @@ class Thornton(YieldingSphereLaw):
         r"""Indentation :math:`\delta_y` at yield [m]."""
         return self.effective_radius * (np.pi * self.yield_pressure / (2.0 * self.effective_modulus)) ** 2
 
-    def plastic_force(self, delta: Array) -> Array:
-        """Return the loading force beyond the yield indentation [N]."""
-        return _plastic_force(delta, self.yield_indentation, self._yield_force, self._slope)
-
-    def plastic_loading_work(self, delta: Array) -> Array:
-        """Return the integral of the plastic force from the yield indentation [J]."""
-        at_yield = self.yield_indentation
-        return (self._yield_force + 0.5 * self._slope * (delta - at_yield)) * (delta - at_yield)
-
-    @cached_property
-    def coefficients(self) -> tuple[Array, ...]:
-        """Those of a yielding sphere, and the force at yield and the slope of the plastic force."""
-        return *super().coefficients, self._yield_force, self._slope
-
     @property
-    def _yield_force(self) -> Array:
+    def plastic_coefficients(self) -> tuple[Array, ...]:
+        """The force at yield and the slope of the plastic force."""
         at_yield = self.yield_indentation
-        return self.stiffness * at_yield * np.sqrt(at_yield)
-
-    @property
-    def _slope(self) -> Array:
-        return np.pi * self.effective_radius * self.yield_pressure
+        yield_force = self.stiffness * at_yield * np.sqrt(at_yield)
+        return yield_force, np.pi * self.effective_radius * self.yield_pressure

@@ -3,24 +3,31 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
 
 from vibroimpact.arrays import Array
 from vibroimpact.compiled import scalar
-from vibroimpact.contact.elastic_plastic import ElasticPlasticLaw, static_force
-from vibroimpact.contact.law import ScalarForces
+from vibroimpact.contact.elastic_plastic import ElasticPlasticLaw, LoadingCurve
 from vibroimpact.contact.parameters import inherited_parameter, parameter
 from vibroimpact.errors import InputError
 
 
 @scalar
-def _forces(delta: Array, delta_dot: Array, approach_speed: Array, coefficients: Any) -> tuple[Array, Array]:
-    loaded_to, stiffness = coefficients[0], coefficients[5]
-    force = static_force(delta, stiffness * np.maximum(delta, loaded_to), coefficients)
-    return force, 0.0 * force
+def _loading_force(delta: Array, coefficients: Any) -> Array:
+    return coefficients[6] * delta
+
+
+@scalar
+def _loading_work(delta: Array, coefficients: Any) -> Array:
+    return 0.5 * coefficients[6] * delta * delta
+
+
+@scalar
+def _recovery(deepest: Array, coefficients: Any) -> Array:
+    squared_restitution, stiffening = coefficients[7], coefficients[8]
+    return squared_restitution * deepest / (1.0 + stiffening * deepest)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,7 +69,7 @@ class WaltonBraun(ElasticPlasticLaw):
     source = "Walton & Braun 1986, J. Rheology 30:949"
     lasting = False
     unloading_exponent = 1.0
-    scalar_forces: ClassVar[ScalarForces | None] = staticmethod(_forces)
+    loading_curve: ClassVar[LoadingCurve] = LoadingCurve(_loading_force, _loading_work, _recovery)
 
     loaded_to: Array = inherited_parameter(ElasticPlasticLaw, "loaded_to", detail="Deepest indentation of this contact so far.")
     stiffness: Array = parameter("stiffness of loading k1", "N/m", detail="Stiffness of loading :math:`k_1`.", example=2e6, above=0)
@@ -92,24 +99,11 @@ class WaltonBraun(ElasticPlasticLaw):
         """The name of the parameter given, restitution or stiffening."""
         return "stiffening" if self.restitution is None else "restitution"
 
-    @cached_property
-    def coefficients(self) -> tuple[Array, ...]:
-        """Those of unloading, and the stiffness of loading."""
-        return *super().coefficients, self.stiffness
-
-    def loading_force(self, delta: Array) -> Array:
-        r"""Return :math:`k_1 \delta` [N]."""
-        return self.stiffness * delta
-
-    def loading_work(self, delta: Array) -> Array:
-        r"""Return :math:`k_1 \delta^2/2` [J]."""
-        return 0.5 * self.stiffness * delta * delta
-
-    def elastic_recovery(self, deepest: Array) -> Array:
-        r"""Return :math:`\delta_m k_1/k_2` [m]."""
-        if self.restitution is not None:
-            return self.restitution**2 * deepest
-        return deepest / (1.0 + self.stiffening * deepest)
+    @property
+    def loading_coefficients(self) -> tuple[Array, ...]:
+        """Stiffness of loading, square of the restitution, and stiffening: one or zero where they are not given."""
+        squared_restitution = 1.0 if self.restitution is None else self.restitution**2
+        return self.stiffness, squared_restitution, 0.0 if self.stiffening is None else self.stiffening
 
     def closed_form_restitution(self, mass: Array, speed: Array) -> Array:
         """Return the published restitution of a fresh contact, that of the energy balance otherwise."""

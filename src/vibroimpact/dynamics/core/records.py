@@ -14,13 +14,22 @@ Matrix: TypeAlias = Floats
 Cube: TypeAlias = Floats
 Complexes: TypeAlias = Complex
 Real: TypeAlias = float
+Integer: TypeAlias = int
+Boolean: TypeAlias = bool
+
+
+MAPS = ("touch", "inside", "release")
+"""Maps of the time of a stretch, by their numbers."""
 
 
 class Basis(NamedTuple):
     """A Radau rule of N nodes under a time map, and the eigenbasis of its integration matrix with H eigenvalues, one of each pair.
 
     time (N,): of the nodes, as a part of the length. integral, integral_twice (N, N): integrals up to the nodes. spectrum (N, N): from
-    values at the nodes to Legendre coefficients. at_start (N,): weights of the nodes in the value at the start. eigenvalues, one, clock
+    values at the nodes to Legendre coefficients. at_start (N,): weights of the nodes in the value at the start. at_end (N,): weights in the
+    time derivative at the end, times the length; zero where the nodes do not tell it. places, barycentric (N + 1,): the start and the nodes
+    as parts of the stretch, and their weights in interpolation. grid (G, N + 1): weights of the start and the nodes in the values at evenly
+    spaced points. time_map, root: the map, of `MAPS`, and its power. eigenvalues, one, clock
     (2, H): real and imaginary parts of the eigenvalues, and of the function one and the time in the eigenbasis. forward (N, 2 H): from
     values at the nodes to the eigenbasis; backward (2 H, N): back to the nodes. filters (2 H, N N): from an operator that is diagonal in
     the eigenbasis to its matrix on the nodes.
@@ -31,12 +40,76 @@ class Basis(NamedTuple):
     integral_twice: Matrix
     spectrum: Matrix
     at_start: Vector
+    at_end: Vector
+    places: Vector
+    barycentric: Vector
+    grid: Matrix
+    time_map: Integer
+    root: Integer
     eigenvalues: Matrix
     one: Matrix
     clock: Matrix
     forward: Matrix
     backward: Matrix
     filters: Matrix
+
+
+class State(NamedTuple):
+    """State of a linear system: displacement and velocity of the coordinates (n,), and local, deformations of massless elements [m] (k,)."""
+
+    displacement: Vector
+    velocity: Vector
+    local: Vector
+
+
+class System(NamedTuple):
+    """A linear system with one contact: n coordinates of unit mass, rigid motions first, driven ones last, and k massless elements.
+
+    frequency [rad/s], ratio: damping ratio, damping [1/s], load: acceleration by gravity [kg^1/2 m/s^2] (n,). shape (n,): approach of the
+    surfaces by each coordinate, outer_shape: by those outside the contact, indentation_shape: by those that count in the indentation
+    [kg^-1/2]. rate [1/s], mobility [m/(N s)] (k,): of the massless elements. offset [m], gravity [m/s^2], mass [kg]: of the approach.
+    compliance [m/N]: static one of modes and massless elements, and flexibility [s^2], the sum of the inverse squared frequencies. rigid,
+    driven: how many coordinates are.
+    """
+
+    frequency: Vector
+    ratio: Vector
+    damping: Vector
+    load: Vector
+    shape: Vector
+    outer_shape: Vector
+    indentation_shape: Vector
+    rate: Vector
+    mobility: Vector
+    offset: Real
+    gravity: Real
+    mass: Real
+    compliance: Real
+    flexibility: Real
+    rigid: Integer
+    driven: Integer
+
+
+class Law(NamedTuple):
+    """A contact law of one contact, with its memory and the compliance in series.
+
+    addresses (4,): of its functions. coefficients (K,). series (7,). speed: closing speed at touch [m/s]. touch, release: indentations of
+    the law at which contact begins and ends [m]. release_level: approach of the surfaces at release [m]. memory_level: indentation beyond
+    which compression changes the memory [m]. first_breakpoint, second_breakpoint: indentations at which the force is not smooth [m].
+    jump: energy that an adhesive law and the compliance in series store as they jump into contact, relative to the law alone [J].
+    """
+
+    addresses: Integers
+    coefficients: Vector
+    series: Vector
+    speed: Real
+    touch: Real
+    release: Real
+    release_level: Real
+    memory_level: Real
+    first_breakpoint: Real
+    second_breakpoint: Real
+    jump: Real
 
 
 class Surfaces(NamedTuple):
@@ -97,6 +170,14 @@ class Nodes(NamedTuple):
     static: Vector
     force: Vector
     delta: Vector
+
+
+class Event(NamedTuple):
+    """An event within a stretch: its kind, the indentation of the law at it [m], and x, the part of the stretch at about which it is met."""
+
+    kind: Integer
+    level: Real
+    x: Real
 
 
 class Motion(NamedTuple):
@@ -166,3 +247,95 @@ class Path(NamedTuple):
     local: Vector
     lost: Vector
     energies: Vector
+
+
+class Attempt(NamedTuple):
+    """A solved stretch of one contact.
+
+    nodes, contact, path: its forces, histories, and the motion of all coordinates. closing: the whole rate of the approach at the start and
+    the nodes [m/s] (N + 1,). length [s]. work: increase of the energy stored by the law and of the plastic work [J]. solved: did Newton's
+    method converge? resolved: is it solved with an error within the tolerance? event: the first one within it.
+    """
+
+    nodes: Nodes
+    contact: Histories
+    path: Path
+    closing: Vector
+    length: Real
+    work: Real
+    solved: Boolean
+    resolved: Boolean
+    event: Event
+
+
+class Manner(NamedTuple):
+    """What stays the same through a contact.
+
+    tension, contact_end: numbers of the law's, of `events`. motion_speed: speed of the motion [m/s]. span: approximate duration of a contact
+    [s]. tolerance: relative error allowed at the end of each stretch. begun: time of touch [s]. until: end of a ride [s]. longest: length of
+    a stretch [s]. most_steps: how many stretches are tried.
+    """
+
+    tension: Integer
+    contact_end: Integer
+    motion_speed: Real
+    span: Real
+    tolerance: Real
+    begun: Real
+    until: Real
+    longest: Real
+    most_steps: Integer
+
+
+class Progress(NamedTuple):
+    """How far a contact has come.
+
+    time [s]. next_length: of the next stretch [s]. At the end of the last stretch: delta, indentation of the law [m], force [N], its rate of
+    change trend [N/s], and closing, the whole rate of the approach [m/s]. fresh: no stretch has been solved yet. pushes: the law acts,
+    otherwise the contact recoils. steps: stretches tried. memories: changes of the law's memory. largest_force [N], deepest [m]: at a node.
+    """
+
+    time: Real
+    next_length: Real
+    delta: Real
+    force: Real
+    trend: Real
+    closing: Real
+    fresh: Boolean
+    pushes: Boolean
+    steps: Integer
+    memories: Integer
+    largest_force: Real
+    deepest: Real
+
+
+class Parts(NamedTuple):
+    """Room for P parts of the motion through a contact: stretches (kind 1) and recoils (kind 0).
+
+    kind, time_map (P,). start, length [s] (P,). displacement, velocity (P, n), local (P, k): state at the start. memories (P,): changes of
+    the law's memory before it. Of stretches, as in `Nodes`, `Histories` and `Attempt`: static, force (P, N), approach, rate, delta (P, N + 1),
+    work, dissipated, roughness (P,), and separation_loss, stored energy that is lost at the end [J] (P,). indentation (P, N + 1): of the
+    surface by the centre above [m]. turned_at (P,): indentations of the law at the changes of its memory [m]. late_loss (1,): stored energy
+    lost at the end of the last part of the call before [J].
+    """
+
+    kind: Integers
+    time_map: Integers
+    start: Vector
+    length: Vector
+    displacement: Matrix
+    velocity: Matrix
+    local: Matrix
+    memories: Integers
+    static: Matrix
+    force: Matrix
+    approach: Matrix
+    rate: Matrix
+    delta: Matrix
+    work: Vector
+    dissipated: Vector
+    roughness: Vector
+    separation_loss: Vector
+    indentation: Matrix
+    turned_at: Vector
+    late_loss: Vector

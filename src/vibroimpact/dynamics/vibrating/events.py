@@ -11,12 +11,9 @@ import numpy as np
 from vibroimpact.arrays import Bools, Floats
 from vibroimpact.dynamics.collocation import Map
 from vibroimpact.dynamics.vibrating.linear_system import State
-from vibroimpact.dynamics.vibrating.radau_eigenbasis import radau_eigenbasis
+from vibroimpact.dynamics.vibrating.radau_eigenbasis import GRID, radau_eigenbasis
 from vibroimpact.dynamics.vibrating.solve_stretch import EndCondition
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
-
-GRID = np.linspace(0.0, 1.0, 33)
-"""Values of x at which a stretch is searched for events."""
 
 ROUNDING = 1e-11  # relative to an indentation or a duration
 _ON_LEVEL = 1e-10  # relative to an indentation: a stretch that begins so near to a breakpoint begins on it; ends are solved to 1e-11

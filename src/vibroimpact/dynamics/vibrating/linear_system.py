@@ -26,6 +26,7 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.arrays import Bools, Floats, Indices
+from vibroimpact.dynamics.core.records import System
 from vibroimpact.dynamics.vibrating.oscillators import Oscillators
 
 _ALIKE = 1e-12  # of the sum of the magnitudes of the terms of an acceleration: smaller sums are rounding errors
@@ -98,6 +99,28 @@ class LinearSystem(Oscillators):
     def shared_modes(self) -> dict[tuple[int, ...], Any]:
         """Cache of `ContactModes` for sets of contacts, by their numbers; shared by systems with the same modes."""
         return {}
+
+    @cached_property
+    def record(self) -> System:
+        """The system as the core takes it, of one contact."""
+        return System(
+            frequency=self.angular_frequency,
+            ratio=self.damping_ratio,
+            damping=self.damping,
+            load=self.load,
+            shape=np.ascontiguousarray(self.shape[0]),
+            outer_shape=np.ascontiguousarray(self.outer_shape[0]),
+            indentation_shape=np.ascontiguousarray(self.indentation_shape[0]),
+            rate=self.rate,
+            mobility=self.mobility,
+            offset=float(self.offset[0]),
+            gravity=float(self.gravity[0]),
+            mass=float(self.mass[0]),
+            compliance=float(self.compliance[0]),
+            flexibility=float(self.flexibility.sum()),
+            rigid=int(self.rigid.sum()),
+            driven=self.driven,
+        )
 
     def with_sphere(self, shape: float, load: float) -> LinearSystem:
         """Return the same system with a sphere of another mass and weight, whose fall is the first coordinate."""

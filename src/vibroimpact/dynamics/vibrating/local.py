@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from vibroimpact.arrays import Array
-from vibroimpact.compiled import force_addresses, force_coefficients
+from vibroimpact.compiled import law_addresses, law_coefficients
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.quasi_static import QuasiStatic
 from vibroimpact.dynamics.core.records import Contacts
@@ -53,8 +53,8 @@ class LocalContact:
         """The contact as the core takes it."""
         series = self.series
         return Contacts(
-            laws=force_addresses([type(self.law)]),
-            coefficients=force_coefficients(self.law)[None],
+            laws=law_addresses(type(self.law))[:1],
+            coefficients=law_coefficients(self.law)[None],
             speed=np.array([float(self.approach_speed)]),
             release=np.array([self.release_indentation]),
             release_level=np.array([self.release_level]),

@@ -26,11 +26,12 @@ from vibroimpact.dynamics.vibrating.active_contact import (
     record_peaks,
 )
 from vibroimpact.dynamics.vibrating.contact_view import contact_view
-from vibroimpact.dynamics.vibrating.events import GRID, ZERO_RATE, Event, OtherEvent, first_crossing, first_event
+from vibroimpact.dynamics.vibrating.events import ZERO_RATE, Event, OtherEvent, first_crossing, first_event
 from vibroimpact.dynamics.vibrating.free_motion import FreePhase, recoil_loss
 from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.vibrating.local import LocalContact
 from vibroimpact.dynamics.vibrating.next_touch import next_touch, time_to_separation
+from vibroimpact.dynamics.vibrating.radau_eigenbasis import GRID
 from vibroimpact.dynamics.vibrating.recoil import end_of_recoil, recoil_end_value
 from vibroimpact.dynamics.vibrating.rubbing import Rubbing
 from vibroimpact.dynamics.vibrating.solve_stretch import StretchProblem

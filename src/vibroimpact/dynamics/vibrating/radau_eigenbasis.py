@@ -9,11 +9,15 @@ import numpy as np
 
 from vibroimpact.arrays import Complex, Floats
 from vibroimpact.dynamics.collocation import Map, Rule, collocation_rule
-from vibroimpact.dynamics.core.records import Basis
+from vibroimpact.dynamics.core.records import MAPS, Basis
 
 NODES_PER_STRETCH = 12
 """Nodes of a stretch: with more the eigenvectors of the integration matrix are too ill-conditioned, with fewer the stretches are too short.
 """
+
+
+GRID = np.linspace(0.0, 1.0, 33)
+"""Values of x at which a stretch is searched for events."""
 
 
 @dataclass(frozen=True)
@@ -45,6 +49,12 @@ def radau_eigenbasis(time_map: Map, root: int) -> RadauEigenbasis:
         integral_twice=rule.integral_twice,
         spectrum=rule.coefficients * rule.slope,
         at_start=rule.weights_at_start[:, 0],
+        at_end=np.zeros(NODES_PER_STRETCH) if time_map == "release" else rule.end_slope,
+        places=np.append(0.0, rule.nodes),
+        barycentric=rule.barycentric,
+        grid=rule.weights(GRID).T,
+        time_map=MAPS.index(time_map),
+        root=root,
         eigenvalues=_parts(values),
         one=_parts(inverse.sum(axis=1)),
         clock=_parts(inverse @ rule.time),
@@ -52,7 +62,7 @@ def radau_eigenbasis(time_map: Map, root: int) -> RadauEigenbasis:
         backward=parts.reshape(NODES_PER_STRETCH, -1).T,
         filters=np.stack([filters.real, -filters.imag], axis=1).reshape(2 * len(half), -1),
     )
-    return RadauEigenbasis(rule, Basis(*(np.ascontiguousarray(array) for array in basis)))
+    return RadauEigenbasis(rule, Basis(*(np.ascontiguousarray(part) if np.ndim(part) else part for part in basis)))
 
 
 def _parts(values: Complex | Floats) -> Floats:

@@ -10,9 +10,9 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.contact.roots import find_root
 from vibroimpact.dynamics.collocation import Map
-from vibroimpact.dynamics.vibrating.events import GRID, Event, first_event
+from vibroimpact.dynamics.vibrating.events import Event, first_event
 from vibroimpact.dynamics.vibrating.linear_system import State
-from vibroimpact.dynamics.vibrating.radau_eigenbasis import NODES_PER_STRETCH, radau_eigenbasis
+from vibroimpact.dynamics.vibrating.radau_eigenbasis import GRID, NODES_PER_STRETCH, radau_eigenbasis
 from vibroimpact.dynamics.vibrating.recoil import along_motion
 from vibroimpact.dynamics.vibrating.solve_stretch import StretchProblem
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch

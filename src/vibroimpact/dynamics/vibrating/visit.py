@@ -16,8 +16,10 @@ from vibroimpact.arrays import Floats
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.quasi_static import QuasiStatic
 from vibroimpact.dynamics.contact import CAPTURED, FAILED, RELEASED, RIDING, SETTLED
+from vibroimpact.dynamics.core import contact as core
 from vibroimpact.dynamics.vibrating.active_contact import ContactDefinition, closing_speed, locate_highest_peak, motion_speed
 from vibroimpact.dynamics.vibrating.carried_oscillations import SteadyResponse, steady_response
+from vibroimpact.dynamics.vibrating.compiled_contact import CompiledContact, Limits
 from vibroimpact.dynamics.vibrating.contact_equilibrium import (
     ContactEquilibrium,
     least_energy,
@@ -170,6 +172,8 @@ class _VisitMarch:
     def contact(self) -> int:
         """March through one contact; return its outcome."""
         march, begun = self.march, self.march.time
+        if march.rubbing is None:
+            return self.contact_of_core()
         while 0 in march.active:
             self.stretches += self.active.pushes
             rides, remaining = march.time - begun > _LONG * self.active.span, self.until - march.time
@@ -181,6 +185,22 @@ class _VisitMarch:
                 return self.end_in_contact(FAILED)
             if taken and 0 in march.active and self.active.pushes and (self.captured() or self.at_rest()):
                 return self.end_in_contact(CAPTURED)
+        return RELEASED
+
+    def contact_of_core(self) -> int:
+        """Follow one contact without friction in the core; return its outcome."""
+        limits = Limits(self.until, self.longest, self.most_stretches - self.stretches)
+        contact = CompiledContact(self.march, self.active, limits)
+        outcome = contact.follow()
+        while outcome == core.NEAR_REST:
+            if self.at_rest():
+                outcome = core.CAPTURED
+                break
+            outcome = contact.follow()
+        self.stretches += contact.steps
+        if outcome != core.RELEASED:
+            return self.end_in_contact({core.CAPTURED: CAPTURED, core.RIDES: RIDING, core.TOO_STIFF: FAILED}[outcome])
+        self.march.end_contact(self.active)
         return RELEASED
 
     def end_in_contact(self, outcome: int) -> int:

@@ -1,0 +1,124 @@
+"""The compiled functions of contact laws, and calls of those that cannot be compiled. Loading this module loads numba."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+from typing import Any
+
+from numba import objmode
+
+from vibroimpact.compiler.function_values import interpreted_function
+from vibroimpact.compiler.functions import CompiledFunction
+from vibroimpact.errors import SlowLawWarning
+
+_COMPILED: dict[Any, CompiledFunction] = {}
+"""Compiled functions by their Python functions; they are kept, since addresses of them are in use."""
+
+_REASONS: dict[Any, str] = {}
+"""Why a function is not compiled, by its Python function; "" if it is."""
+
+_WARNED: set[type[Any]] = set()
+"""Laws of which the user knows that they are not compiled."""
+
+
+def compiled_law_function(law_class: type[Any], kind: str) -> CompiledFunction:
+    """Return a function of a law as a function value, compiled once a process; `kind`: of `LAW_FUNCTIONS`."""
+    source = interpreted_function(law_class, kind)
+    if source not in _COMPILED:
+        missing = law_class.missing_functions()
+        reason = f"it has no {_listed(missing)}" if missing else _why_not_compiled(source, kind)
+        if reason:
+            _COMPILED[source] = CompiledFunction(_CALLING[kind](source), _signature(kind), nogil=False)
+            _COMPILED[source].ready()
+        _REASONS[source] = reason
+    if _REASONS[source] and law_class not in _WARNED:
+        _WARNED.add(law_class)
+        name = getattr(law_class, "name", law_class.__name__)
+        said = f"the law {name} is not compiled, and its force takes microseconds in place of nanoseconds: {_REASONS[source]}"
+        warnings.warn(SlowLawWarning(said), stacklevel=4)
+    return _COMPILED[source]
+
+
+def _signature(kind: str) -> Callable[[Any], Any]:
+    return lambda types: getattr(types, kind).signature
+
+
+def _why_not_compiled(source: Callable[..., Any], kind: str) -> str:
+    """Compile a function, or return why numba refuses it."""
+    function = CompiledFunction(_returning_a_number(source) if kind == "compressed" else source, _signature(kind))
+    try:
+        function.ready()
+    except Exception as error:  # numba has many kinds, and a function of another package may be anything
+        return _first_reason(error)
+    _COMPILED[source] = function
+    return ""
+
+
+def _returning_a_number(source: Callable[..., Any]) -> Callable[..., Any]:
+    """Return a function that returns zero, since numba has no function values that return nothing."""
+
+    def compressed(deepest, coefficients, changed):  # type: ignore[no-untyped-def]
+        source(deepest, coefficients, changed)
+        return 0.0
+
+    return compressed
+
+
+# functions that compiled code calls, and which call Python
+
+
+def _calling_force(source: Callable[..., Any]) -> Callable[..., Any]:
+    def force(delta, delta_dot, approach_speed, coefficients):  # type: ignore[no-untyped-def]
+        with objmode(static="float64", dissipative="float64"):
+            static, dissipative = source(delta, delta_dot, approach_speed, coefficients)
+        return static, dissipative
+
+    return force
+
+
+def _calling_energies(source: Callable[..., Any]) -> Callable[..., Any]:
+    def energies(delta, coefficients):  # type: ignore[no-untyped-def]
+        with objmode(elastic="float64", plastic="float64"):
+            elastic, plastic = source(delta, coefficients)
+        return elastic, plastic
+
+    return energies
+
+
+def _calling_levels(source: Callable[..., Any]) -> Callable[..., Any]:
+    def levels(coefficients):  # type: ignore[no-untyped-def]
+        with objmode(touch="float64", release="float64", memory="float64", first="float64", second="float64"):
+            touch, release, memory, first, second = source(coefficients)
+        return touch, release, memory, first, second
+
+    return levels
+
+
+def _calling_compressed(source: Callable[..., Any]) -> Callable[..., Any]:
+    def compressed(deepest, coefficients, changed):  # type: ignore[no-untyped-def]
+        with objmode():
+            source(deepest, coefficients, changed)
+        return 0.0
+
+    return compressed
+
+
+_CALLING = {
+    "force": _calling_force,
+    "energies": _calling_energies,
+    "levels": _calling_levels,
+    "compressed": _calling_compressed,
+}
+
+
+def _listed(names: list[str]) -> str:
+    quoted = [f"`{name}`" for name in names]
+    return quoted[0] if len(quoted) == 1 else f"{', '.join(quoted[:-1])} and {quoted[-1]}"
+
+
+def _first_reason(error: Exception) -> str:
+    """Return the first line of numba's message that says something of the function."""
+    lines = [line.strip() for line in str(error).splitlines()]
+    said = [line for line in lines if line and not line.startswith("Failed in")]
+    return said[0] if said else type(error).__name__

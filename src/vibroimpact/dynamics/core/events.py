@@ -1,0 +1,107 @@
+"""Events within a stretch of contact: separation, zero force, a breakpoint of the law, a turn of the approach."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vibroimpact.compiled import compiled, force_at
+from vibroimpact.dynamics.core.records import Basis, Event, Histories, Law, Nodes, System
+
+NO_EVENT, PARTED, NO_PUSH, BREAKPOINT, TURN = 0, 1, 2, 3, 4
+"""Kinds of events: none; the surfaces separate; the force is zero; the law's indentation is at a breakpoint; the approach turns."""
+
+NO_TENSION, TENSION_CUT, TENSION_KEPT = 0, 1, 2
+"""May the force of a law be tensile? No; by its formula, which is cut; yes."""
+
+_ROUNDING = 1e-11  # relative to an indentation
+_ON_LEVEL = 1e-10  # relative to an indentation: a stretch that begins so near to a breakpoint begins on it; ends are solved to 1e-11
+_ZERO_RATE = 1e-9  # of the speed of the motion: a slower approach counts as having turned already
+_SLACK = 1e-11  # of the force
+
+
+@compiled(lambda t: t.vector(t.matrix, t.vector))
+def on_grid(weights, values):
+    """Return values at the points of a grid from those at the start and the nodes."""
+    points = np.empty(len(weights))
+    for point in range(len(weights)):
+        total = 0.0
+        for node in range(len(values)):
+            total += weights[point, node] * values[node]
+        points[point] = total
+    return points
+
+
+@compiled(lambda t: t.tuple(t.real, t.boolean)(t.vector, t.booleans))
+def crossing(values, reached):
+    """Return where values on the grid fall below zero, as a part of it, by the secant; and whether they do."""
+    last = len(values) - 1
+    for point in range(1, last + 1):
+        if reached[point]:
+            before = values[point - 1]
+            after = values[point]
+            share = before / (before - after) if before > 0.0 > after else 1.0
+            return max((point - 1 + share) / last, 0.5 / last), True
+    return 1.0, False
+
+
+@compiled(lambda t: t.of(Event)(t.of(Basis), t.of(System), t.of(Law), t.integer, t.of(Histories), t.of(Nodes), t.vector, t.real, t.real))
+def first_event(
+    basis: Basis, system: System, law: Law, tension: int, contact: Histories, nodes: Nodes, closing, speed: float, span: float
+) -> Event:
+    """Return the first event in a stretch of a contact of about a speed [m/s] and a duration [s].
+
+    `closing`: the whole rate of the approach at the start and the nodes [m/s] (N + 1,).
+    """
+    delta = on_grid(basis.grid, contact.delta[0])
+    rate = on_grid(basis.grid, contact.rate[0])
+    points = len(delta)
+    deepest = delta.max()
+    reached = np.zeros(points, dtype=np.bool_)
+    first = Event(NO_EVENT, 0.0, np.inf)
+
+    above = delta - law.release
+    for point in range(points):
+        reached[point] = above[point] < -_ROUNDING * above.max()
+    x, crosses = crossing(above, reached)
+    if crosses:
+        first = Event(PARTED, law.release, x)
+
+    if tension != TENSION_KEPT:  # also a law without tension gives a negative force where the surfaces recoil fast enough
+        largest = 0.0
+        for node in range(len(nodes.force)):
+            largest = max(largest, abs(nodes.force[node]))
+        slack = _SLACK * (largest + system.mass * speed / span)
+        force_of = force_at(law.addresses[0])
+        force = np.empty(points)
+        for point in range(points):
+            static, dissipative = force_of(max(delta[point], law.release), rate[point], law.speed, law.coefficients)
+            force[point] = static + dissipative
+            reached[point] = force[point] < -slack
+        x, crosses = crossing(force, reached)
+        if crosses and x < first.x:
+            first = Event(NO_PUSH, 0.0, x)
+
+    for number in range(2):
+        level = law.first_breakpoint if number == 0 else law.second_breakpoint
+        if not np.isfinite(level):
+            continue
+        beyond = delta - level
+        on_it = abs(beyond[0]) <= _ON_LEVEL * max(abs(level), deepest - delta.min())
+        side = np.sign(beyond[1] if on_it else beyond[0])
+        for point in range(points):
+            beyond[point] *= side
+            reached[point] = beyond[point] < 0.0
+        x, crosses = crossing(beyond, reached)
+        if crosses and x < first.x:
+            first = Event(BREAKPOINT, level, x)
+
+    if deepest > law.memory_level:
+        rates = on_grid(basis.grid, closing)
+        fastest = -np.inf
+        for point in range(points):
+            fastest = max(fastest, rates[point])
+            reached[point] = rates[point] < 0.0 and fastest > _ZERO_RATE * speed
+        x, crosses = crossing(rates, reached)
+        if crosses and x < first.x:
+            first = Event(TURN, 0.0, x)
+    return first

@@ -1,0 +1,166 @@
+"""Free motion of a linear system in closed form, its approach at a contact, and its energies."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.compiled import compiled
+from vibroimpact.dynamics.core.records import State, System
+
+
+@compiled(lambda t: t.of(State)(t.of(System), t.of(State), t.real))
+def state_after(system: System, state: State, time: float) -> State:
+    """Return the state after free motion for a time [s], for any damping ratio."""
+    number = len(state.displacement)
+    displacement = np.empty(number)
+    velocity = np.empty(number)
+    for coordinate in range(number):
+        frequency = system.frequency[coordinate]
+        ratio = system.ratio[coordinate]
+        decay = ratio * frequency
+        root = frequency * math.sqrt(abs(1.0 - ratio * ratio))
+        if root == 0.0:  # a rigid motion, or critical damping
+            fade = math.exp(-decay * time)
+            sine = fade * time
+            cosine = fade
+        elif ratio < 1.0:
+            fade = math.exp(-decay * time)
+            sine = fade * math.sin(root * time) / root
+            cosine = fade * math.cos(root * time)
+        else:  # overdamped: the slower exponential is factored out, so that none overflows
+            slow = math.exp((root - decay) * time)
+            sine = slow * -math.expm1(-2.0 * root * time) / (2.0 * root)
+            cosine = 0.5 * slow * (1.0 + math.exp(-2.0 * root * time))
+        cosine += decay * sine
+        place = state.displacement[coordinate]
+        speed = state.velocity[coordinate]
+        load = system.load[coordinate]
+        displacement[coordinate] = cosine * place + sine * speed + 0.5 * load * time * time
+        slowed = (cosine - system.damping[coordinate] * sine) * speed
+        velocity[coordinate] = slowed - frequency * frequency * sine * place + load * time
+    local = np.empty(len(state.local))
+    for element in range(len(local)):
+        local[element] = state.local[element] * math.exp(-system.rate[element] * time)
+    return State(displacement, velocity, local)
+
+
+@compiled(lambda t: t.tuple(t.real, t.real)(t.of(System), t.of(State)))
+def approach_of(system: System, state: State) -> tuple[float, float]:
+    """Return the approach of the surfaces [m], negative where there is a gap, and its rate without contact force [m/s]."""
+    approach = system.offset
+    rate = 0.0
+    for coordinate in range(len(state.displacement)):
+        approach += system.shape[coordinate] * state.displacement[coordinate]
+        rate += system.shape[coordinate] * state.velocity[coordinate]
+    for element in range(len(state.local)):
+        approach += state.local[element]
+        rate -= system.rate[element] * state.local[element]
+    return approach, rate
+
+
+@compiled(lambda t: t.real(t.of(System), t.of(State)))
+def dashpot_rate(system: System, state: State) -> float:
+    """Return the rate at the dashpot of the contact law without contact force [m/s]."""
+    rate = 0.0
+    for coordinate in range(len(state.velocity)):
+        rate += system.outer_shape[coordinate] * state.velocity[coordinate]
+    for element in range(len(state.local)):
+        rate -= system.rate[element] * state.local[element]
+    return rate
+
+
+@compiled(lambda t: t.real(t.of(System), t.of(State)))
+def local_energy(system: System, state: State) -> float:
+    """Return the energy in the springs of the massless elements [J]."""
+    energy = 0.0
+    for element in range(len(state.local)):
+        energy += 0.5 * state.local[element] ** 2 * system.rate[element] / system.mobility[element]
+    return energy
+
+
+@compiled(lambda t: t.real(t.of(System), t.of(State)))
+def energy_of_approach(system: System, state: State) -> float:
+    """Return the mechanical energy [J], without what the contact stores, and without that of free bodies moving together."""
+    energy = local_energy(system, state)
+    along = 0.0
+    of_rigid = 0.0
+    for coordinate in range(len(state.velocity) - system.driven):
+        speed = state.velocity[coordinate]
+        strain = system.frequency[coordinate] * state.displacement[coordinate]
+        energy += 0.5 * (speed * speed + strain * strain)
+        if coordinate < system.rigid:
+            along += speed * system.shape[coordinate]
+            of_rigid += speed * speed
+    for coordinate in range(len(state.velocity)):
+        energy -= system.load[coordinate] * state.displacement[coordinate]
+    if system.rigid > 1:
+        energy -= 0.5 * (of_rigid - system.mass * along * along)
+    return energy
+
+
+@compiled(lambda t: t.vector(t.of(System), t.of(State), t.of(State)))
+def lost_in_flight(system: System, before: State, after: State) -> Floats:
+    """Return the energy lost between two states of a free motion [J] (n + 1,): in each coordinate, and last in the massless elements."""
+    number = len(before.displacement)
+    lost = np.zeros(number + 1)
+    for coordinate in range(system.rigid, number - system.driven):
+        frequency = system.frequency[coordinate]
+        held = before.velocity[coordinate] ** 2 + (frequency * before.displacement[coordinate]) ** 2
+        left = after.velocity[coordinate] ** 2 + (frequency * after.displacement[coordinate]) ** 2
+        lost[coordinate] = 0.5 * (held - left)
+    lost[number] = local_energy(system, before) - local_energy(system, after)
+    return lost
+
+
+@compiled(lambda t: t.real(t.of(System), t.of(State)))
+def greatest_vibration(system: System, state: State) -> float:
+    """Return a bound of the future contribution of modes and massless elements to the approach [m], from their energy."""
+    reach = 0.0
+    for coordinate in range(system.rigid, len(state.velocity)):
+        frequency = system.frequency[coordinate]
+        peak_speed = math.sqrt(state.velocity[coordinate] ** 2 + (frequency * state.displacement[coordinate]) ** 2)
+        reach += abs(system.shape[coordinate]) * peak_speed / frequency
+    for element in range(len(state.local)):
+        reach += abs(state.local[element])
+    return reach
+
+
+_MOST_HORIZONS = 10_000
+_SAMPLES = 32
+_ROUNDING = 4e-16  # of the sum of the magnitudes of the terms of an approach: a smaller overlap is a rounding error
+
+
+@compiled(lambda t: t.real(t.of(System), t.of(State), t.real))
+def time_to_separation(system: System, state: State, level: float) -> float:
+    """Return when surfaces that overlap beyond a level separate to it [s]; 0 if they do not overlap, infinite if they never separate."""
+    time = 0.0
+    now = state
+    for _ in range(_MOST_HORIZONS):
+        approach, rate = approach_of(system, now)
+        terms = abs(system.offset)
+        rigid_approach = system.offset
+        rigid_rate = 0.0
+        for coordinate in range(len(now.displacement)):
+            term = system.shape[coordinate] * now.displacement[coordinate]
+            terms += abs(term)
+            if coordinate < system.rigid:
+                rigid_approach += term
+                rigid_rate += system.shape[coordinate] * now.velocity[coordinate]
+        slack = _ROUNDING * terms if rate < 0.0 else 0.0
+        if approach <= level + slack:
+            return time
+        if system.gravity >= 0.0 and rigid_rate >= 0.0 and rigid_approach - greatest_vibration(system, now) > level:
+            return np.inf  # the rigid motion closes beyond the range of the vibration: they never separate
+        horizon = 2.0 * (approach - level) / abs(rate) if rate != 0.0 else 1e-6
+        before = time
+        for sample in range(1, _SAMPLES + 1):
+            time = before + horizon * sample / _SAMPLES
+            now = state_after(system, state, time)
+            if approach_of(system, now)[0] <= level:
+                break
+        if time == before:  # the time step is below rounding
+            return time
+    return np.inf

@@ -1,0 +1,197 @@
+"""One contact without friction, followed by the core, and its parts read back."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cache
+
+import numpy as np
+
+from vibroimpact.compiled import law_addresses, law_coefficients
+from vibroimpact.dynamics.core import contact as core
+from vibroimpact.dynamics.core import records
+from vibroimpact.dynamics.core.law import law_at_touch
+from vibroimpact.dynamics.vibrating.active_contact import ActiveContact
+from vibroimpact.dynamics.vibrating.contact_history import ContactHistory
+from vibroimpact.dynamics.vibrating.contact_view import contact_view
+from vibroimpact.dynamics.vibrating.free_motion import FreePhase
+from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, State
+from vibroimpact.dynamics.vibrating.local import LocalContact
+from vibroimpact.dynamics.vibrating.march import March, MotionPart
+from vibroimpact.dynamics.vibrating.radau_eigenbasis import NODES_PER_STRETCH, RadauEigenbasis, radau_eigenbasis
+from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
+from vibroimpact.dynamics.vibrating.stretch_end import with_separation_loss
+
+_TENSIONS = ("none", "cut", "kept")
+_ENDS = ("zero-indentation", "zero-force", "pull-off")
+_PARTS = 64
+
+
+@dataclass(frozen=True)
+class Limits:
+    """When a contact is left: at the time `until` [s] if the sphere rides, or after so many steps; `longest`: of a stretch [s]."""
+
+    until: float
+    longest: float
+    most_steps: int
+
+
+class CompiledContact:
+    """The contact of a march with one contact and without friction, from touch on.
+
+    `outcome`: how it goes on, of `core.contact`. `steps`: stretches that were tried.
+    """
+
+    def __init__(self, march: March, active: ActiveContact, limits: Limits) -> None:
+        self.march = march
+        self.active = active
+        law = active.local.law
+        self.view = contact_view(march.system, (0,))
+        self.bases = _bases(law.root)
+        self.manner = records.Manner(
+            tension=_TENSIONS.index(law.tension),
+            contact_end=_ENDS.index(law.contact_end),
+            motion_speed=active.speed,
+            span=active.span,
+            tolerance=march.tolerance,
+            begun=march.time,
+            until=limits.until,
+            longest=limits.longest,
+            most_steps=limits.most_steps,
+        )
+        series = active.local.record.series[0]
+        self.law = law_at_touch(law_addresses(type(law)), law_coefficients(law), series, float(active.local.approach_speed))
+        self.progress = records.Progress(
+            time=march.time,
+            next_length=march.next_length,
+            delta=active.delta,
+            force=np.inf,
+            trend=0.0,
+            closing=np.inf,
+            fresh=True,
+            pushes=True,
+            steps=0,
+            memories=0,
+            largest_force=0.0,
+            deepest=0.0,
+        )
+        self.state = records.State(march.state.displacement, march.state.velocity, march.state.local)
+        self.parts = _room(march.system.number, len(march.system.rate))
+        self.locals = [active.local]
+        self.outcome = core.FULL
+
+    @property
+    def steps(self) -> int:
+        """Stretches that were tried."""
+        return self.progress.steps
+
+    def follow(self) -> int:
+        """Follow the contact until something is to be decided; bring the march up to there, and return how it goes on."""
+        march, outcome = self.march, core.FULL
+        while outcome == core.FULL:
+            outcome, count, self.progress, self.state, self.law = core.follow_contact(
+                *(one.basis for one in self.bases),
+                march.system.record,
+                self.view.surfaces,
+                self.view.coordinates,
+                self.manner,
+                self.law,
+                self.state,
+                self.progress,
+                march.lost,
+                self.parts,
+            )
+            self._read(count)
+        active, progress = self.active, self.progress
+        march.state = State(*self.state)
+        march.time, march.next_length = progress.time, progress.next_length
+        active.local = self.locals[-1]
+        active.delta, active.force, active.trend = progress.delta, progress.force, progress.trend
+        active.fresh, active.pushes = progress.fresh, progress.pushes
+        return outcome
+
+    def _read(self, count: int) -> None:
+        """Append the parts that were written to the history of the march, and record the peaks."""
+        parts, march = self.parts, self.march
+        if parts.late_loss[0]:
+            last = march.parts[-1]
+            assert isinstance(last.motion, VibratingStretch)
+            march.parts[-1] = replace(last, motion=with_separation_loss(last.motion, 0, float(parts.late_loss[0])))
+        for turned_at in parts.turned_at[: self.progress.memories + 1 - len(self.locals)].tolist():
+            before = self.locals[-1]
+            march.plastic += float(before.law.plastic_work(turned_at))
+            self.locals.append(before.after_indentation(turned_at))
+        for part in range(count):
+            local = self.locals[parts.memories[part]]
+            start = float(parts.start[part])
+            begun = State(parts.displacement[part].copy(), parts.velocity[part].copy(), parts.local[part].copy())
+            if parts.kind[part] == 0:
+                length = float(parts.length[part])
+                march.parts.append(MotionPart(start, FreePhase(FreeMotion(march.system, begun), length, ((0, local),))))
+                continue
+            stretch = self._stretch(part, local, begun)
+            march.parts.append(MotionPart(start, stretch))
+            self._record_peaks(part, stretch, start)
+
+    def _stretch(self, part: int, local: LocalContact, begun: State) -> VibratingStretch:
+        parts = self.parts
+        basis = self.bases[parts.time_map[part]]
+        static = parts.static[part].copy()
+        history = ContactHistory(
+            0,
+            local,
+            basis.rule,
+            static,
+            parts.force[part] - static,
+            parts.approach[part].copy(),
+            parts.rate[part].copy(),
+            parts.delta[part].copy(),
+            work=float(parts.work[part]),
+            dissipated=float(parts.dissipated[part]),
+            separation_loss=float(parts.separation_loss[part]),
+        )
+        return VibratingStretch(self.view, basis, float(parts.length[part]), begun, (history,), True, float(parts.roughness[part]))
+
+    def _record_peaks(self, part: int, stretch: VibratingStretch, start: float) -> None:
+        """Add the peaks of a stretch to those of the impact, and its impulse."""
+        impact, rule, force = self.active.impact, stretch.rule, self.parts.force[part]
+        indentation = self.parts.indentation[part].copy()
+        (contact,) = stretch.contacts
+        largest = float(force.max()) if contact.local.law.tension == "kept" else max(float(force.max()), 0.0)
+        impact.force.add(largest, start, stretch, contact.force_at)
+        impact.indentation.add(float(indentation[1:].max()), start, stretch, lambda x: np.asarray(rule.weights(x).T @ indentation))
+        impact.impulse += stretch.length * float(rule.integral[-1] @ force)
+
+
+@cache
+def _bases(root: int) -> tuple[RadauEigenbasis, RadauEigenbasis, RadauEigenbasis]:
+    """Return the Radau rule under the maps of time of the core, in their order."""
+    touch, inside, release = (radau_eigenbasis(time_map, root) for time_map in ("touch", "inside", "release"))
+    return touch, inside, release
+
+
+def _room(number: int, elements: int) -> records.Parts:
+    """Return room for parts of the motion of a system with so many coordinates and massless elements."""
+    nodes = NODES_PER_STRETCH
+    return records.Parts(
+        kind=np.zeros(_PARTS, dtype=np.int64),
+        time_map=np.zeros(_PARTS, dtype=np.int64),
+        start=np.empty(_PARTS),
+        length=np.empty(_PARTS),
+        displacement=np.empty((_PARTS, number)),
+        velocity=np.empty((_PARTS, number)),
+        local=np.empty((_PARTS, elements)),
+        memories=np.zeros(_PARTS, dtype=np.int64),
+        static=np.empty((_PARTS, nodes)),
+        force=np.empty((_PARTS, nodes)),
+        approach=np.empty((_PARTS, nodes + 1)),
+        rate=np.empty((_PARTS, nodes + 1)),
+        delta=np.empty((_PARTS, nodes + 1)),
+        work=np.empty(_PARTS),
+        dissipated=np.empty(_PARTS),
+        roughness=np.empty(_PARTS),
+        separation_loss=np.empty(_PARTS),
+        indentation=np.empty((_PARTS, nodes + 1)),
+        turned_at=np.empty(_PARTS),
+        late_loss=np.zeros(1),
+    )
