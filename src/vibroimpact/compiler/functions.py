@@ -161,7 +161,7 @@ def _register() -> None:
 
 
 def _inserting(of_address: Any) -> Callable[..., Any]:
-    def replacement(address: Any) -> Callable[..., Any]:
+    def replacement(address):  # type: ignore[no-untyped-def]  # numba compares the signatures, with annotations
         return lambda address: of_address(address)
 
     return replacement
