@@ -9,7 +9,7 @@ from typing import Any, cast
 
 import numpy as np
 
-_KNOWN_PACKAGES = ("numpy", "math", "cmath", "operator", "builtins", "numba")
+_KNOWN_PACKAGES = ("numpy", "math", "cmath", "operator", "builtins", "numba", "llvmlite")
 """Packages whose versions are in the name of the folder, so that their functions need only be named."""
 
 

@@ -70,7 +70,7 @@ class CompiledFunction(CPUDispatcher):  # type: ignore[misc]
                     self._make_ready()
             finally:
                 CompiledFunction.is_busy = False
-            if isinstance(self._cache, CodeCache) and self._cache.trouble:
+            if self.is_kept and self._cache.trouble:
                 say_trouble(self._cache.trouble)
 
     def _make_ready(self) -> None:
@@ -84,10 +84,15 @@ class CompiledFunction(CPUDispatcher):  # type: ignore[misc]
         signature = self._signature_of(types)
         return " ".join([str(signature), *map(_fields, (signature.return_type, *signature.args))])
 
+    @property
+    def is_kept(self) -> bool:
+        """Is the code kept on the disk? So it is unless it depends on something whose content is not known."""
+        return isinstance(self._cache, CodeCache)
+
     def is_on_disk(self) -> bool:
         """Is the code on the disk? From now on numba asks for it there."""
         _register()
-        if not isinstance(self._cache, CodeCache):
+        if not self.is_kept:
             try:
                 digest = Digest(self.py_func, _REPLACED)
             except NotDigestible:  # it is then compiled in each process
@@ -97,7 +102,7 @@ class CompiledFunction(CPUDispatcher):  # type: ignore[misc]
         return self._cache.has_code(self.targetctx)
 
     def _alone(self) -> Any:
-        return compiling_alone(self._cache.folder(self.targetctx)) if isinstance(self._cache, CodeCache) else nullcontext()
+        return compiling_alone(self._cache.folder(self.targetctx)) if self.is_kept else nullcontext()
 
     def address(self) -> int:
         """Return the address of the machine code, which is valid as long as this object exists."""
@@ -151,8 +156,9 @@ def _register() -> None:
     if not _REPLACED:
         for kind in function_values.LAW_FUNCTIONS:
             at = getattr(function_values, f"{kind}_at")
-            _REPLACED[at] = at
-            overload(at)(_inserting(getattr(intrinsics, f"{kind}_of_address")))
+            of_address = getattr(intrinsics, f"{kind}_of_address")
+            _REPLACED[at] = getattr(of_address, "_defn", at)
+            overload(at)(_inserting(of_address))
     for function, of_floats in SCALAR:
         if function in _REPLACED:
             continue
