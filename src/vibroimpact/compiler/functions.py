@@ -99,7 +99,7 @@ class CompiledFunction(CPUDispatcher):  # type: ignore[misc]
                 return False
             text = f"{digest.text} {self.signature_text} {self.targetoptions}"
             self._cache = CodeCache(self.py_func.__name__, text, digest.is_own)
-        return self._cache.has_code(self.targetctx)
+        return bool(self._cache.has_code(self.targetctx))
 
     def _alone(self) -> Any:
         return compiling_alone(self._cache.folder(self.targetctx)) if self.is_kept else nullcontext()
