@@ -249,6 +249,31 @@ class Path(NamedTuple):
     energies: Vector
 
 
+class Bases(NamedTuple):
+    """The Radau rule under the three maps of time."""
+
+    touch: Basis
+    inside: Basis
+    release: Basis
+
+
+class Bodies(NamedTuple):
+    """The bodies of one contact: the linear system, what moves its surfaces, and all its coordinates."""
+
+    system: System
+    surfaces: Surfaces
+    coordinates: Coordinates
+
+
+class Beginning(NamedTuple):
+    """What a stretch of one contact begins with: the state, also as that of the surfaces, the law, and its indentation (1,) [m]."""
+
+    state: State
+    start: Start
+    contacts: Contacts
+    delta: Vector
+
+
 class Attempt(NamedTuple):
     """A solved stretch of one contact.
 
@@ -314,9 +339,9 @@ class Parts(NamedTuple):
 
     kind, time_map (P,). start, length [s] (P,). displacement, velocity (P, n), local (P, k): state at the start. memories (P,): changes of
     the law's memory before it. Of stretches, as in `Nodes`, `Histories` and `Attempt`: static, force (P, N), approach, rate, delta
-    (P, N + 1), work, dissipated, roughness (P,), and separation_loss, stored energy that is lost at the end [J] (P,). indentation (P, N + 1): of the
-    surface by the centre above [m]. turned_at (P,): indentations of the law at the changes of its memory [m]. late_loss (1,): stored energy
-    lost at the end of the last part of the call before [J].
+    (P, N + 1), work, dissipated, roughness (P,). separation_loss (P,): stored energy that is lost at the end [J]. indentation (P, N + 1):
+    of the surface by the centre above [m]. turned_at (P,): indentations of the law at the changes of its memory [m]. late_loss (1,): stored
+    energy lost at the end of the last part of the call before [J].
     """
 
     kind: Integers
