@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
+from typing import Any
 
 import numpy as np
 
@@ -62,9 +63,8 @@ def radau_eigenbasis(time_map: Map, root: int) -> RadauEigenbasis:
         backward=parts.reshape(NODES_PER_STRETCH, -1).T,
         filters=np.stack([filters.real, -filters.imag], axis=1).reshape(2 * len(half), -1),
     )
-    return RadauEigenbasis(
-        rule, basis._replace(**{name: np.ascontiguousarray(part) for name, part in basis._asdict().items() if np.ndim(part)})
-    )
+    members: Any = (np.ascontiguousarray(part) if np.ndim(part) else part for part in basis)
+    return RadauEigenbasis(rule, Basis(*members))
 
 
 def _parts(values: Complex | Floats) -> Floats:
