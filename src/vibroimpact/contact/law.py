@@ -178,7 +178,8 @@ class CompliantLaw(ContactLaw):
     @property
     def release_level(self) -> Array:
         """Indentation [m] at which contact ends; negative for adhesive contacts."""
-        return self._levels[1]
+        is_new = type(self).touch_level is not CompliantLaw.touch_level  # it then ends where it begins
+        return self.touch_level if is_new else self._levels[1]
 
     @property
     def breakpoints(self) -> tuple[Array, ...]:

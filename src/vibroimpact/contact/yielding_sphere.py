@@ -50,7 +50,7 @@ def yielding_sphere(plastic_force: OfIndentation, plastic_state: LoadingState) -
         plastic, work, radius = plastic_state(np.maximum(delta, yield_indentation), coefficients)
         force = where(yields, plastic, stiffness * elastic * np.sqrt(elastic))
         # exactly no plastic work up to yield, despite rounding
-        loading_work = 0.4 * stiffness * elastic**2 * np.sqrt(elastic) + where(yields, work, 0.0)
+        loading_work = 0.4 * stiffness * (elastic * elastic) * np.sqrt(elastic) + where(yields, work, 0.0)
         recovery = where(yields, 0.75 * plastic / (effective_modulus * radius), delta)
         return force, loading_work, recovery
 

@@ -70,7 +70,9 @@ def _plastic_state(delta: Array, coefficients: Any) -> tuple[Array, Array, Array
     x = _relative_radius(delta / yield_indentation, n, full_radius)
     rising = np.minimum(x, full_radius)
     work = (rising ** (n + 2.0) - 1.0) / (n + 2.0) + 0.5 * (n - 1.0) * (rising ** (2.0 * n - 1.0) - 1.0) / (2.0 * n - 1.0)
-    work = work + _RISE * ((x**4 - rising**4) / 4.0 + _RISE * (x**3 - rising**3) / 6.0)
+    square, rising_square = x * x, rising * rising
+    full = (square * square - rising_square * rising_square) / 4.0 + _RISE * (square * x - rising_square * rising) / 6.0
+    work = work + _RISE * full
     radius = x * np.sqrt(effective_radius * yield_indentation)
     return _plastic_force_at(x, coefficients), yield_force * yield_indentation * work, radius
 
