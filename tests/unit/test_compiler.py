@@ -2,25 +2,33 @@
 
 from __future__ import annotations
 
+import importlib
 import os
+import pickle
+import pkgutil
 import signal
 import subprocess
 import sys
 import time
 import warnings
+from collections import namedtuple
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, ForwardRef
 
 import numpy as np
 import pytest
 
 import vibroimpact as vi
+import vibroimpact.dynamics.core
 from vibroimpact.compiled import SWITCH, compiled, force_at, law_addresses, law_coefficients, law_function, why_not_compiled
-from vibroimpact.compiler import code_store
+from vibroimpact.compiler import code_store, notice
 from vibroimpact.compiler.code_store import PLACE, load_code, save_code
+from vibroimpact.compiler.deferred import DeferredFunction
+from vibroimpact.compiler.digest import Digest
+from vibroimpact.compiler.marks import DEFERRED
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.hunt_crossley import HuntCrossley
 
@@ -125,6 +133,14 @@ def work_of_law(steps: int, address: Any, coefficients: np.ndarray) -> float:
 def work_of_arrays(law: vi.ContactLaw) -> float:
     static, dissipative = law.forces(1e-4 * np.arange(10), np.ones(10), 2.0 * np.ones(10))  # type: ignore[attr-defined]
     return float(np.sum(static + dissipative))
+
+
+@compiled(lambda t: t.real(t.vector))
+def largest_of(values: np.ndarray) -> float:
+    answer = values[0]
+    for value in values:
+        answer = max(answer, value)
+    return answer
 
 
 # laws
@@ -286,6 +302,65 @@ def test_a_full_disk_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
 
     monkeypatch.setattr(code_store, "write_file", fail)
     assert save_code(tmp_path / "new", "name", b"") == f"{tmp_path / 'new'} can't be written to: No space left on device"
+
+
+@needs_compiler
+def test_numbers_of_other_types_are_converted_or_refused() -> None:
+    assert largest_of(np.array([1.0, 3.0])) == 3.0
+    with pytest.raises(TypeError, match="No matching definition"):
+        largest_of(np.array([[1.0, 3.0]]))
+    with pytest.raises(TypeError, match="No matching definition"):
+        largest_of(np.arange(8.0)[::2])
+
+
+@needs_compiler
+def test_a_function_is_pickled_by_name() -> None:
+    assert pickle.loads(pickle.dumps(largest_of)) is largest_of
+    assert pickle.loads(pickle.dumps(largest_of.compiled)) is largest_of.compiled  # type: ignore[attr-defined]
+
+
+@needs_compiler
+def test_all_functions_of_the_core_can_be_kept() -> None:
+    for module in pkgutil.iter_modules(vibroimpact.dynamics.core.__path__):
+        importlib.import_module(f"vibroimpact.dynamics.core.{module.name}")
+    functions = [function for function in DEFERRED if function.py_func.__module__.startswith("vibroimpact.dynamics.core.")]
+    assert len(functions) > 10
+    for function in functions:
+        function.compiled.is_on_disk()
+        assert function.compiled.is_kept, function
+
+
+@needs_compiler
+def test_the_digest_heeds_signatures_and_members_of_named_tuples() -> None:
+    def digest(members: str, kind: str) -> str:
+        row = namedtuple("row", members)
+        row.__annotations__ = dict.fromkeys(row._fields, ForwardRef("Real"))
+        callee = DeferredFunction(lambda pair: pair.a, lambda t: getattr(t, kind)(t.of(row)), lambda: "")
+        assert callee.compiled.py_func is callee.py_func
+        return Digest(callee, {}).text
+
+    assert digest("a b", "real") == digest("a b", "real")
+    assert len({digest("a b", "real"), digest("b a", "real"), digest("a b", "integer")}) == 3
+
+
+# what is said
+
+
+def test_a_long_compilation_is_said_once_in_a_terminal(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.setattr(notice, "_SAID", set())
+    notice.say_how_long(lambda: 23.0)
+    notice.say_trouble("no room")
+    assert capsys.readouterr() == ("", "")
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
+    notice.say_how_long(lambda: 1.0)
+    for _ in range(2):
+        notice.say_how_long(lambda: 23.0)
+        notice.say_trouble("no room")
+    assert capsys.readouterr() == (
+        "",
+        "Compiling the solver for this machine, once; about 25 s.\n"
+        "The compiled solver can't be kept, and is compiled again the next time: no room.\n",
+    )
 
 
 # without a compiler

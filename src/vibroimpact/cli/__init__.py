@@ -25,7 +25,7 @@ from vibroimpact.cli import reproduction as reproduction  # isort: skip
 from vibroimpact.cli import reference as reference  # isort: skip
 from vibroimpact.cli import serve as serve  # isort: skip
 from vibroimpact.cli.completion import PROGRAM, concerns_completion, whole_words
-from vibroimpact.cli.shared import app, fail, never_fail_to_print, note_lost_charts
+from vibroimpact.cli.shared import app, fail, never_fail_to_print, note_warnings
 from vibroimpact.errors import LONGEST_LINE, ComputationError, InputError
 from vibroimpact.shown import shortened, visible
 
@@ -35,7 +35,7 @@ __all__ = ["app", "main"]
 def main() -> None:
     """Run the command line; an error of the package becomes a message and an exit status."""
     never_fail_to_print()
-    note_lost_charts()
+    note_warnings()
     _isolate_matplotlib()
     try:
         sys.exit(_run())

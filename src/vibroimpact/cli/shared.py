@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 import typer
 
 from vibroimpact.cli.completion import complete_case, complete_change
-from vibroimpact.errors import ChartWarning, InputError, lines_of
+from vibroimpact.errors import ChartWarning, InputError, SlowLawWarning, lines_of
 from vibroimpact.shown import visible
 
 if TYPE_CHECKING:
@@ -220,17 +220,18 @@ def note(text: str) -> None:
     say(f"vibroimpact: {text}", err=True)
 
 
-def note_lost_charts() -> None:
-    """Show warnings about charts that could not be drawn as notes."""
+def note_warnings() -> None:
+    """Show warnings about charts that could not be drawn, and about laws that are not compiled, as notes."""
     show_others = warnings.showwarning
 
     def show_warning(message: Warning | str, category: type[Warning], *where: Any, **to: Any) -> None:
-        if issubclass(category, ChartWarning):
+        if issubclass(category, ChartWarning | SlowLawWarning):
             note(str(message))
         else:
             show_others(message, category, *where, **to)
 
     warnings.simplefilter("always", ChartWarning)
+    warnings.simplefilter("always", SlowLawWarning)
     warnings.showwarning = show_warning
 
 

@@ -6,7 +6,6 @@ import hashlib
 import io
 import pickle
 import sys
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -15,8 +14,6 @@ from numba.core.codegen import ll
 from numba.core.runtime import _nrt_python, rtsys
 
 from vibroimpact.compiler.code_store import has_code, load_code, machine_folder, save_code
-
-_OWN_PACKAGE = "vibroimpact."
 
 
 class CodeCache(caching._Cache):  # type: ignore[misc]
@@ -27,15 +24,17 @@ class CodeCache(caching._Cache):  # type: ignore[misc]
 
     Parameters
     ----------
-    function : callable
-        The Python function.
+    name : str
+        Name of the function.
     digest : str
         What it is compiled from, with its callees, its signature and the options.
+    is_own : bool
+        Are it and its callees functions of this package?
     """
 
-    def __init__(self, function: Callable[..., Any], digest: str) -> None:
-        self._file = f"{function.__name__}-{hashlib.sha256(digest.encode()).hexdigest()[:32]}"
-        self._is_own = function.__module__.startswith(_OWN_PACKAGE)
+    def __init__(self, name: str, digest: str, is_own: bool) -> None:
+        self._file = f"{name}-{hashlib.sha256(digest.encode()).hexdigest()[:32]}"
+        self._is_own = is_own
         self.trouble = ""
         """Why the code is not on the disk, or ""."""
 

@@ -6,6 +6,8 @@ from collections.abc import Callable
 from functools import cached_property, update_wrapper
 from typing import Any
 
+from vibroimpact.compiler.marks import DEFERRED
+
 
 class DeferredFunction:
     """A function of the core in place of the compiled one.
@@ -25,6 +27,7 @@ class DeferredFunction:
         self.py_func = function
         self._signature = signature
         self._why_not = why_not
+        DEFERRED.append(self)
 
     @cached_property
     def compiled(self) -> Any:

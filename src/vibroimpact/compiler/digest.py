@@ -9,8 +9,11 @@ from typing import Any, cast
 
 import numpy as np
 
-_KNOWN_PACKAGES = ("numpy", "math", "cmath", "operator", "builtins", "numba")
+_KNOWN_PACKAGES = ("numpy", "math", "cmath", "operator", "builtins", "numba", "llvmlite")
 """Packages whose versions are in the name of the folder, so that their functions need only be named."""
+
+
+_OWN_PACKAGE = "vibroimpact"
 
 
 class NotDigestible(Exception):
@@ -27,11 +30,6 @@ class Digest:
     replaced : mapping
         The functions that compiled code calls in place of others.
 
-    Attributes
-    ----------
-    callees : dict
-        The compiled functions that it calls, directly or through others, as keys.
-
     Raises
     ------
     NotDigestible
@@ -39,7 +37,8 @@ class Digest:
     """
 
     def __init__(self, function: Callable[..., Any], replaced: Mapping[Any, Callable[..., Any]]) -> None:
-        self.callees: dict[Any, None] = {}
+        self.is_own = True
+        """Are all functions those of this package, or of NumPy and the like?"""
         self._replaced = replaced
         self._words: list[str] = []
         self._numbers: dict[int, int] = {}
@@ -52,7 +51,6 @@ class Digest:
 
     def _add(self, value: Any) -> None:
         if isinstance(getattr(value, "py_func", None), FunctionType):
-            self.callees[value] = None
             self._words.append(getattr(getattr(value, "compiled", value), "signature_text", ""))
             value = value.py_func
         if isinstance(value, FunctionType):
@@ -83,6 +81,7 @@ class Digest:
             self._words.append(f"function {self._numbers[id(function)]}")
             return
         self._numbers[id(function)] = len(self._numbers)
+        self.is_own &= _package(function) == _OWN_PACKAGE
         self._add_code(function.__code__, function.__doc__)
         self._add(function.__defaults__)
         for name, value in _used(function):

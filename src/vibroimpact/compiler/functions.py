@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import nullcontext
+from importlib import import_module
 from inspect import signature
 from typing import Any
 
@@ -14,15 +15,14 @@ from numba.extending import overload
 from vibroimpact.compiler import function_values, intrinsics, types
 from vibroimpact.compiler.code_cache import CodeCache
 from vibroimpact.compiler.code_store import compiling_alone
-from vibroimpact.compiler.deferred import DeferredFunction
 from vibroimpact.compiler.digest import Digest, NotDigestible
-from vibroimpact.compiler.marks import SCALAR
+from vibroimpact.compiler.marks import DEFERRED, SCALAR
 from vibroimpact.compiler.notice import say_how_long, say_trouble
 
 _OPTIONS = {"error_model": "numpy"}
 """Division by zero gives infinity, as in NumPy; no `fastmath`, so that sums do not depend on the compiler."""
 
-_SECONDS = 6e-4
+_SECONDS = 9e-4
 """Time to compile a byte of Python's code [s]."""
 
 _REPLACED: dict[Any, Callable[..., Any]] = {}
@@ -52,7 +52,6 @@ class CompiledFunction(CPUDispatcher):  # type: ignore[misc]
         super().__init__(function, targetoptions={"nopython": True, "boundscheck": None, "nogil": nogil, **_OPTIONS})
         self._signature_of = signature
         self._is_ready = False
-        self._callees: list[CompiledFunction] = []
 
     def ready(self) -> None:
         """Compile the function, or load its code, unless that was done."""
@@ -61,17 +60,17 @@ class CompiledFunction(CPUDispatcher):  # type: ignore[misc]
         with global_compiler_lock:
             if self._is_ready or self.is_compiling:
                 return
-            if self._is_on_disk() or CompiledFunction.is_busy:
+            if self.is_on_disk() or CompiledFunction.is_busy:
                 self._make_ready()
                 return
             CompiledFunction.is_busy = True
             try:
                 with self._alone():
-                    say_how_long(self._seconds())
+                    say_how_long(_seconds)
                     self._make_ready()
             finally:
                 CompiledFunction.is_busy = False
-            if isinstance(self._cache, CodeCache) and self._cache.trouble:
+            if self.is_kept and self._cache.trouble:
                 say_trouble(self._cache.trouble)
 
     def _make_ready(self) -> None:
@@ -85,25 +84,25 @@ class CompiledFunction(CPUDispatcher):  # type: ignore[misc]
         signature = self._signature_of(types)
         return " ".join([str(signature), *map(_fields, (signature.return_type, *signature.args))])
 
-    def _is_on_disk(self) -> bool:
+    @property
+    def is_kept(self) -> bool:
+        """Is the code kept on the disk? So it is unless it depends on something whose content is not known."""
+        return isinstance(self._cache, CodeCache)
+
+    def is_on_disk(self) -> bool:
         """Is the code on the disk? From now on numba asks for it there."""
         _register()
-        if not isinstance(self._cache, CodeCache):
+        if not self.is_kept:
             try:
                 digest = Digest(self.py_func, _REPLACED)
             except NotDigestible:  # it is then compiled in each process
                 return False
-            self._callees = [callee.compiled for callee in digest.callees if isinstance(callee, DeferredFunction)]
-            self._cache = CodeCache(self.py_func, f"{digest.text} {self.signature_text} {self.targetoptions}")
-        return self._cache.has_code(self.targetctx)
+            text = f"{digest.text} {self.signature_text} {self.targetoptions}"
+            self._cache = CodeCache(self.py_func.__name__, text, digest.is_own)
+        return bool(self._cache.has_code(self.targetctx))
 
     def _alone(self) -> Any:
-        return compiling_alone(self._cache.folder(self.targetctx)) if isinstance(self._cache, CodeCache) else nullcontext()
-
-    def _seconds(self) -> float:
-        """Return about how long it takes to compile the function and its callees, as far as they are not on the disk [s]."""
-        missing = [function for function in (self, *self._callees) if not function._is_on_disk()]
-        return _SECONDS * sum(len(function.py_func.__code__.co_code) for function in missing)
+        return compiling_alone(self._cache.folder(self.targetctx)) if self.is_kept else nullcontext()
 
     def address(self) -> int:
         """Return the address of the machine code, which is valid as long as this object exists."""
@@ -134,8 +133,22 @@ class CompiledFunction(CPUDispatcher):  # type: ignore[misc]
         self.ready()
         return super().get_function_type()
 
-    def __reduce__(self) -> str:
-        return str(self.py_func.__qualname__)  # pickled by its name, as Python's functions are
+    def __reduce__(self) -> Any:
+        return _compiled_named, (self.py_func.__module__, self.py_func.__qualname__)
+
+
+def _compiled_named(module: str, name: str) -> Any:
+    """Return the compiled function with a name in a module."""
+    function: Any = import_module(module)
+    for part in name.split("."):
+        function = getattr(function, part)
+    return function.compiled
+
+
+def _seconds() -> float:
+    """Return about how long it takes to compile all that is not on the disk [s]."""
+    missing = [function for function in DEFERRED if not function.compiled.is_on_disk()]
+    return _SECONDS * sum(len(function.py_func.__code__.co_code) for function in missing)
 
 
 def _register() -> None:
@@ -143,8 +156,9 @@ def _register() -> None:
     if not _REPLACED:
         for kind in function_values.LAW_FUNCTIONS:
             at = getattr(function_values, f"{kind}_at")
-            _REPLACED[at] = at
-            overload(at)(_inserting(getattr(intrinsics, f"{kind}_of_address")))
+            of_address = getattr(intrinsics, f"{kind}_of_address")
+            _REPLACED[at] = getattr(of_address, "_defn", at)
+            overload(at)(_inserting(of_address))
     for function, of_floats in SCALAR:
         if function in _REPLACED:
             continue
@@ -153,7 +167,7 @@ def _register() -> None:
 
 
 def _inserting(of_address: Any) -> Callable[..., Any]:
-    def replacement(address: Any) -> Callable[..., Any]:
+    def replacement(address):  # type: ignore[no-untyped-def]  # numba compares the signatures, with annotations
         return lambda address: of_address(address)
 
     return replacement

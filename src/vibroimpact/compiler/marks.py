@@ -10,6 +10,9 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 SCALAR: list[tuple[Callable[..., Any], Callable[..., Any] | None]] = []
 """The functions that `scalar` marks, each with the one that compiled code calls in its place, if any."""
 
+DEFERRED: list[Any] = []
+"""The functions that `compiled` marks: each is compiled when it is first called."""
+
 
 def scalar(function: Function) -> Function:
     """Mark a function of floats, or of arrays elementwise, as one that compiled code may call.

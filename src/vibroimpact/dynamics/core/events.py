@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from vibroimpact.arrays import Bools, Floats
 from vibroimpact.compiled import compiled, force_at
 from vibroimpact.dynamics.core.records import Basis, Event, Histories, Law, Nodes, System
 
@@ -20,7 +21,7 @@ _SLACK = 1e-11  # of the force
 
 
 @compiled(lambda t: t.vector(t.matrix, t.vector))
-def on_grid(weights, values):
+def on_grid(weights: Floats, values: Floats) -> Floats:
     """Return values at the points of a grid from those at the start and the nodes."""
     points = np.empty(len(weights))
     for point in range(len(weights)):
@@ -32,7 +33,7 @@ def on_grid(weights, values):
 
 
 @compiled(lambda t: t.tuple(t.real, t.boolean)(t.vector, t.booleans))
-def crossing(values, reached):
+def crossing(values: Floats, reached: Bools) -> tuple[float, bool]:
     """Return where values on the grid fall below zero, as a part of it, by the secant; and whether they do."""
     last = len(values) - 1
     for point in range(1, last + 1):
@@ -46,7 +47,7 @@ def crossing(values, reached):
 
 @compiled(lambda t: t.of(Event)(t.of(Basis), t.of(System), t.of(Law), t.integer, t.of(Histories), t.of(Nodes), t.vector, t.real, t.real))
 def first_event(
-    basis: Basis, system: System, law: Law, tension: int, contact: Histories, nodes: Nodes, closing, speed: float, span: float
+    basis: Basis, system: System, law: Law, tension: int, contact: Histories, nodes: Nodes, closing: Floats, speed: float, span: float
 ) -> Event:
     """Return the first event in a stretch of a contact of about a speed [m/s] and a duration [s].
 

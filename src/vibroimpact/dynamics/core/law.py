@@ -125,10 +125,10 @@ def series_energy(series: Floats, force: float) -> float:
     linear = series[0]
     unit = series[1]
     if unit == 0.0:
-        return 0.5 * force * force * linear
+        return float(0.5 * force * force * linear)
     x = max((abs(force) / series[6]) ** (1.0 / 3.0), _LEAST_RADIUS)
     factor = series[2] + series[3] * (math.log(x) + 1.0 / 6.0) + x * (8.0 / 7.0 * series[4] + 1.25 * series[5] * x)
-    return 0.5 * force * force * (linear + unit * factor)
+    return float(0.5 * force * force * (linear + unit * factor))
 
 
 _TENSILE_POINTS = 2000
@@ -140,7 +140,7 @@ _LEVELS = 5
 def static_force(law: Law, delta: float) -> float:
     """Return the static force of a law [N] at an indentation [m]."""
     static, _ = force_at(law.addresses[0])(delta, 0.0, law.speed, law.coefficients)
-    return static
+    return float(static)
 
 
 @compiled(lambda t: t.real(t.of(Law), t.real))
@@ -164,14 +164,14 @@ def stored_energy(law: Law, delta: float) -> float:
     elastic, _ = energies_at(law.addresses[1])(reached, law.coefficients)
     if is_in_series(law.series):
         elastic += series_energy(law.series, static_force(law, reached)) - law.jump
-    return elastic
+    return float(elastic)
 
 
 @compiled(lambda t: t.real(t.of(Law), t.real))
 def static_work(law: Law, delta: float) -> float:
     """Return the sum of the stored energy and the plastic work [J] at an indentation of a law [m]."""
     _, plastic = energies_at(law.addresses[1])(max(delta, law.release), law.coefficients)
-    return stored_energy(law, delta) + plastic
+    return float(stored_energy(law, delta) + plastic)
 
 
 @compiled(lambda t: t.of(Law)(t.integers, t.vector, t.vector, t.real))

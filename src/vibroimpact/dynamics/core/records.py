@@ -55,7 +55,7 @@ class Basis(NamedTuple):
 
 
 class State(NamedTuple):
-    """State of a linear system: displacement and velocity of the coordinates (n,), and local, deformations of massless elements [m] (k,)."""
+    """State of a linear system: displacement, velocity of the coordinates (n,); local: deformations of massless elements [m] (k,)."""
 
     displacement: Vector
     velocity: Vector
@@ -173,7 +173,7 @@ class Nodes(NamedTuple):
 
 
 class Event(NamedTuple):
-    """An event within a stretch: its kind, the indentation of the law at it [m], and x, the part of the stretch at about which it is met."""
+    """An event within a stretch: its kind, the indentation of the law at it [m], and x, the part of the stretch at which it is met."""
 
     kind: Integer
     level: Real
@@ -249,6 +249,31 @@ class Path(NamedTuple):
     energies: Vector
 
 
+class Bases(NamedTuple):
+    """The Radau rule under the three maps of time."""
+
+    touch: Basis
+    inside: Basis
+    release: Basis
+
+
+class Bodies(NamedTuple):
+    """The bodies of one contact: the linear system, what moves its surfaces, and all its coordinates."""
+
+    system: System
+    surfaces: Surfaces
+    coordinates: Coordinates
+
+
+class Beginning(NamedTuple):
+    """What a stretch of one contact begins with: the state, also as that of the surfaces, the law, and its indentation (1,) [m]."""
+
+    state: State
+    start: Start
+    contacts: Contacts
+    delta: Vector
+
+
 class Attempt(NamedTuple):
     """A solved stretch of one contact.
 
@@ -271,9 +296,9 @@ class Attempt(NamedTuple):
 class Manner(NamedTuple):
     """What stays the same through a contact.
 
-    tension, contact_end: numbers of the law's, of `events`. motion_speed: speed of the motion [m/s]. span: approximate duration of a contact
-    [s]. tolerance: relative error allowed at the end of each stretch. begun: time of touch [s]. until: end of a ride [s]. longest: length of
-    a stretch [s]. most_steps: how many stretches are tried.
+    tension, contact_end: numbers of the law's, of `events`. motion_speed: speed of the motion [m/s]. span: approximate duration of a
+    contact [s]. tolerance: relative error allowed at the end of each stretch. begun: time of touch [s]. until: end of a ride [s]. longest:
+    length of a stretch [s]. most_steps: how many stretches are tried.
     """
 
     tension: Integer
@@ -290,8 +315,8 @@ class Manner(NamedTuple):
 class Progress(NamedTuple):
     """How far a contact has come.
 
-    time [s]. next_length: of the next stretch [s]. At the end of the last stretch: delta, indentation of the law [m], force [N], its rate of
-    change trend [N/s], and closing, the whole rate of the approach [m/s]. fresh: no stretch has been solved yet. pushes: the law acts,
+    time [s]. next_length: of the next stretch [s]. At the end of the last stretch: delta, indentation of the law [m], force [N], its rate
+    of change trend [N/s], and closing, the whole rate of the approach [m/s]. fresh: no stretch has been solved yet. pushes: the law acts,
     otherwise the contact recoils. steps: stretches tried. memories: changes of the law's memory. largest_force [N], deepest [m]: at a node.
     """
 
@@ -313,10 +338,10 @@ class Parts(NamedTuple):
     """Room for P parts of the motion through a contact: stretches (kind 1) and recoils (kind 0).
 
     kind, time_map (P,). start, length [s] (P,). displacement, velocity (P, n), local (P, k): state at the start. memories (P,): changes of
-    the law's memory before it. Of stretches, as in `Nodes`, `Histories` and `Attempt`: static, force (P, N), approach, rate, delta (P, N + 1),
-    work, dissipated, roughness (P,), and separation_loss, stored energy that is lost at the end [J] (P,). indentation (P, N + 1): of the
-    surface by the centre above [m]. turned_at (P,): indentations of the law at the changes of its memory [m]. late_loss (1,): stored energy
-    lost at the end of the last part of the call before [J].
+    the law's memory before it. Of stretches, as in `Nodes`, `Histories` and `Attempt`: static, force (P, N), approach, rate, delta
+    (P, N + 1), work, dissipated, roughness (P,). separation_loss (P,): stored energy that is lost at the end [J]. indentation (P, N + 1):
+    of the surface by the centre above [m]. turned_at (P,): indentations of the law at the changes of its memory [m]. late_loss (1,): stored
+    energy lost at the end of the last part of the call before [J].
     """
 
     kind: Integers

@@ -47,7 +47,9 @@ class CompiledContact:
         self.active = active
         law = active.local.law
         self.view = contact_view(march.system, (0,))
-        self.bases = _bases(law.root)
+        self.rules = _rules(law.root)
+        self.bases = records.Bases(*(rule.basis for rule in self.rules))
+        self.bodies = records.Bodies(march.system.record, self.view.surfaces, self.view.coordinates)
         self.manner = records.Manner(
             tension=_TENSIONS.index(law.tension),
             contact_end=_ENDS.index(law.contact_end),
@@ -90,16 +92,7 @@ class CompiledContact:
         march, outcome = self.march, core.FULL
         while outcome == core.FULL:
             outcome, count, self.progress, self.state, self.law = core.follow_contact(
-                *(one.basis for one in self.bases),
-                march.system.record,
-                self.view.surfaces,
-                self.view.coordinates,
-                self.manner,
-                self.law,
-                self.state,
-                self.progress,
-                march.lost,
-                self.parts,
+                self.bases, self.bodies, self.manner, self.law, self.state, self.progress, march.lost, self.parts
             )
             self._read(count)
         active, progress = self.active, self.progress
@@ -135,7 +128,7 @@ class CompiledContact:
 
     def _stretch(self, part: int, local: LocalContact, begun: State) -> VibratingStretch:
         parts = self.parts
-        basis = self.bases[parts.time_map[part]]
+        basis = self.rules[parts.time_map[part]]
         static = parts.static[part].copy()
         history = ContactHistory(
             0,
@@ -164,7 +157,7 @@ class CompiledContact:
 
 
 @cache
-def _bases(root: int) -> tuple[RadauEigenbasis, RadauEigenbasis, RadauEigenbasis]:
+def _rules(root: int) -> tuple[RadauEigenbasis, RadauEigenbasis, RadauEigenbasis]:
     """Return the Radau rule under the maps of time of the core, in their order."""
     touch, inside, release = (radau_eigenbasis(time_map, root) for time_map in ("touch", "inside", "release"))
     return touch, inside, release

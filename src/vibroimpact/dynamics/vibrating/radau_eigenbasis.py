@@ -62,7 +62,9 @@ def radau_eigenbasis(time_map: Map, root: int) -> RadauEigenbasis:
         backward=parts.reshape(NODES_PER_STRETCH, -1).T,
         filters=np.stack([filters.real, -filters.imag], axis=1).reshape(2 * len(half), -1),
     )
-    return RadauEigenbasis(rule, Basis(*(np.ascontiguousarray(part) if np.ndim(part) else part for part in basis)))
+    return RadauEigenbasis(
+        rule, basis._replace(**{name: np.ascontiguousarray(part) for name, part in basis._asdict().items() if np.ndim(part)})
+    )
 
 
 def _parts(values: Complex | Floats) -> Floats:

@@ -1,0 +1,246 @@
+"""One attempt at a stretch of contact: solved, read back, searched for events, and its error measured."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.compiled import compiled, force_at
+from vibroimpact.dynamics.core.events import BREAKPOINT, NO_EVENT, NO_PUSH, PARTED, TURN, first_event
+from vibroimpact.dynamics.core.flight import approach_of
+from vibroimpact.dynamics.core.law import static_work
+from vibroimpact.dynamics.core.path import stretch_path
+from vibroimpact.dynamics.core.receptance import surface_motion
+from vibroimpact.dynamics.core.records import (
+    Attempt,
+    Bases,
+    Basis,
+    Beginning,
+    Bodies,
+    Contacts,
+    Event,
+    Law,
+    Manner,
+    Nodes,
+    Start,
+    State,
+    Surfaces,
+    System,
+)
+from vibroimpact.dynamics.core.stretch import (
+    AT_LEVEL,
+    AT_NO_FORCE,
+    AT_TURN,
+    GIVEN_LENGTH,
+    begun_indentations,
+    contact_histories,
+    first_guess,
+    solve_stretch,
+)
+
+_TINY = 1e-300
+_MOST_ATTEMPTS = 4  # solutions per stretch, until no earlier event is found
+_BEFORE_END = 0.98  # in x: an event beyond is the one at the end
+_AT_END = 1e-12  # relative: an event may lie so far beyond the end of the first solution
+
+
+@compiled(lambda t: t.real(t.of(Basis), t.real))
+def time_at(basis: Basis, x: float) -> float:
+    """Return the time at x as a part of the length of a stretch."""
+    if basis.time_map == 0:
+        return float(x**basis.root)
+    if basis.time_map == 2:
+        return float(1.0 - (1.0 - x) ** basis.root)
+    return x
+
+
+@compiled(lambda t: t.real(t.of(Basis), t.real))
+def place_at(basis: Basis, time: float) -> float:
+    """Return the x of a time, both as parts of the length of a stretch."""
+    time = min(max(time, 0.0), 1.0)
+    if basis.time_map == 0:
+        return float(time ** (1.0 / basis.root))
+    if basis.time_map == 2:
+        return float(1.0 - (1.0 - time) ** (1.0 / basis.root))
+    return time
+
+
+@compiled(lambda t: t.void(t.of(Basis), t.real, t.vector))
+def weights_at(basis: Basis, x: float, weights: Floats) -> None:
+    """Write the weights of the start and the nodes in the interpolated value at x."""
+    total = 0.0
+    for node in range(len(weights)):
+        distance = x - basis.places[node]
+        if distance == 0.0:
+            distance = _TINY  # at a point itself, its weight dominates all others
+        weights[node] = basis.barycentric[node] / distance
+        total += weights[node]
+    for node in range(len(weights)):
+        weights[node] /= total
+
+
+@compiled(lambda t: t.of(Start)(t.of(System), t.of(Surfaces), t.of(State)))
+def surface_start(system: System, surfaces: Surfaces, state: State) -> Start:
+    """Return the state of the surfaces of one contact in a state of the system."""
+    parts, _, modes = surfaces.shapes.shape
+    displacement = state.displacement[system.rigid :].copy()
+    velocity = state.velocity[system.rigid :].copy()
+    approach, _ = approach_of(system, state)
+    outer_rate = 0.0
+    for coordinate in range(system.rigid):
+        outer_rate += system.shape[coordinate] * state.velocity[coordinate]
+    inner_rate = 0.0
+    for mode in range(modes):
+        outer_rate += surfaces.shapes[0, 0, mode] * velocity[mode]
+        if parts == 2:
+            inner_rate += surfaces.shapes[1, 0, mode] * velocity[mode]
+    return Start(displacement, velocity, state.local, np.array([approach]), np.array([outer_rate]), np.array([inner_rate]))
+
+
+@compiled(lambda t: t.of(Contacts)(t.of(Law)))
+def contacts_of(law: Law) -> Contacts:
+    """Return the law of one contact as stretches take it."""
+    return Contacts(
+        law.addresses[:1].copy(),
+        law.coefficients.copy().reshape(1, len(law.coefficients)),
+        np.array([law.speed]),
+        np.array([law.release]),
+        np.array([law.release_level]),
+        law.series.copy().reshape(1, len(law.series)),
+    )
+
+
+@compiled(lambda t: t.of(Beginning)(t.of(Bodies), t.of(Law), t.of(State), t.real))
+def beginning_of(bodies: Bodies, law: Law, state: State, delta: float) -> Beginning:
+    """Return what a stretch begins with; `delta`: about the indentation of the law [m]."""
+    start = surface_start(bodies.system, bodies.surfaces, state)
+    contacts = contacts_of(law)
+    return Beginning(state, start, contacts, begun_indentations(contacts, start, np.array([delta])))
+
+
+@compiled(
+    lambda t: t.of(Attempt)(
+        t.of(Basis), t.of(Bodies), t.of(Law), t.of(Manner), t.of(Beginning), t.of(Nodes), t.real, t.boolean, t.of(Event)
+    )
+)
+def attempt(
+    basis: Basis,
+    bodies: Bodies,
+    law: Law,
+    manner: Manner,
+    beginning: Beginning,
+    guess: Nodes,
+    trend: float,
+    guessed: bool,
+    event: Event,
+) -> Attempt:
+    """Return a stretch solved up to an event, or of the length that `event.x` gives [s] where there is none.
+
+    `guess`: forces and indentations to begin with, if `guessed`; else they are extrapolated by the `trend` of the force [N/s].
+    """
+    system = bodies.system
+    surfaces = bodies.surfaces
+    state = beginning.state
+    start = beginning.start
+    contacts = beginning.contacts
+    begun = beginning.delta
+    length = event.x
+    motion = surface_motion(basis, surfaces, start, length)
+    if not guessed:
+        guess = first_guess(basis, surfaces, contacts, start, motion, begun, np.array([trend]), length)
+    ends = GIVEN_LENGTH
+    if event.kind == PARTED or event.kind == BREAKPOINT:
+        ends = AT_LEVEL
+    elif event.kind == NO_PUSH:
+        ends = AT_NO_FORCE
+    elif event.kind == TURN:
+        ends = AT_TURN
+    nodes, motion, length, solved = solve_stretch(basis, surfaces, contacts, start, guess, motion, length, ends, event.level, 0)
+    contact = contact_histories(basis, surfaces, contacts, start, begun, nodes, motion, length)
+    path = stretch_path(
+        basis, surfaces, bodies.coordinates, state.displacement, state.velocity, state.local, length, nodes.force, nodes.static
+    )
+    number = len(basis.time)
+    closing = contact.rate[0].copy()
+    if surfaces.shapes.shape[0] == 2:
+        for mode in range(surfaces.shapes.shape[2]):
+            shape = surfaces.shapes[1, 0, mode]
+            closing[0] += shape * state.velocity[system.rigid + mode]
+            for node in range(number):
+                closing[node + 1] += shape * path.velocity[system.rigid + mode, node]
+    seen = Event(NO_EVENT, 0.0, np.inf)
+    resolved = False
+    work = 0.0
+    if solved:
+        seen = first_event(basis, system, law, manner.tension, contact, nodes, closing, manner.motion_speed, manner.span)
+        work = static_work(law, contact.delta[0, number]) - static_work(law, contact.delta[0, 0])
+        imbalance = path.energies[0] + work + contact.dissipated[0]
+        for coordinate in range(len(path.lost)):
+            imbalance += path.lost[coordinate]
+        energy = 0.5 * system.mass * manner.motion_speed * manner.motion_speed
+        smooth = contact.roughness * contact.roughness <= 0.1 * manner.tolerance
+        resolved = smooth and abs(imbalance) <= 0.06 * manner.tolerance * energy + path.energies[1]
+    return Attempt(nodes, contact, path, closing, length, work, solved, resolved, seen)
+
+
+@compiled(lambda t: t.of(Nodes)(t.of(Basis), t.of(Basis), t.of(Law), t.of(Attempt), t.real))
+def guess_from(basis: Basis, other: Basis, law: Law, solved: Attempt, share: float) -> Nodes:
+    """Return forces and indentations at the nodes of another rule, over a share of the time of a solved stretch."""
+    number = len(basis.time)
+    force = np.empty(number)
+    delta = np.empty(number)
+    weights = np.empty(number + 1)
+    force_of = force_at(law.addresses[0])
+    for node in range(number):
+        weights_at(basis, place_at(basis, share * other.time[node]), weights)
+        reached = 0.0
+        rate = 0.0
+        for point in range(number + 1):
+            reached += weights[point] * solved.contact.delta[0, point]
+            rate += weights[point] * solved.contact.rate[0, point]
+        static, dissipative = force_of(max(reached, law.release), rate, law.speed, law.coefficients)
+        delta[node] = reached
+        force[node] = static + dissipative
+    return Nodes(np.zeros(number), force, delta)
+
+
+@compiled(lambda t: t.of(Basis)(t.of(Bases), t.integer))
+def basis_of(bases: Bases, time_map: int) -> Basis:
+    """Return the rule under a map of time, by its number in `MAPS`."""
+    if time_map == 0:
+        return bases.touch
+    if time_map == 1:
+        return bases.inside
+    return bases.release
+
+
+@compiled(
+    lambda t: t.tuple(t.boolean, t.of(Attempt), t.integer, t.of(Event))(
+        t.of(Bases), t.of(Bodies), t.of(Law), t.of(Manner), t.of(Beginning), t.of(Attempt), t.integer
+    )
+)
+def up_to_event(
+    bases: Bases, bodies: Bodies, law: Law, manner: Manner, beginning: Beginning, tried: Attempt, time_map: int
+) -> tuple[bool, Attempt, int, Event]:
+    """Return whether it succeeds to solve a stretch again up to its first event, the solution, its map of time, and the event.
+
+    An event of a solution that is not resolved may be spurious, or preceded by another one.
+    """
+    seen = tried.event
+    ended = tried
+    for _ in range(_MOST_ATTEMPTS):
+        source = ended
+        source_basis = basis_of(bases, time_map)
+        if time_map != 0:
+            time_map = 2 if seen.kind == PARTED or seen.kind == NO_PUSH else 1
+        basis = basis_of(bases, time_map)
+        share = time_at(source_basis, seen.x)
+        guess = guess_from(source_basis, basis, law, source, share)
+        aim = Event(seen.kind, seen.level, share * source.length)
+        ended = attempt(basis, bodies, law, manner, beginning, guess, 0.0, True, aim)
+        if not ended.solved or not 0.0 < ended.length <= (1.0 + _AT_END) * source.length:
+            break
+        if ended.event.kind == NO_EVENT or ended.event.x > _BEFORE_END:
+            return ended.resolved, ended, time_map, seen
+        seen = ended.event
+    return False, ended, time_map, seen

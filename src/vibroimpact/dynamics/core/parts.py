@@ -1,0 +1,62 @@
+"""The parts of a motion through a contact, written as they are accepted."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.compiled import compiled
+from vibroimpact.dynamics.core.records import Attempt, Basis, Parts, State, System
+
+
+@compiled(lambda t: t.void(t.of(Parts), t.integer, t.real, t.of(State), t.integer))
+def write_part(parts: Parts, part: int, start: float, state: State, memories: int) -> None:
+    """Write what all parts of a motion have: their start [s], the state then, and the changes of the law's memory before."""
+    parts.start[part] = start
+    parts.displacement[part] = state.displacement
+    parts.velocity[part] = state.velocity
+    parts.local[part] = state.local
+    parts.memories[part] = memories
+    parts.separation_loss[part] = 0.0
+
+
+@compiled(lambda t: t.void(t.of(Parts), t.integer, t.vector, t.real))
+def lose_at_end(parts: Parts, part: int, lost: Floats, energy: float) -> None:
+    """Add stored energy that is lost at the end of the last part [J]; it may be that of an earlier call."""
+    lost[len(lost) - 1] += energy
+    if part > 0:
+        parts.separation_loss[part - 1] += energy
+    else:
+        parts.late_loss[0] += energy
+
+
+@compiled(lambda t: t.void(t.of(Parts), t.integer, t.of(Basis), t.of(System), t.of(Attempt), t.of(State)))
+def write_stretch(parts: Parts, part: int, basis: Basis, system: System, solved: Attempt, begun: State) -> None:
+    """Write a solved stretch."""
+    number = len(basis.time)
+    parts.kind[part] = 1
+    parts.time_map[part] = basis.time_map
+    parts.length[part] = solved.length
+    parts.static[part] = solved.nodes.static
+    parts.force[part] = solved.nodes.force
+    parts.approach[part] = solved.contact.approach[0]
+    parts.rate[part] = solved.contact.rate[0]
+    parts.delta[part] = solved.contact.delta[0]
+    parts.work[part] = solved.work
+    parts.dissipated[part] = solved.contact.dissipated[0]
+    parts.roughness[part] = solved.contact.roughness
+    depth = system.offset
+    for coordinate in range(len(begun.displacement)):
+        depth += system.indentation_shape[coordinate] * begun.displacement[coordinate]
+    parts.indentation[part, 0] = depth
+    speeds = np.zeros(number)
+    for coordinate in range(len(begun.displacement)):
+        shape = system.indentation_shape[coordinate]
+        if shape != 0.0:
+            for node in range(number):
+                speeds[node] += shape * solved.path.velocity[coordinate, node]
+    for node in range(number):
+        moved = 0.0
+        for other in range(number):
+            moved += basis.integral[node, other] * speeds[other]
+        parts.indentation[part, node + 1] = depth + solved.length * moved
