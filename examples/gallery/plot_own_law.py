@@ -2,9 +2,9 @@
 A user-defined contact law
 ==========================
 
-A contact law is a frozen dataclass with a function that returns a force. The example is a rubber lining of a chute, a spring whose force
-has a cubic term and a relaxation time; events, energy balance and charts need no further code, and the largest indentation is compared
-with its closed form.
+A contact law is a frozen dataclass with functions that return its force and its energies. The example is a rubber lining of a chute,
+a spring whose force has a cubic term and a relaxation time; events, energy balance and charts need no further code, and the largest
+indentation is compared with its closed form.
 """
 
 # %%
@@ -36,6 +36,13 @@ def lining_forces(delta, delta_dot, approach_speed, coefficients):
     )
 
 
+@scalar
+def lining_energies(delta, coefficients):
+    """Return the elastic energy and the plastic work [J]."""
+    stiffness, stiffening = coefficients[0], coefficients[1]
+    return 0.5 * stiffness * delta**2 + 0.25 * stiffening * delta**4, 0.0 * delta
+
+
 @dataclass(frozen=True, kw_only=True)
 class Lining(CompliantLaw):
     """A rubber lining that stiffens."""
@@ -46,6 +53,7 @@ class Lining(CompliantLaw):
     contact_end = "zero-force"
     tension = "cut"
     scalar_forces = staticmethod(lining_forces)
+    scalar_energies = staticmethod(lining_energies)
 
     stiffness: float = parameter("stiffness k at small indentations", "N/m", above=0)
     stiffening: float = parameter("coefficient q of the cube", "N/m^3", at_least=0)
@@ -54,9 +62,6 @@ class Lining(CompliantLaw):
     @cached_property
     def coefficients(self):
         return self.stiffness, self.stiffening, self.relaxation
-
-    def elastic_energy(self, delta):
-        return 0.5 * self.stiffness * delta**2 + 0.25 * self.stiffening * delta**4
 
 
 # %%

@@ -101,12 +101,12 @@ def levels_of_held(coefficients: Any) -> tuple[float, ...]:
     return touch_level, float(law.release_level), memory_level, first, second
 
 
-def compress_held(deepest: float, coefficients: Any, changed: Any) -> None:
-    """Write the coefficients of such a law after compression, which differ in its memories."""
-    changed[:] = coefficients
-    memories = _held(coefficients).after_compression(deepest).memories().values()
-    for index, memory in enumerate(memories):
+def compress_held(deepest: float, coefficients: Any, changed: Any) -> float:
+    """Write the memories of such a law after compression, and return the indentation beyond which they may change again."""
+    law = _held(coefficients).after_compression(deepest)
+    for index, memory in enumerate(law.memories().values()):
         changed[1 + index] = float(memory)
+    return float(law.touch_level) if law.memories() else np.inf
 
 
 def _number(law: Any) -> int:

@@ -46,23 +46,13 @@ def _signature(kind: str) -> Callable[[Any], Any]:
 
 def _why_not_compiled(source: Callable[..., Any], kind: str) -> str:
     """Compile a function, or return why numba refuses it."""
-    function = CompiledFunction(_returning_a_number(source) if kind == "compressed" else source, _signature(kind))
+    function = CompiledFunction(source, _signature(kind))
     try:
         function.ready()
     except Exception as error:  # numba has many kinds, and a function of another package may be anything
         return _first_reason(error)
     _COMPILED[source] = function
     return ""
-
-
-def _returning_a_number(source: Callable[..., Any]) -> Callable[..., Any]:
-    """Return a function that returns zero, since numba has no function values that return nothing."""
-
-    def compressed(deepest, coefficients, changed):  # type: ignore[no-untyped-def]
-        source(deepest, coefficients, changed)
-        return 0.0
-
-    return compressed
 
 
 # functions that compiled code calls, and which call Python
@@ -97,9 +87,9 @@ def _calling_levels(source: Callable[..., Any]) -> Callable[..., Any]:
 
 def _calling_compressed(source: Callable[..., Any]) -> Callable[..., Any]:
     def compressed(deepest, coefficients, changed):  # type: ignore[no-untyped-def]
-        with objmode():
-            source(deepest, coefficients, changed)
-        return 0.0
+        with objmode(memory_level="float64"):
+            memory_level = source(deepest, coefficients, changed)
+        return memory_level  # noqa: RET504
 
     return compressed
 

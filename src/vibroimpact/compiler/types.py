@@ -35,7 +35,10 @@ levels = types.FunctionType(types.UniTuple(real, 5)(vector))
 """Of a contact law: coefficients give the indentations at touch, release, change of memory, and two breakpoints."""
 
 compressed = types.FunctionType(real(real, vector, vector))
-"""Of a contact law: a deepest indentation and coefficients give the coefficients after it, which are written into the last argument."""
+"""Of a contact law: what a deepest indentation changes in the coefficients is written into a copy of them, the last argument.
+
+It returns the indentation beyond which compression changes the memory again.
+"""
 
 
 def tuple(*members: types.Type) -> types.Type:

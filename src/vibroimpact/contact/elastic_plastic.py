@@ -12,32 +12,34 @@ import numpy as np
 from vibroimpact.arrays import Array
 from vibroimpact.compiled import scalar
 from vibroimpact.contact.choice import where
-from vibroimpact.contact.law import CompliantLaw, Levels, ScalarCompressed, ScalarEnergies, ScalarForces, ScalarLevels, copy_coefficients
+from vibroimpact.contact.law import CompliantLaw, Levels, ScalarCompressed, ScalarEnergies, ScalarForces, ScalarLevels
 from vibroimpact.contact.parameters import memory
 from vibroimpact.contact.power_law import power
 
 OfIndentation = Callable[[Array, Any], Array]
 """A function of indentation and coefficients, marked by `compiled.scalar`."""
 
+LoadingState = Callable[[Array, Any], tuple[Array, Array, Array]]
+"""Such a function, which returns three quantities."""
+
 
 class LoadingCurve(NamedTuple):
     """The curve of loading: functions of an indentation on it [m], and of the coefficients of the law.
 
-    force: loading force [N]. work: its integral from zero indentation [J]. recovery: elastic recovery on unloading from there [m].
+    force: loading force [N]. state: this force, its integral from zero indentation [J], and the elastic recovery on unloading from there
+    [m], which are computed together since compiling takes a twentieth of a second for each function.
     """
 
     force: OfIndentation
-    work: OfIndentation
-    recovery: OfIndentation
+    state: LoadingState
 
 
 class LawFunctions(NamedTuple):
-    """What follows from a loading curve: functions of floats of a law, and `dent`, the coefficients 1, 2, 3 and 5 of a dented contact."""
+    """The functions of floats of a law that follow from its loading curve."""
 
     forces: ScalarForces
     energies: ScalarEnergies
     compressed: ScalarCompressed
-    dent: Callable[[Array, Any], tuple[Array, Array, Array, Array]]
 
 
 @scalar
@@ -53,7 +55,7 @@ def law_functions(curve: LoadingCurve) -> LawFunctions:
     so far; those of the loading curve follow. The recovery is one where nothing has been loaded, and the largest force zero, so that no
     force is 0/0.
     """
-    loading_force, loading_work, loading_recovery = curve
+    loading_force, loading_state = curve
 
     @scalar
     def forces(delta: Array, delta_dot: Array, approach_speed: Array, coefficients: Any) -> tuple[Array, Array]:
@@ -68,31 +70,24 @@ def law_functions(curve: LoadingCurve) -> LawFunctions:
     def energies(delta: Array, coefficients: Any) -> tuple[Array, Array]:
         loaded_to, exponent, plastic_loss = coefficients[0], coefficients[4], coefficients[5]
         deepest = np.maximum(delta, loaded_to)
-        recovery = loading_recovery(deepest, coefficients)
-        recovered = loading_force(deepest, coefficients) * recovery / (exponent + 1.0)
+        force, work, recovery = loading_state(deepest, coefficients)
+        recovered = force * recovery / (exponent + 1.0)
         recovery_left = np.maximum(delta - (deepest - recovery), 0.0) / where(recovery > 0.0, recovery, 1.0)
-        lost = loading_work(deepest, coefficients) - recovered - plastic_loss
+        lost = work - recovered - plastic_loss
         return recovered * power(recovery_left, exponent + 1.0), where(delta > loaded_to, lost, 0.0)
 
     @scalar
-    def dent(loaded_to: Array, coefficients: Any) -> tuple[Array, Array, Array, Array]:
-        recovery = loading_recovery(loaded_to, coefficients)
-        force = loading_force(loaded_to, coefficients)
-        plastic_loss = loading_work(loaded_to, coefficients) - force * recovery / (coefficients[4] + 1.0)
-        return loaded_to - recovery, where(recovery > 0.0, recovery, 1.0), force, plastic_loss
+    def compressed(deepest: Array, coefficients: Any, changed: Any) -> Array:
+        loaded_to = np.maximum(coefficients[0], deepest)
+        force, work, recovery = loading_state(loaded_to, coefficients)
+        changed[0] = loaded_to
+        changed[1] = loaded_to - recovery
+        changed[2] = where(recovery > 0.0, recovery, 1.0)
+        changed[3] = force
+        changed[5] = work - force * recovery / (coefficients[4] + 1.0)
+        return loaded_to
 
-    @scalar
-    def compressed(deepest: float, coefficients: Any, changed: Any) -> None:
-        copy_coefficients(deepest, coefficients, changed)
-        if deepest > coefficients[0]:
-            touch_level, recovery, largest_force, plastic_loss = dent(deepest, coefficients)
-            changed[0] = deepest
-            changed[1] = touch_level
-            changed[2] = recovery
-            changed[3] = largest_force
-            changed[5] = plastic_loss
-
-    return LawFunctions(forces, energies, compressed, dent)
+    return LawFunctions(forces, energies, compressed)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -114,7 +109,7 @@ class ElasticPlasticLaw(CompliantLaw):
     yields = True
     scalar_levels: ClassVar[ScalarLevels | None] = staticmethod(_levels)
     loading_curve: ClassVar[LoadingCurve]
-    """Force, work and recovery of loading, as functions of floats; the coefficients of the curve begin with index 6."""
+    """The curve of loading, as functions of floats; its coefficients begin with index 6."""
 
     _functions: ClassVar[LawFunctions]
 
@@ -136,9 +131,9 @@ class ElasticPlasticLaw(CompliantLaw):
     @cached_property
     def coefficients(self) -> tuple[Array, ...]:
         """Those of a dented contact, which `law_functions` lists, and those of the loading curve."""
-        exponent, own = self._undented[4], self._undented[6:]
-        touch_level, recovery, largest_force, plastic_loss = self._functions.dent(self.loaded_to, self._undented)
-        return self.loaded_to, touch_level, recovery, largest_force, exponent, plastic_loss, *own
+        coefficients = list(self._undented)
+        self._functions.compressed(self.loaded_to, self._undented, coefficients)
+        return tuple(coefficients)
 
     def loading_force(self, delta: Array) -> Array:
         """Return the force on the loading curve [N]."""
@@ -146,11 +141,11 @@ class ElasticPlasticLaw(CompliantLaw):
 
     def loading_work(self, delta: Array) -> Array:
         """Return the integral of the loading force from zero indentation [J]."""
-        return self.loading_curve.work(delta, self._undented)
+        return self.loading_curve.state(delta, self._undented)[1]
 
     def elastic_recovery(self, deepest: Array) -> Array:
         """Return the elastic recovery on unloading: largest less residual indentation [m]."""
-        return self.loading_curve.recovery(deepest, self._undented)
+        return self.loading_curve.state(deepest, self._undented)[2]
 
     def after_compression(self, deepest: Array) -> Self:
         """Return the law with the new largest indentation."""
@@ -175,4 +170,5 @@ class ElasticPlasticLaw(CompliantLaw):
         return 0.0, 0.0, 1.0, 0.0, self.unloading_exponent, 0.0, *self.loading_coefficients
 
     def _unloading_work(self, deepest: Array) -> Array:
-        return self.loading_force(deepest) * self.elastic_recovery(deepest) / (self.unloading_exponent + 1.0)
+        force, _, recovery = self.loading_curve.state(deepest, self._undented)
+        return force * recovery / (self.unloading_exponent + 1.0)

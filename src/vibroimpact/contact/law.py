@@ -37,8 +37,11 @@ Levels = tuple[Array, Array, Array, Array, Array]
 ScalarLevels = Callable[[Any], Levels]
 """A function of coefficients: the levels of a law."""
 
-ScalarCompressed = Callable[[float, Any, Any], None]
-"""A function of indentation [m] and coefficients, which writes the coefficients after compression to there into its last argument."""
+ScalarCompressed = Callable[[Array, Any, Any], Array]
+"""A function of an indentation [m], coefficients and a copy of these, which writes what compression to there changes into the copy.
+
+It returns the indentation beyond which compression changes the memory again [m].
+"""
 
 _METHODS = {
     "scalar_forces": ("forces",),
@@ -56,10 +59,9 @@ def levels_of_smooth_contact(coefficients: Any) -> Levels:
 
 
 @scalar
-def copy_coefficients(deepest: float, coefficients: Any, changed: Any) -> None:
-    """Write the coefficients as they are into `changed`, which is all that compression does to a law without memory."""
-    for index in range(len(changed)):
-        changed[index] = coefficients[index]
+def unchanged(deepest: Array, coefficients: Any, changed: Any) -> Array:
+    """Leave the coefficients of a law without memory as they are."""
+    return np.inf
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -145,8 +147,8 @@ class CompliantLaw(ContactLaw):
     scalar_levels: ClassVar[ScalarLevels | None] = staticmethod(levels_of_smooth_contact)
     """Where contact begins and ends, where compression changes the memory, and two breakpoints, as a function of floats."""
 
-    scalar_compressed: ClassVar[ScalarCompressed | None] = staticmethod(copy_coefficients)
-    """The coefficients after compression as a function of floats, which writes them; a law with a memory defines its own."""
+    scalar_compressed: ClassVar[ScalarCompressed | None] = staticmethod(unchanged)
+    """What compression does to the coefficients, as a function of floats; a law with a memory defines its own."""
 
     # what the methods below evaluate: the functions of the law, or those of its base where the law defines the methods anew
     _array_forces: ClassVar[ScalarForces | None] = None
@@ -176,7 +178,8 @@ class CompliantLaw(ContactLaw):
     @property
     def release_level(self) -> Array:
         """Indentation [m] at which contact ends; negative for adhesive contacts."""
-        return self._levels[1]
+        is_new = type(self).touch_level is not CompliantLaw.touch_level  # it then ends where it begins
+        return self.touch_level if is_new else self._levels[1]
 
     @property
     def breakpoints(self) -> tuple[Array, ...]:

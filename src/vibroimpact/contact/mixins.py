@@ -10,7 +10,7 @@ import numpy as np
 from vibroimpact.arrays import Array
 from vibroimpact.compiled import scalar
 from vibroimpact.contact.choice import where
-from vibroimpact.contact.law import CompliantLaw, ContactLaw, Levels, ScalarCompressed, ScalarLevels, copy_coefficients
+from vibroimpact.contact.law import CompliantLaw, ContactLaw, Levels, ScalarCompressed, ScalarLevels
 from vibroimpact.contact.parameters import memory, parameter
 
 
@@ -20,11 +20,10 @@ def _two_phase_levels(coefficients: Any) -> Levels:
 
 
 @scalar
-def _turn(deepest: float, coefficients: Any, changed: Any) -> None:
-    copy_coefficients(deepest, coefficients, changed)
-    if deepest > 0.0:
-        changed[1] = coefficients[3]
-        changed[2] = 1.0
+def _turn(deepest: Array, coefficients: Any, changed: Any) -> Array:
+    changed[1] = where(deepest > 0.0, coefficients[3], coefficients[1])
+    changed[2] = where(deepest > 0.0, 1.0, coefficients[2])
+    return where(changed[2] > 0.0, np.inf, 0.0)
 
 
 @dataclass(frozen=True, kw_only=True)

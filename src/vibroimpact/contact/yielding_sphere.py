@@ -10,16 +10,10 @@ import numpy as np
 from vibroimpact.arrays import Array
 from vibroimpact.compiled import scalar
 from vibroimpact.contact.choice import where
-from vibroimpact.contact.elastic_plastic import ElasticPlasticLaw, LoadingCurve, OfIndentation
+from vibroimpact.contact.elastic_plastic import ElasticPlasticLaw, LoadingCurve, LoadingState, OfIndentation
 from vibroimpact.contact.law import Levels, ScalarLevels
 from vibroimpact.contact.mixins import ElasticPairLaw
 from vibroimpact.contact.pair import hertz_stiffness
-
-
-@scalar
-def hertzian_radius(delta: Array, coefficients: Any) -> Array:
-    """Return the contact radius of a sphere by Hertz [m], at an indentation [m]."""
-    return np.sqrt(coefficients[9] * delta)
 
 
 @scalar
@@ -28,7 +22,7 @@ def _levels(coefficients: Any) -> Levels:
     return touch_level, touch_level, loaded_to, np.maximum(yield_indentation, loaded_to), np.inf
 
 
-def yielding_sphere(plastic_force: OfIndentation, plastic_work: OfIndentation, contact_radius: OfIndentation) -> LoadingCurve:
+def yielding_sphere(plastic_force: OfIndentation, plastic_state: LoadingState) -> LoadingCurve:
     """Return the loading curve of a sphere that is Hertzian up to yield.
 
     Its coefficients, from index 6, are yield indentation, Hertz's stiffness, effective modulus and effective radius; a law adds its own.
@@ -37,10 +31,8 @@ def yielding_sphere(plastic_force: OfIndentation, plastic_work: OfIndentation, c
     ----------
     plastic_force : callable
         Loading force beyond yield [N].
-    plastic_work : callable
-        Its integral from the yield indentation [J].
-    contact_radius : callable
-        Contact radius beyond yield [m].
+    plastic_state : callable
+        This force, its integral from the yield indentation [J], and the contact radius [m].
     """
 
     @scalar
@@ -51,21 +43,18 @@ def yielding_sphere(plastic_force: OfIndentation, plastic_work: OfIndentation, c
         return where(delta > yield_indentation, plastic, stiffness * elastic * np.sqrt(elastic))
 
     @scalar
-    def work(delta: Array, coefficients: Any) -> Array:
-        yield_indentation, stiffness = coefficients[6], coefficients[7]
+    def state(delta: Array, coefficients: Any) -> tuple[Array, Array, Array]:
+        yield_indentation, stiffness, effective_modulus = coefficients[6], coefficients[7], coefficients[8]
+        yields = delta > yield_indentation
         elastic = np.minimum(delta, yield_indentation)
-        plastic = plastic_work(np.maximum(delta, yield_indentation), coefficients)
-        # exactly nothing up to yield, despite rounding
-        return 0.4 * stiffness * elastic**2 * np.sqrt(elastic) + where(delta > yield_indentation, plastic, 0.0)
+        plastic, work, radius = plastic_state(np.maximum(delta, yield_indentation), coefficients)
+        force = where(yields, plastic, stiffness * elastic * np.sqrt(elastic))
+        # exactly no plastic work up to yield, despite rounding
+        loading_work = 0.4 * stiffness * (elastic * elastic) * np.sqrt(elastic) + where(yields, work, 0.0)
+        recovery = where(yields, 0.75 * plastic / (effective_modulus * radius), delta)
+        return force, loading_work, recovery
 
-    @scalar
-    def recovery(deepest: Array, coefficients: Any) -> Array:
-        yield_indentation, effective_modulus = coefficients[6], coefficients[8]
-        yielded = np.maximum(deepest, yield_indentation)
-        plastic = 0.75 * plastic_force(yielded, coefficients) / (effective_modulus * contact_radius(yielded, coefficients))
-        return where(deepest > yield_indentation, plastic, deepest)
-
-    return LoadingCurve(force, work, recovery)
+    return LoadingCurve(force, state)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -106,4 +95,4 @@ class YieldingSphereLaw(ElasticPairLaw, ElasticPlasticLaw):
 
     def contact_radius(self, delta: Array) -> Array:
         """Return the contact radius beyond `yield_indentation` [m]."""
-        return hertzian_radius(delta, self._undented)
+        return np.sqrt(self.effective_radius * delta)

@@ -52,33 +52,29 @@ def _relative_radius(relative_indentation: Array, meyer_index: Array, full_radiu
 
 
 @scalar
-def _radius(delta: Array, coefficients: Any) -> Array:
-    """Return the contact radius relative to that at yield [-], at an indentation beyond yield [m]."""
-    yield_indentation, meyer_index, full_radius = coefficients[6], coefficients[11], coefficients[12]
-    return _relative_radius(delta / yield_indentation, meyer_index, full_radius)
-
-
-@scalar
-def _contact_radius(delta: Array, coefficients: Any) -> Array:
-    return _radius(delta, coefficients) * np.sqrt(coefficients[9] * coefficients[6])
-
-
-@scalar
-def _plastic_force(delta: Array, coefficients: Any) -> Array:
+def _plastic_force_at(x: Array, coefficients: Any) -> Array:
+    """Return the loading force [N] at a contact radius relative to that at yield [-]."""
     yield_force, meyer_index = coefficients[10], coefficients[11]
-    x = _radius(delta, coefficients)
     return yield_force * np.minimum(power(x, meyer_index), _RISE * x * x)
 
 
 @scalar
-def _plastic_work(delta: Array, coefficients: Any) -> Array:
-    yield_indentation, yield_force = coefficients[6], coefficients[10]
+def _plastic_force(delta: Array, coefficients: Any) -> Array:
+    return _plastic_force_at(_relative_radius(delta / coefficients[6], coefficients[11], coefficients[12]), coefficients)
+
+
+@scalar
+def _plastic_state(delta: Array, coefficients: Any) -> tuple[Array, Array, Array]:
+    yield_indentation, effective_radius, yield_force = coefficients[6], coefficients[9], coefficients[10]
     n, full_radius = coefficients[11], coefficients[12]
-    x = _radius(delta, coefficients)
+    x = _relative_radius(delta / yield_indentation, n, full_radius)
     rising = np.minimum(x, full_radius)
     work = (rising ** (n + 2.0) - 1.0) / (n + 2.0) + 0.5 * (n - 1.0) * (rising ** (2.0 * n - 1.0) - 1.0) / (2.0 * n - 1.0)
-    work = work + _RISE * ((x**4 - rising**4) / 4.0 + _RISE * (x**3 - rising**3) / 6.0)
-    return yield_force * yield_indentation * work
+    square, rising_square = x * x, rising * rising
+    full = (square * square - rising_square * rising_square) / 4.0 + _RISE * (square * x - rising_square * rising) / 6.0
+    work = work + _RISE * full
+    radius = x * np.sqrt(effective_radius * yield_indentation)
+    return _plastic_force_at(x, coefficients), yield_force * yield_indentation * work, radius
 
 
 @scalar
@@ -136,7 +132,7 @@ class Meyer(YieldingSphereLaw):
         "between them (Meyer), the depth of a spherical dent, and Hertz's unloading."
     )
     free_parameter = "yield_strength"
-    loading_curve: ClassVar[LoadingCurve] = yielding_sphere(_plastic_force, _plastic_work, _contact_radius)
+    loading_curve: ClassVar[LoadingCurve] = yielding_sphere(_plastic_force, _plastic_state)
     scalar_levels: ClassVar[ScalarLevels | None] = staticmethod(_levels)
 
     yield_strength: Array = parameter(
@@ -162,7 +158,7 @@ class Meyer(YieldingSphereLaw):
 
     def contact_radius(self, delta: Array) -> Array:
         """Return the contact radius beyond the yield indentation [m]."""
-        return _contact_radius(delta, self._undented)
+        return _plastic_state(delta, self._undented)[2]
 
     @property
     def plastic_coefficients(self) -> tuple[Array, ...]:

@@ -12,7 +12,7 @@ from vibroimpact.compiled import scalar
 from vibroimpact.contact.elastic_plastic import LoadingCurve
 from vibroimpact.contact.parameters import parameter
 from vibroimpact.contact.power_law import power
-from vibroimpact.contact.yielding_sphere import YieldingSphereLaw, hertzian_radius, yielding_sphere
+from vibroimpact.contact.yielding_sphere import YieldingSphereLaw, yielding_sphere
 
 
 @scalar
@@ -23,12 +23,14 @@ def _plastic_force(delta: Array, coefficients: Any) -> Array:
 
 
 @scalar
-def _plastic_work(delta: Array, coefficients: Any) -> Array:
-    yield_indentation, yield_force, plastic_stiffness = coefficients[6], coefficients[10], coefficients[11]
+def _plastic_state(delta: Array, coefficients: Any) -> tuple[Array, Array, Array]:
+    yield_indentation, effective_radius = coefficients[6], coefficients[9]
+    yield_force, plastic_stiffness = coefficients[10], coefficients[11]
     exponent, power_at_yield, next_power_at_yield = coefficients[12], coefficients[13], coefficients[14]
     constant = yield_force - plastic_stiffness * power_at_yield
     rise = exponent + 1.0
-    return constant * (delta - yield_indentation) + plastic_stiffness * (power(delta, rise) - next_power_at_yield) / rise
+    work = constant * (delta - yield_indentation) + plastic_stiffness * (power(delta, rise) - next_power_at_yield) / rise
+    return _plastic_force(delta, coefficients), work, np.sqrt(effective_radius * delta)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -78,7 +80,7 @@ class Storakers(YieldingSphereLaw):
         "without hardening, for which the restitution far above yield would be 1.48 times as high."
     )
     free_parameter = "yield_strength"
-    loading_curve: ClassVar[LoadingCurve] = yielding_sphere(_plastic_force, _plastic_work, hertzian_radius)
+    loading_curve: ClassVar[LoadingCurve] = yielding_sphere(_plastic_force, _plastic_state)
 
     yield_strength: Array = parameter(
         "yield strength Y",

@@ -11,7 +11,7 @@ from vibroimpact.arrays import Array
 from vibroimpact.compiled import scalar
 from vibroimpact.contact.elastic_plastic import LoadingCurve
 from vibroimpact.contact.parameters import parameter
-from vibroimpact.contact.yielding_sphere import YieldingSphereLaw, hertzian_radius, yielding_sphere
+from vibroimpact.contact.yielding_sphere import YieldingSphereLaw, yielding_sphere
 
 
 @scalar
@@ -21,9 +21,11 @@ def _plastic_force(delta: Array, coefficients: Any) -> Array:
 
 
 @scalar
-def _plastic_work(delta: Array, coefficients: Any) -> Array:
-    yield_indentation, yield_force, slope = coefficients[6], coefficients[10], coefficients[11]
-    return (yield_force + 0.5 * slope * (delta - yield_indentation)) * (delta - yield_indentation)
+def _plastic_state(delta: Array, coefficients: Any) -> tuple[Array, Array, Array]:
+    yield_indentation, effective_radius = coefficients[6], coefficients[9]
+    yield_force, slope = coefficients[10], coefficients[11]
+    work = (yield_force + 0.5 * slope * (delta - yield_indentation)) * (delta - yield_indentation)
+    return _plastic_force(delta, coefficients), work, np.sqrt(effective_radius * delta)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,7 +66,7 @@ class Thornton(YieldingSphereLaw):
     equation = "F = 4/3 E* sqrt(R) delta^1.5 up to yield, F_y + pi R p_y (delta - delta_y) beyond; unloading Hertz's, of a flatter sphere"
     source = "Thornton 1997, J. Appl. Mech. 64:383"
     free_parameter = "yield_pressure"
-    loading_curve: ClassVar[LoadingCurve] = yielding_sphere(_plastic_force, _plastic_work, hertzian_radius)
+    loading_curve: ClassVar[LoadingCurve] = yielding_sphere(_plastic_force, _plastic_state)
 
     yield_pressure: Array = parameter(
         "limiting contact pressure p_y",

@@ -20,14 +20,10 @@ def _loading_force(delta: Array, coefficients: Any) -> Array:
 
 
 @scalar
-def _loading_work(delta: Array, coefficients: Any) -> Array:
-    return 0.5 * coefficients[6] * delta * delta
-
-
-@scalar
-def _recovery(deepest: Array, coefficients: Any) -> Array:
-    squared_restitution, stiffening = coefficients[7], coefficients[8]
-    return squared_restitution * deepest / (1.0 + stiffening * deepest)
+def _loading_state(delta: Array, coefficients: Any) -> tuple[Array, Array, Array]:
+    stiffness, squared_restitution, stiffening = coefficients[6], coefficients[7], coefficients[8]
+    recovery = squared_restitution * delta / (1.0 + stiffening * delta)
+    return stiffness * delta, 0.5 * stiffness * delta * delta, recovery
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,7 +65,7 @@ class WaltonBraun(ElasticPlasticLaw):
     source = "Walton & Braun 1986, J. Rheology 30:949"
     lasting = False
     unloading_exponent = 1.0
-    loading_curve: ClassVar[LoadingCurve] = LoadingCurve(_loading_force, _loading_work, _recovery)
+    loading_curve: ClassVar[LoadingCurve] = LoadingCurve(_loading_force, _loading_state)
 
     loaded_to: Array = inherited_parameter(ElasticPlasticLaw, "loaded_to", detail="Deepest indentation of this contact so far.")
     stiffness: Array = parameter("stiffness of loading k1", "N/m", detail="Stiffness of loading :math:`k_1`.", example=2e6, above=0)

@@ -212,6 +212,6 @@ def snap_off(law: Law) -> float:
 @compiled(lambda t: t.of(Law)(t.of(Law), t.real))
 def law_after(law: Law, deepest: float) -> Law:
     """Return a law with its memory of a compression to an indentation [m]."""
-    changed = np.empty(len(law.coefficients))
+    changed = law.coefficients.copy()
     compressed_at(law.addresses[3])(deepest, law.coefficients, changed)
     return law_at_touch(law.addresses, changed, law.series, law.speed)
