@@ -1,0 +1,52 @@
+"""Where nothing is compiled, the same source gives the same numbers."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import vibroimpact as vi
+from vibrating import drop_on
+from vibroimpact.compiled import SWITCH, why_not_compiled
+from vibroimpact.contact.laws.adams_impact import AdamsImpact
+from vibroimpact.contact.laws.hunt_crossley import HuntCrossley
+from vibroimpact.contact.laws.jkr import JKR
+from vibroimpact.contact.laws.thornton import Thornton
+from vibroimpact.contact.quasi_static import QuasiStatic
+from vibroimpact.structures.modal_model import ModalBasis
+
+LAWS = {
+    "hysteretic": HuntCrossley(stiffness=1e9, restitution=0.7),
+    "recoiling": AdamsImpact(stiffness=1e9, damping_max=2e3, full_damping_penetration=1e-5),
+    "yielding": Thornton(effective_modulus=7e10, effective_radius=0.01, yield_pressure=1e9),
+    "sticking": JKR(effective_modulus=1e8, effective_radius=0.01, work_of_adhesion=0.5),
+}
+
+
+def numbers() -> dict[str, dict[str, list[float]]]:
+    """The first impact of each law on a plate with two modes, with a compliance in series."""
+    plate = ModalBasis(np.array([300.0, 2e3]), np.array([0.01, 0.02]), np.array([1.0, 0.5]), np.zeros((2, 3)))
+    found = {}
+    for name, law in LAWS.items():
+        problem = drop_on(law, plate, speed=1.0, impacts=1, quasi_static=QuasiStatic(linear=1e-10))
+        found[name] = {column: values.tolist() for column, values in vi.simulate(problem).impacts.items()}
+    return found
+
+
+def test_plain_python_gives_the_same() -> None:
+    if why_not_compiled():
+        pytest.skip("nothing is compiled")
+    environment = {**os.environ, SWITCH: "0", "PYTHONPATH": os.pathsep.join(map(str, (Path(__file__).parent, Path(__file__).parents[1])))}
+    script = "import json; from test_plain_python import numbers; print(json.dumps(numbers()))"
+    told = subprocess.run([sys.executable, "-c", script], env=environment, capture_output=True, text=True, check=True)
+    plain = json.loads(told.stdout)
+    for name, columns in numbers().items():
+        for column, values in columns.items():
+            if column != "sensitivity":  # by finite differences
+                np.testing.assert_allclose(plain[name][column], values, rtol=1e-12, err_msg=f"{name}: {column}")
