@@ -252,8 +252,8 @@ FAULTS = [
     ({"target": {"restitution": 0.7}}, "calibrate.target: friction.coefficient is fitted to a table of measured oblique impacts"),
     ({"degree": 1}, "calibrate.degree: friction.coefficient is one number"),
     ({"air": True}, "calibrate.air: friction.coefficient is one number"),
-    ({"match": "spin_y_after"}, "calibrate.match: spin_y_after was not measured; there is tangential_restitution"),
-    ({"match": "max_force"}, "calibrate.match: max_force was not measured; there is tangential_restitution"),
+    ({"match": "spin_y_after"}, "calibrate.match: the file has no column spin_y_after; there is tangential_restitution"),
+    ({"match": "max_force"}, "calibrate.match: friction is not fitted to max_force; match tangential_restitution"),
     ({"match": {"tangential_restitution": 1, "rebound_angle": 1}}, "tangential_restitution and rebound_angle are equivalent"),
     ({"bootstrap": 5}, "calibrate.bootstrap: 5 draws give no interval"),
 ]

@@ -66,7 +66,7 @@ def case(**sensor: Any) -> vi.Case:
             r'"a1"\.direction: a microphone is omnidirectional',
         ),
         ({"microphone": MICROPHONE, "filter": "none"}, r'"a1"\.filter: a microphone has the filter "sigma-delta"'),
-        ({"microphone": MICROPHONE, "position": "a set"}, r'"a1"\.position: a plate that is meshed here has no set "a set"'),
+        ({"microphone": MICROPHONE, "position": "a set"}, r'"a1"\.position: only a plate with a mesh file has sets, such as "a set"'),
         ({"microphone": {**MICROPHONE, "sensitivity": "50 mV"}}, "is a voltage; expected a voltage over pressure"),
         ({"instrument": "force", "quantity": "voltage"}, "a force sensor measures force; leave out quantity"),
         ({"force": {"sensitivity": "10 mV"}}, "is a voltage; expected a voltage over force"),

@@ -52,7 +52,7 @@ OFF: list[tuple[dict[str, Any], str]] = [
     (plate({"type": "set", "name": "legs"}), 'plate.supports: a plate that is meshed here has no set "legs"'),
     (sensors({"name": "a1", "position": [100, 50]}), 'sensors."a1".position: (100, 50) m lies outside the plate'),
     (sensors({"name": "a1", "position": [100, 50]}), 'were mm meant? Write ["100 mm", "50 mm"]'),
-    (sensors({"name": "a1", "position": "tip"}), 'sensors."a1".position: a plate that is meshed here has no set "tip"'),
+    (sensors({"name": "a1", "position": "tip"}), 'sensors."a1".position: only a plate with a mesh file has sets, such as "tip"'),
     (
         plate(drop={"height": 1.0, "position": [100, 50]}),
         "drop.position: (100, 50) m lies outside the plate, which reaches to (0.26, 0.21) m; were mm",

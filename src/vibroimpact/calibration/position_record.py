@@ -136,7 +136,7 @@ def _between_flights(
         speeds, before = np.append(first_speed, falls[:-1]), of_the_impact_before(by_fall)
     rises, scales = vacuum_height(flying, tops - radius)
     wanted, noise = {"rebound_height": radius + rises}, {"rebound_height": scaled(scales, as_noise(sources))}
-    doubts, notes = _told(joint, tops - radius, radius, flying.gravity, float(speeds[0]))
+    doubts, notes = _told(joint, tops - radius, radius, flying.gravity, float(speeds[0]), shows_fall)
     return Observations(
         speeds,
         wanted,
@@ -156,7 +156,9 @@ def _corrections(joint: JointFlights) -> dict[str, Correction]:
     return {name: Correction(getattr(joint, name), deviations[name], unit) for name, unit in units.items()}
 
 
-def _told(joint: JointFlights, rises: Floats, radius: float, gravity: float, speed: float) -> tuple[tuple[str, ...], tuple[str, ...]]:
+def _told(
+    joint: JointFlights, rises: Floats, radius: float, gravity: float, speed: float, shows_fall: bool
+) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Return warnings, and sentences on what the record itself determines."""
     doubts, notes = [], []
     zero, drift, clock = _corrections(joint).values()
@@ -179,10 +181,11 @@ def _told(joint: JointFlights, rises: Floats, radius: float, gravity: float, spe
         off = 100.0 * (clock.value - 1.0)
         # speeds are those of the time that is corrected
         too_fast = 100.0 * (1.0 / clock.value - 1.0)
+        besides = "" if shows_fall else ", but for that of the first impact, whose approach speed is the case's"
         doubts.append(
             f"the flights curve as under {gravity / clock.value**2:.4g} m/s^2, not {gravity:.4g} m/s^2: the clock of the record is taken "
             f"to run {abs(off):.2g} % too {'fast' if off > 0.0 else 'slowly'}, which is corrected; if its lengths are wrong instead, all "
-            f"speeds are {too_fast:+.2g} % off, and restitutions the same"
+            f"speeds taken from it are {too_fast:+.2g} % off, and the restitutions stay right{besides}"
         )
     if joint.scatter > _LARGE_SCATTER * float(rises.min()):
         doubts.append(

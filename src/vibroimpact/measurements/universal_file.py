@@ -153,7 +153,7 @@ def read_universal_file(path: str | Path) -> UniversalFile:
     file = Path(path)
     try:
         if not _MARKED.search(beginning(file, UNIVERSAL, _BEGINNING)):
-            raise InputError("this is no universal file; it begins with a line of -1")
+            raise InputError("this is no universal file, which would begin with a line of -1")
         raw = read_bytes(file, UNIVERSAL)
     except InputError as error:
         raise with_path(file, error) from None

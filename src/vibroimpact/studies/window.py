@@ -55,7 +55,7 @@ class Window:
         begin, length = math.floor((float(touches[0]) - self.before) * rate + 1e-6), round(self.length * rate)
         if begin < 0:
             words = f"the sphere touches {float(touches[0]):.3g} s after the start, less than the {self.before:g} s kept by sweep.window"
-            raise ComputationError(f"{words}; let it fall from a height, or keep less before the touch")
+            raise ComputationError(f"{words}; let it fall from higher up (drop.height), or keep less before the touch")
         if begin + length > count:
             words = f"the signal ends at {count / rate:.4g} s, before the window at {(begin + length) / rate:.4g} s"
             raise ComputationError(f"{words}; give a longer run.duration")

@@ -107,8 +107,10 @@ def oblique_impacts_in_file(case: Case, target: FileTarget, match: Iterable[str]
         words = "a sphere that does not move along the plate has no tangential restitution"
         raise InputError(f"{table.path}, line {table.lines[int(np.argmin(np.abs(velocity)))]}: {words}", "target")
     names = tuple(default_weights(measured) if match is None else match)
+    if others := [name for name in names if name not in ALONG_PLATE]:
+        raise InputError(f"friction is not fitted to {', '.join(others)}; match {', '.join(measured)}", "match")
     if missing := [name for name in names if name not in measured]:
-        raise InputError(f"{', '.join(missing)} was not measured; there is {', '.join(measured)}", "match")
+        raise InputError(f"the file has no column {', '.join(missing)}; there is {', '.join(measured)}", "match")
     wanted = {name: measured[name] for name in names}
     for name in names:
         if f"{name}{DEVIATION}" in table.columns:

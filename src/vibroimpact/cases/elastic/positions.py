@@ -33,7 +33,7 @@ def check_positions(case: CaseTable) -> None:
     for number, sensor in enumerate(case.sensors):
         try:
             if isinstance(sensor.position, str):
-                raise InputError(f'a plate that is meshed here has no set "{sensor.position}"; give x and y')
+                raise InputError(f'only a plate with a mesh file has sets, such as "{sensor.position}"; give x and y')
             if sensor.microphone is None:
                 _check_point(sensor.position, half, "position")
         except InputError as error:

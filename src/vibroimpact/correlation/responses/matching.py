@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from vibroimpact.dynamics.sensors.instruments.microphone import Microphone
 from vibroimpact.dynamics.sensors.sensor import Sensor
-from vibroimpact.errors import InputError, choices, listed
+from vibroimpact.errors import InputError, did_you_mean, listed
 from vibroimpact.shown import shown
 from vibroimpact.signals.frequency_response import DegreeOfFreedom, FrequencyResponse
 
@@ -129,7 +129,9 @@ def _of_impact(
     else:
         at_force, at_motion = (sum(reference in place.names for place in places) for places in (by_force, by_motion))
         if not at_force and not at_motion:
-            raise InputError(f"no force acts at {shown(reference)}; there are {choices(forces, reference)}", "--hammer")
+            acting = f"forces act at {listed(forces)}, motion was measured at {listed(motions)}"
+            meant = did_you_mean(reference, [*motions, *forces])
+            raise InputError(f"no force acts, and no motion was measured, at {shown(reference)}; {acting}.{meant}", "--hammer")
         name, reciprocal = reference, at_motion > at_force
     ends = [(one, one.response, one.reference) if reciprocal else (one, one.reference, one.response) for one in responses]
     return name, [(one, here, there) for one, here, there in ends if name in here.names], reciprocal

@@ -121,7 +121,7 @@ def _loss_doubt(stream: AudioStream) -> str:
     bit_rate = stream.codec_context.bit_rate or stream.bit_rate
     size = f" at {bit_rate / 1000.0:.0f} kbit/s" if bit_rate else ""
     return (
-        f"its sound is coded with losses ({stream.codec_context.codec.canonical_name}{size}): what begins suddenly is spread over up to "
-        f"{1e3 * _BLUR:g} ms, and what is not heard is left out; intervals of times of touches include this, amplitudes, spectra and other "
-        "features do not: record in WAV or FLAC where these count"
+        f"its sound is coded with losses ({stream.codec_context.codec.canonical_name}{size}): what begins suddenly is spread over some "
+        "milliseconds, more at low rates of samples or bits, and what is not heard is left out; intervals of times of touches allow for "
+        f"{1e3 * _BLUR:g} ms of it, amplitudes, spectra and other features for none: record in WAV or FLAC where these count"
     )

@@ -24,8 +24,8 @@ _LETTERS = 34  # letters of a key beside the bars
 _LABELS = {SOBOL: ("Fraction of the variance", ""), RANKS: ("Rank correlation", ""), RANGES: ("From the middle", "%")}
 _WORDS = {
     SOBOL: "Sobol's indices: fraction of the variance due to a key alone, and in total; the thin lines are 95 % intervals.",
-    RANKS: "Spearman's rank correlation of each result with each key.",
-    RANGES: "Range of each result along one key, with the others at their middle level. Each panel has its own scale.",
+    RANKS: "Spearman's rank correlation of results with keys that are numbers.",
+    RANGES: "Range of a result along one key, with the others at their middle level. Each panel has its own scale.",
 }
 
 
@@ -55,7 +55,8 @@ def sensitivity_chart(study: Study, found: Sensitivity, outputs: list[Output]) -
         across = Axis(*_LABELS[RANGES]) if found.way == RANGES else common  # ranges may differ widely between results
         marks = (*_bars(found, output, order, names), Level(0.0, role="main", upright=True))
         panels.append(Panel(across, up, marks, shortened(visible(output.short), 40)))
-    caption = f"{_WORDS[found.way]} {keys_told(keys[::-1])}"
+    cut = "" if len(found.keys) <= _MOST_KEYS else f" The {_MOST_KEYS} of {len(found.keys)} keys with the largest effects are drawn."
+    caption = f"{_WORDS[found.way]}{cut} {keys_told(keys[::-1])}"
     return Chart("sensitivity", "Sensitivity", in_rows(panels), caption, 0.7 + 0.28 * len(order))
 
 
