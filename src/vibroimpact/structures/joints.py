@@ -152,8 +152,8 @@ def _without_others(equations: Sequence[Terms], displacements: int) -> list[Term
         others = sorted({unknown for row in rows for unknown in row if unknown >= displacements})
         if len(rows) * len(others) > _MOST_DENSE:
             raise InputError(
-                f"{len(rows)} equations of rigid parts are linked through rotations or nodes off the mesh, which is too many; replace chains "
-                "of rigid parts by one that joins the nodes of the mesh directly, or leave parts out"
+                f"{len(rows)} equations of rigid parts are linked through rotations or nodes off the mesh, which is too many; replace "
+                "chains of rigid parts by one that joins the nodes of the mesh directly, or leave parts out"
             )
         place = {unknown: index for index, unknown in enumerate(others)}
         matrix = np.zeros((len(rows), len(others)))
