@@ -10,7 +10,7 @@ from vibroimpact.dynamics.core.law import law_indentation
 from vibroimpact.dynamics.core.records import Law, Manner, State, System
 
 _SAMPLES = 64
-_MOST_HORIZONS = 100_000
+_MOST_HORIZONS = 2_000  # each twice as long as the one before
 
 
 @compiled(lambda t: t.tuple(t.real, t.real)(t.of(System), t.of(Law), t.of(State)))
@@ -63,4 +63,6 @@ def end_of_recoil(system: System, law: Law, manner: Manner, state: State) -> tup
             before = time
         begun += step
         step *= 2.0
+        if not np.isfinite(begun + step):
+            break
     return np.inf, True
