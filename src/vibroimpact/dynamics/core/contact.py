@@ -110,7 +110,7 @@ def follow_contact(
     parts.late_loss[0] = 0.0
     no_event = Event(NO_EVENT, 0.0, 0.0)
     no_guess = Nodes(np.zeros(0), np.zeros(0), np.zeros(0))
-    while part < len(parts.start) and changes < len(parts.turned_at):
+    while part < len(parts.start) and changes + 1 < len(parts.turned_at):  # two changes at most are made on the way
         if not pushes:  # recoil
             length, separates = end_of_recoil(system, law, manner, state)
             if not np.isfinite(length):

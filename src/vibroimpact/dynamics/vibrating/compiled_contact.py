@@ -185,6 +185,6 @@ def _room(number: int, elements: int) -> records.Parts:
         roughness=np.empty(_PARTS),
         separation_loss=np.empty(_PARTS),
         indentation=np.empty((_PARTS, nodes + 1)),
-        turned_at=np.empty(_PARTS),
+        turned_at=np.empty(_PARTS + 1),
         late_loss=np.zeros(1),
     )
