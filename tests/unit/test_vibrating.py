@@ -15,9 +15,11 @@ from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.laws.adams_impact import AdamsImpact
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
+from vibroimpact.contact.laws.walton_braun import WaltonBraun
 from vibroimpact.contact.pair import ContactPair
 from vibroimpact.contact.registry import contact_laws
 from vibroimpact.dynamics.columns import LEDGER, VIBRATION_LEDGER
+from vibroimpact.dynamics.outcome import Outcome
 
 HERTZ = Hertz(stiffness=STIFFNESS)
 LOSSY = LankaraniNikravesh(stiffness=STIFFNESS, restitution=0.65)
@@ -204,3 +206,12 @@ def test_a_foil_is_integrated_to_any_tolerance() -> None:
         case["run"]["tolerance"] = tolerance
         speeds.append(vi.simulate(vi.read_case(case)).impacts["separation_speed_m_s"])
     np.testing.assert_allclose(speeds[:2], [speeds[2]] * 2, rtol=1e-7)
+
+
+def test_a_visit_that_ends_while_the_law_still_yields_closes_its_ledger() -> None:
+    """A dashpot in series so stiff that the limit of stretches is reached before the deepest point."""
+    law = WaltonBraun(stiffness=2e6, restitution=0.5)
+    response = vi.simulate(drop_on(law, local_element=(1e6, 1.0), tolerance=1e-12))
+    assert response.outcomes[0] is Outcome.RIDING
+    assert response.energy["closure_relative"] < 1e-12
+    assert response.energy["plastic_work_J"] > 0.0

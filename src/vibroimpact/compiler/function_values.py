@@ -102,11 +102,14 @@ def levels_of_held(coefficients: Any) -> tuple[float, ...]:
 
 
 def compress_held(deepest: float, coefficients: Any, changed: Any) -> float:
-    """Write the memories of such a law after compression, and return the indentation beyond which they may change again."""
+    """Write the memories of such a law after compression, and return the indentation beyond which they may change again.
+
+    It is the deepest one, since a law remembers its largest indentation.
+    """
     law = _held(coefficients).after_compression(deepest)
     for index, memory in enumerate(law.memories().values()):
         changed[1 + index] = float(memory)
-    return float(law.touch_level) if law.memories() else np.inf
+    return max(float(law.touch_level), deepest) if law.memories() else np.inf
 
 
 def _number(law: Any) -> int:

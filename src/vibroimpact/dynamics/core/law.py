@@ -213,5 +213,18 @@ def snap_off(law: Law) -> float:
 def law_after(law: Law, deepest: float) -> Law:
     """Return a law with its memory of a compression to an indentation [m]."""
     changed = law.coefficients.copy()
-    compressed_at(law.addresses[3])(deepest, law.coefficients, changed)
-    return law_at_touch(law.addresses, changed, law.series, law.speed)
+    memory_level = compressed_at(law.addresses[3])(deepest, law.coefficients, changed)
+    after = law_at_touch(law.addresses, changed, law.series, law.speed)
+    return Law(
+        after.addresses,
+        after.coefficients,
+        after.series,
+        after.speed,
+        after.touch,
+        after.release,
+        after.release_level,
+        memory_level,
+        after.first_breakpoint,
+        after.second_breakpoint,
+        after.jump,
+    )

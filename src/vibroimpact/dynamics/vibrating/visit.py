@@ -204,7 +204,9 @@ class _VisitMarch:
         return RELEASED
 
     def end_in_contact(self, outcome: int) -> int:
-        """End the visit in contact, with its stored energy."""
+        """End the visit in contact, with its stored energy; the law keeps its memory of how deep it has come."""
+        if self.active.local.updates_memory(self.active.delta):
+            self.march.update_memory(self.active)
         self.stored = float(self.active.local.energy_at_indentation(self.active.delta))
         return outcome
 
