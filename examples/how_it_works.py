@@ -15,7 +15,6 @@ from numpy.polynomial import legendre
 from scipy.special import betaincinv
 
 import vibroimpact as vi
-from vibroimpact.dynamics.lockstep import run_coroutine
 from vibroimpact.dynamics.vibrating.active_contact import ContactDefinition
 from vibroimpact.dynamics.vibrating.free_motion import FreePhase
 from vibroimpact.dynamics.vibrating.march import March
@@ -50,7 +49,7 @@ def marched(system: vi.System, duration: float) -> March:
     march = March(
         linear, [ContactDefinition(one.law, one.series, not one.same_spot) for one in system.contacts.values()], start, system.tolerance
     )
-    run_coroutine(march.run_until(duration))
+    march.run_until(duration)
     return march
 
 

@@ -282,7 +282,7 @@ def test_a_killed_process_leaves_nothing_in_the_way(toy: Toy) -> None:
 
 def test_the_least_recently_used_code_is_removed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(PLACE, str(tmp_path))
-    monkeypatch.setattr(code_store, "_LARGEST", 2500)
+    monkeypatch.setattr(code_store, "LARGEST", 2500)
     old, new = tmp_path / "old", tmp_path / "new"
     assert save_code(old, "first", bytes(1000)) == ""
     os.utime(next(old.iterdir()), (0, 0))

@@ -1,7 +1,7 @@
 """Compiled code on disk, in a folder for each combination of processor, Python, NumPy and compiler.
 
 A file is a SHA-256 followed by code; one that is damaged counts as absent. Files are named by a digest of what they were compiled from,
-so that none is ever out of date, and the least recently used are removed where all take more room than `_LARGEST`.
+so that none is ever out of date, and the least recently used are removed where all take more room than `LARGEST`.
 """
 
 from __future__ import annotations
@@ -28,7 +28,8 @@ PLACE = "VIBROIMPACT_CODE_STORE"
 FORMAT = 1
 """Part of every folder's name: to be increased when the files, or the options of the compiler, change."""
 
-_LARGEST = 100_000_000  # bytes
+LARGEST = 100_000_000
+"""Largest size of the store [bytes]."""
 _CHECKSUM = 32  # bytes
 _SUFFIX = ".code"
 _DAY = 86_400.0  # seconds
@@ -141,10 +142,10 @@ def _make_room() -> None:
     """Remove the least recently used files beyond the limit."""
     paths = code_files()
     total = sum(_size(path) for path in paths)
-    if total <= _LARGEST:
+    if total <= LARGEST:
         return
     for path in paths[:-1]:
-        if total <= _LARGEST:
+        if total <= LARGEST:
             break
         total -= _size(path)
         path.unlink(missing_ok=True)

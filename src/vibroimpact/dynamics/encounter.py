@@ -36,6 +36,13 @@ class Encounter:
         arrays = (self.mass, self.gravity, self.approach_speed, self.depth, self.speed_scale, self.floor)
         return Encounter(self.law.take(drops), *(array[drops] for array in arrays))
 
+    def alone(self, drop: int) -> Encounter:
+        """Return the encounter of one drop as it is without the others, with which the iteration for its depth ends later."""
+        if len(self.mass) == 1:
+            return self
+        here = np.array([drop])
+        return encounter_of(self.law.take(here), self.mass[here], self.gravity[here], self.approach_speed[here])
+
     def under(self, law: CompliantLaw) -> Encounter:
         """Return the encounter with another law, or with the same law and another memory."""
         return self if law is self.law else replace(self, law=law, floor=law.release_level + np.zeros(len(self.mass)))

@@ -69,10 +69,13 @@ def next_touch(motion: FreeMotion, level: float, until: float, contact: int = 0)
 def time_to_separation(motion: FreeMotion, level: float, contact: int = 0) -> float:
     """Return when surfaces that overlap beyond a level separate to it [s]; 0 if they do not overlap, infinite if they never separate."""
     system, time = motion.system, 0.0
+    horizon, before = 0.0, np.nan
     for _ in range(_MOST_HORIZONS):
         state = motion.state(np.array(time))
         approach, rate = float(system.approach(state)[contact]), float(system.rates(state)[contact])
-        horizon = 2.0 * (approach - level) / abs(rate) if rate else 1e-6
+        # twice the last one where that was too short to change anything, as below the rounding of the time of a flight
+        horizon = 2.0 * horizon if approach == before else 2.0 * (approach - level) / abs(rate) if rate else 1e-6
+        before = approach
         terms = float(np.abs(system.shape[contact]) @ np.abs(state.displacement)) + abs(float(system.offset[contact]))
         if approach <= level + (_ROUNDING * terms if rate < 0.0 else 0.0):
             return time
