@@ -10,10 +10,18 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import cache
 from multiprocessing.connection import Pipe
 from typing import Any
 
+import numpy as np
+
+from vibroimpact.bodies.body import Body
+from vibroimpact.contact.registry import find_contact_law
+from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.errors import VibroimpactError
+from vibroimpact.structures.modal_model import ModalBasis
 
 SECONDS = 10
 """Of processor time, for one input."""
@@ -53,8 +61,18 @@ def seed(given: int) -> int:
     return given + 1_000_003 * int(os.environ.get("VIBROIMPACT_SEED", "0"))
 
 
+@cache
+def compile_once() -> None:
+    """Compute a drop on an elastic plate, so that no process of an input spends its time on compiling the solver."""
+    modes = ModalBasis(np.array([200.0]), np.array([0.01]), np.array([0.5]), np.zeros((1, 3)))
+    law = find_contact_law("hertz")(stiffness=1e9)
+    bodies = {"sphere": Body(mass=0.1, contact_offset=0.02), "plate": Body(mass=np.inf, contact_offset=0.0, modes=modes)}
+    simulate(Problem(laws=(law,), speed=1.0, impacts=1, **bodies))
+
+
 def attack(function: Callable[[Any], object], inputs: Sequence[Any]) -> list[Outcome]:
     """Return what came of each input: of a hang or a crash too, which end the process that works on it and no other."""
+    compile_once()
     outcomes: list[Outcome] = []
     while len(outcomes) < len(inputs):
         outcomes += _in_a_child(function, inputs[len(outcomes) :])
