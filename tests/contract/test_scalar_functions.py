@@ -211,7 +211,7 @@ def test_a_law_of_methods_is_called(take: Callable[..., list[Callable[..., Any]]
         deepest = coefficients[1] + 1e-4
         changed = coefficients.copy()
         memory_level = compressed(deepest, coefficients, changed)
-        assert memory_level == 0.5 * deepest
+        assert memory_level == deepest
         coefficients = changed
     assert levels(coefficients) == pytest.approx((0.05, 0.05, 0.05, 0.1, np.inf))
     assert forces(0.08, 1.0, 1.0, coefficients)[0] == pytest.approx(6.0)

@@ -180,7 +180,7 @@ def test_lengths_that_are_wrong_make_the_speeds_wrong_by_what_is_said() -> None:
     too_fast = 100.0 * float(np.mean(seen.speeds / made.speeds[:4]) - 1.0)
     (doubt,) = (doubt for doubt in seen.doubts if "curve as under" in doubt)
     assert too_fast == pytest.approx(1.0, abs=0.02)
-    assert f"all speeds are {too_fast:+.2g} % off" in doubt
+    assert f"all speeds taken from it are {too_fast:+.2g} % off" in doubt
 
 
 def test_a_clock_in_another_unit_is_refused() -> None:
