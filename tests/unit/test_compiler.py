@@ -72,6 +72,34 @@ if hasattr(twice, "compiled") and twice.compiled is not twice.py_func:
 """
 
 
+_LAWS = """
+import sys
+
+import numpy as np
+
+from vibroimpact.compiled import compiled, force_at, law_addresses, law_coefficients, law_function
+from vibroimpact.contact.pair import ContactPair
+from vibroimpact.contact.registry import find_contact_law
+
+
+@compiled(lambda t: t.real(t.address, t.real, t.vector))
+def static_force(address, delta, coefficients):
+    force = force_at(address)
+    return force(delta, 0.0, 1.0, coefficients)[0]
+
+
+PAIR = ContactPair(effective_modulus=1e11, effective_radius=0.01, effective_mass=0.1, yield_strength=3e8, poissons_ratio=0.3)
+laws = [find_contact_law(name).example(PAIR) for name in sys.argv[1:]]
+for law in laws:
+    law_function(type(law))
+for law in laws:
+    coefficients = law_coefficients(law)
+    delta = 3.0 * law.yield_indentation
+    expected = type(law).scalar_forces(delta, 0.0, 1.0, coefficients)[0]
+    print(np.isclose(static_force(law_addresses(type(law))[0], delta, coefficients), expected, rtol=1e-12, atol=0.0))
+"""
+
+
 class Toy:
     """A program with a compiled function, which calls one of another file.
 
@@ -218,6 +246,23 @@ def test_an_error_of_a_law_reaches_the_caller() -> None:
 def test_code_is_loaded_by_the_next_process(toy: Toy) -> None:
     assert toy.run() == ["24.0", "compiled"]
     assert toy.run(PYTHONHASHSEED="7") == ["24.0", "loaded"]
+
+
+@needs_compiler
+def test_functions_of_one_name_from_several_processes_are_told_apart(tmp_path: Path) -> None:
+    """Two laws made by one function that makes functions, compiled apart and loaded together."""
+    program = tmp_path / "laws.py"
+    program.write_text(_LAWS)
+    environment = {**os.environ, PLACE: str(tmp_path / "code")}
+
+    def run(*laws: str) -> list[str]:
+        return subprocess.run(
+            [sys.executable, str(program), *laws], env=environment, capture_output=True, text=True, check=True, timeout=300
+        ).stdout.split()
+
+    assert run("thornton") == ["True"]
+    assert run("storakers") == ["True"]
+    assert run("thornton", "storakers") == ["True", "True"]
 
 
 @needs_compiler

@@ -6,8 +6,11 @@ from collections.abc import Callable
 from contextlib import nullcontext
 from importlib import import_module
 from inspect import signature
+from itertools import count
+from secrets import randbits
 from typing import Any
 
+from numba.core.bytecode import FunctionIdentity
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import CPUDispatcher
 from numba.extending import overload
@@ -24,6 +27,9 @@ _OPTIONS = {"error_model": "numpy"}
 
 _SECONDS = 9e-4
 """Time to compile a byte of Python's code [s]."""
+
+_BITS = 62
+"""Of the random numbers by which functions of one name are told apart."""
 
 _REPLACED: dict[Any, Callable[..., Any]] = {}
 """The functions that compiled code calls, by those in whose place it does."""
@@ -74,6 +80,7 @@ class CompiledFunction(CPUDispatcher):  # type: ignore[misc]
                 say_trouble(self._cache.trouble)
 
     def _make_ready(self) -> None:
+        _number_anew()
         self.compile(self._signature_of(types))  # or load
         self.disable_compile()
         self._is_ready = True
@@ -143,6 +150,15 @@ def _compiled_named(module: str, name: str) -> Any:
     for part in name.split("."):
         function = getattr(function, part)
     return function.compiled
+
+
+def _number_anew() -> None:
+    """Let numba number functions from a random number on.
+
+    It tells functions of one name apart by these numbers, which begin with 1 in each process. Two of one name (made by a function, such as
+    the forces of two laws) that had one number in two processes would be one function to the linker in a process that loads both.
+    """
+    FunctionIdentity._unique_ids = count(randbits(_BITS))
 
 
 def _seconds() -> float:
