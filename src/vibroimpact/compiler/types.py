@@ -13,15 +13,12 @@ boolean = types.boolean
 vector = types.float64[::1]
 matrix = types.float64[:, ::1]
 cube = types.float64[:, :, ::1]
-four = types.float64[:, :, :, ::1]
 address = types.int64
 integers = types.int64[::1]
 booleans = types.boolean[::1]
 void = types.void
-pointer = types.CPointer(real)
 complex = types.complex128
 complexes = types.complex128[::1]
-text = types.unicode_type
 
 pair = types.UniTuple(real, 2)
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from vibroimpact.arrays import Bools, Floats
 from vibroimpact.compiled import compiled, force_at
+from vibroimpact.dynamics.core.linear import product
 from vibroimpact.dynamics.core.records import Basis, Event, Histories, Law, Nodes, System
 
 NO_EVENT, PARTED, NO_PUSH, BREAKPOINT, TURN = 0, 1, 2, 3, 4
@@ -18,18 +19,6 @@ _ROUNDING = 1e-11  # relative to an indentation
 _ON_LEVEL = 1e-10  # relative to an indentation: a stretch that begins so near to a breakpoint begins on it; ends are solved to 1e-11
 _ZERO_RATE = 1e-9  # of the speed of the motion: a slower approach counts as having turned already
 _SLACK = 1e-11  # of the force
-
-
-@compiled(lambda t: t.vector(t.matrix, t.vector))
-def on_grid(weights: Floats, values: Floats) -> Floats:
-    """Return values at the points of a grid from those at the start and the nodes."""
-    points = np.empty(len(weights))
-    for point in range(len(weights)):
-        total = 0.0
-        for node in range(len(values)):
-            total += weights[point, node] * values[node]
-        points[point] = total
-    return points
 
 
 @compiled(lambda t: t.tuple(t.real, t.boolean)(t.vector, t.booleans))
@@ -53,8 +42,8 @@ def first_event(
 
     `closing`: the whole rate of the approach at the start and the nodes [m/s] (N + 1,).
     """
-    delta = on_grid(basis.grid, contact.delta[0])
-    rate = on_grid(basis.grid, contact.rate[0])
+    delta = product(basis.grid, contact.delta[0])
+    rate = product(basis.grid, contact.rate[0])
     points = len(delta)
     deepest = delta.max()
     reached = np.zeros(points, dtype=np.bool_)
@@ -97,7 +86,7 @@ def first_event(
             first = Event(BREAKPOINT, level, x)
 
     if deepest > law.memory_level:
-        rates = on_grid(basis.grid, closing)
+        rates = product(basis.grid, closing)
         fastest = -np.inf
         for point in range(points):
             fastest = max(fastest, rates[point])

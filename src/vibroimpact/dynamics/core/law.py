@@ -133,7 +133,6 @@ def series_energy(series: Floats, force: float) -> float:
 
 _TENSILE_POINTS = 2000
 _LEAST_SLOPE = 0.05  # of the approach by the indentation; at zero a contact snaps off, with 1e-4 less energy lost
-_LEVELS = 5
 
 
 @compiled(lambda t: t.real(t.of(Law), t.real))
@@ -177,7 +176,14 @@ def static_work(law: Law, delta: float) -> float:
 @compiled(lambda t: t.of(Law)(t.integers, t.vector, t.vector, t.real))
 def law_at_touch(addresses: Integers, coefficients: Floats, series: Floats, speed: float) -> Law:
     """Return a law of one contact with the levels that follow from its coefficients; `speed`: closing speed at touch [m/s]."""
-    touch, release, memory_level, first, second = levels_at(addresses[2])(coefficients)
+    _, _, memory_level, _, _ = levels_at(addresses[2])(coefficients)
+    return law_beyond(addresses, coefficients, series, speed, memory_level)
+
+
+@compiled(lambda t: t.of(Law)(t.integers, t.vector, t.vector, t.real, t.real))
+def law_beyond(addresses: Integers, coefficients: Floats, series: Floats, speed: float, memory_level: float) -> Law:
+    """Return a law of one contact whose memory changes beyond an indentation [m]."""
+    touch, release, _, first, second = levels_at(addresses[2])(coefficients)
     law = Law(addresses, coefficients, series, speed, touch, release, release, memory_level, first, second, 0.0)
     if not is_in_series(series):
         return law
@@ -214,17 +220,4 @@ def law_after(law: Law, deepest: float) -> Law:
     """Return a law with its memory of a compression to an indentation [m]."""
     changed = law.coefficients.copy()
     memory_level = compressed_at(law.addresses[3])(deepest, law.coefficients, changed)
-    after = law_at_touch(law.addresses, changed, law.series, law.speed)
-    return Law(
-        after.addresses,
-        after.coefficients,
-        after.series,
-        after.speed,
-        after.touch,
-        after.release,
-        after.release_level,
-        memory_level,
-        after.first_breakpoint,
-        after.second_breakpoint,
-        after.jump,
-    )
+    return law_beyond(law.addresses, changed, law.series, law.speed, memory_level)

@@ -1,6 +1,8 @@
-"""Linear equations of a dozen unknowns."""
+"""Linear algebra of a dozen unknowns."""
 
 from __future__ import annotations
+
+import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled
@@ -44,3 +46,15 @@ def solve_in_place(matrix: Floats, right: Floats) -> None:
             for later in range(row + 1, size):
                 value -= matrix[row, later] * right[later, column]
             right[row, column] = value * inverse
+
+
+@compiled(lambda t: t.vector(t.matrix, t.vector))
+def product(matrix: Floats, vector: Floats) -> Floats:
+    """Return the product of a matrix and a vector."""
+    found = np.empty(len(matrix))
+    for row in range(len(matrix)):
+        total = 0.0
+        for column in range(len(vector)):
+            total += matrix[row, column] * vector[column]
+        found[row] = total
+    return found

@@ -50,64 +50,60 @@ def modal_weights(surfaces: Surfaces, start: Start) -> Floats:
     return weights
 
 
+@compiled(lambda t: t.void(t.of(Surfaces), t.integer, t.matrix, t.real, t.matrix))
+def write_admittances(surfaces: Surfaces, mode: int, eigenvalues: Floats, length: float, admittances: Floats) -> None:
+    """Write 1/(1 + d sigma + w^2 sigma^2) of a mode at all eigenvalues, as real and imaginary parts (2, H), into `admittances`."""
+    frequency_squared = surfaces.frequency_squared[mode]
+    damping = surfaces.damping[mode]
+    for k in range(eigenvalues.shape[1]):
+        sigma = length * eigenvalues[0, k]
+        sigma_imaginary = length * eigenvalues[1, k]
+        square = sigma * sigma - sigma_imaginary * sigma_imaginary
+        square_imaginary = 2.0 * sigma * sigma_imaginary
+        impedance = 1.0 + damping * sigma + frequency_squared * square
+        impedance_imaginary = damping * sigma_imaginary + frequency_squared * square_imaginary
+        inverse = 1.0 / (impedance * impedance + impedance_imaginary * impedance_imaginary)
+        admittances[0, k] = impedance * inverse
+        admittances[1, k] = -impedance_imaginary * inverse
+
+
+@compiled(lambda t: t.void(t.matrix, t.integer, t.matrix, t.cube))
+def add_weighted(weights: Floats, mode: int, values: Floats, sums: Floats) -> None:
+    """Add values of a mode (2, H), times its weight in each row, to `sums` (2, W, H)."""
+    for row in range(len(weights)):
+        weight = weights[row, mode]
+        for k in range(values.shape[1]):
+            sums[0, row, k] += weight * values[0, k]
+            sums[1, row, k] += weight * values[1, k]
+
+
 @compiled(lambda t: t.void(t.of(Surfaces), t.matrix, t.matrix, t.real, t.cube))
 def modal_sums(surfaces: Surfaces, weights: Floats, eigenvalues: Floats, length: float, sums: Floats) -> None:
     """Write the weighted sums over the modes of 1/(1 + d sigma + w^2 sigma^2) at all eigenvalues, as parts (2, W, H), into `sums`."""
-    number = eigenvalues.shape[1]
-    real = np.empty(number)
-    imaginary = np.empty(number)
+    admittances = np.empty((2, eigenvalues.shape[1]))
     sums[:] = 0.0
     for mode in range(len(surfaces.damping)):
-        frequency_squared = surfaces.frequency_squared[mode]
-        damping = surfaces.damping[mode]
-        for k in range(number):
-            sigma = length * eigenvalues[0, k]
-            sigma_imaginary = length * eigenvalues[1, k]
-            square = sigma * sigma - sigma_imaginary * sigma_imaginary
-            square_imaginary = 2.0 * sigma * sigma_imaginary
-            impedance = 1.0 + damping * sigma + frequency_squared * square
-            impedance_imaginary = damping * sigma_imaginary + frequency_squared * square_imaginary
-            inverse = 1.0 / (impedance * impedance + impedance_imaginary * impedance_imaginary)
-            real[k] = impedance * inverse
-            imaginary[k] = -impedance_imaginary * inverse
-        for row in range(len(weights)):
-            weight = weights[row, mode]
-            for k in range(number):
-                sums[0, row, k] += weight * real[k]
-                sums[1, row, k] += weight * imaginary[k]
+        write_admittances(surfaces, mode, eigenvalues, length, admittances)
+        add_weighted(weights, mode, admittances, sums)
 
 
 @compiled(lambda t: t.void(t.of(Surfaces), t.matrix, t.matrix, t.real, t.cube))
 def modal_slopes(surfaces: Surfaces, weights: Floats, eigenvalues: Floats, length: float, sums: Floats) -> None:
     """Write the derivatives of the sums of `modal_sums` by sigma into `sums`."""
     number = eigenvalues.shape[1]
-    real = np.empty(number)
-    imaginary = np.empty(number)
+    admittances = np.empty((2, number))
+    slopes = np.empty((2, number))
     sums[:] = 0.0
     for mode in range(len(surfaces.damping)):
-        frequency_squared = surfaces.frequency_squared[mode]
-        damping = surfaces.damping[mode]
+        write_admittances(surfaces, mode, eigenvalues, length, admittances)
         for k in range(number):
-            sigma = length * eigenvalues[0, k]
-            sigma_imaginary = length * eigenvalues[1, k]
-            square = sigma * sigma - sigma_imaginary * sigma_imaginary
-            square_imaginary = 2.0 * sigma * sigma_imaginary
-            impedance = 1.0 + damping * sigma + frequency_squared * square
-            impedance_imaginary = damping * sigma_imaginary + frequency_squared * square_imaginary
-            inverse = 1.0 / (impedance * impedance + impedance_imaginary * impedance_imaginary)
-            admittance = impedance * inverse
-            admittance_imaginary = -impedance_imaginary * inverse
-            slope = damping + 2.0 * frequency_squared * sigma
-            slope_imaginary = 2.0 * frequency_squared * sigma_imaginary
-            squared = admittance * admittance - admittance_imaginary * admittance_imaginary
-            squared_imaginary = 2.0 * admittance * admittance_imaginary
-            real[k] = -(slope * squared - slope_imaginary * squared_imaginary)
-            imaginary[k] = -(slope * squared_imaginary + slope_imaginary * squared)
-        for row in range(len(weights)):
-            weight = weights[row, mode]
-            for k in range(number):
-                sums[0, row, k] += weight * real[k]
-                sums[1, row, k] += weight * imaginary[k]
+            slope = surfaces.damping[mode] + 2.0 * surfaces.frequency_squared[mode] * (length * eigenvalues[0, k])
+            slope_imaginary = 2.0 * surfaces.frequency_squared[mode] * (length * eigenvalues[1, k])
+            squared = admittances[0, k] * admittances[0, k] - admittances[1, k] * admittances[1, k]
+            squared_imaginary = 2.0 * admittances[0, k] * admittances[1, k]
+            slopes[0, k] = -(slope * squared - slope_imaginary * squared_imaginary)
+            slopes[1, k] = -(slope * squared_imaginary + slope_imaginary * squared)
+        add_weighted(weights, mode, slopes, sums)
 
 
 @compiled(lambda t: t.void(t.matrix, t.integer, t.complex, t.vector))

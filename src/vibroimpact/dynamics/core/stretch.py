@@ -11,7 +11,7 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled, force_at
 from vibroimpact.dynamics.core.law import indentation_at, is_in_series, linearise
-from vibroimpact.dynamics.core.linear import solve_in_place
+from vibroimpact.dynamics.core.linear import product, solve_in_place
 from vibroimpact.dynamics.core.receptance import motion_by_length, surface_motion
 from vibroimpact.dynamics.core.records import Basis, Contacts, Histories, Motion, Nodes, Start, Surfaces
 
@@ -26,16 +26,28 @@ _INEXACT = 1e-6  # of a Newton step: least size of the next one, as the derivati
 _TINY = 1e-300
 
 
-@compiled(lambda t: t.vector(t.matrix, t.vector))
-def product(matrix: Floats, vector: Floats) -> Floats:
-    """Return the product of a matrix and a vector."""
-    found = np.empty(len(matrix))
-    for row in range(len(matrix)):
-        total = 0.0
-        for column in range(len(vector)):
-            total += matrix[row, column] * vector[column]
-        found[row] = total
-    return found
+@compiled(lambda t: t.void(t.of(Contacts), t.integer, t.vector, t.vector, t.matrix))
+def linearise_contact(contacts: Contacts, contact: int, delta: Floats, rate: Floats, linear: Floats) -> None:
+    """Write forces, approach and derivatives of the law of one contact at N nodes into `linear` (7, N), as `law.linearise` does."""
+    linearise(
+        contacts.laws[contact],
+        contacts.coefficients[contact],
+        contacts.speed[contact],
+        contacts.release[contact],
+        contacts.series[contact],
+        delta,
+        rate,
+        linear,
+    )
+
+
+@compiled(lambda t: t.real(t.of(Surfaces), t.of(Start), t.integer))
+def begun_rate(surfaces: Surfaces, start: Start, contact: int) -> float:
+    """Return the rate at the dashpot of a contact law at the start without contact force [m/s]."""
+    rate = start.outer_rate[contact]
+    for element in range(len(surfaces.rate)):
+        rate -= surfaces.incidence[contact, element] * surfaces.rate[element] * start.local[element]
+    return float(rate)
 
 
 @compiled(lambda t: t.vector(t.of(Contacts), t.of(Start), t.vector))
@@ -48,16 +60,7 @@ def begun_indentations(contacts: Contacts, start: Start, estimates: Floats) -> F
         approach = max(start.approach[contact], contacts.release_level[contact])
         found[contact] = approach
         if is_in_series(contacts.series[contact]):
-            linearise(
-                contacts.laws[contact],
-                contacts.coefficients[contact],
-                contacts.speed[contact],
-                contacts.release[contact],
-                contacts.series[contact],
-                estimates[contact : contact + 1],
-                still,
-                linear,
-            )
+            linearise_contact(contacts, contact, estimates[contact : contact + 1], still, linear)
             nearer = estimates[contact] + (approach - linear[2, 0]) / linear[3, 0]
             found[contact] = max(nearer, contacts.release[contact])
     return found
@@ -73,9 +76,7 @@ def first_guess(
     static = np.empty(size)
     force = np.empty(size)
     for contact in range(len(begun)):
-        rate = start.outer_rate[contact]
-        for element in range(len(surfaces.rate)):
-            rate -= surfaces.incidence[contact, element] * surfaces.rate[element] * start.local[element]
+        rate = begun_rate(surfaces, start, contact)
         reached = max(begun[contact], contacts.release[contact])
         law = force_at(contacts.laws[contact])
         begun_static, begun_dissipative = law(reached, rate, contacts.speed[contact], contacts.coefficients[contact])
@@ -130,16 +131,7 @@ def linearised_laws(contacts: Contacts, motion: Motion, now: Nodes) -> Floats:
     of_contact = np.empty((7, nodes))
     for contact in range(len(contacts.laws)):
         first = contact * nodes
-        linearise(
-            contacts.laws[contact],
-            contacts.coefficients[contact],
-            contacts.speed[contact],
-            contacts.release[contact],
-            contacts.series[contact],
-            now.delta[first : first + nodes],
-            rate[first : first + nodes],
-            of_contact,
-        )
+        linearise_contact(contacts, contact, now.delta[first : first + nodes], rate[first : first + nodes], of_contact)
         for row in range(7):
             for node in range(nodes):
                 linear[row, first + node] = of_contact[row, node]
@@ -163,6 +155,20 @@ def indentations_by(linear: Floats, motion: Motion, columns: Floats) -> Floats:
         matrix[row, row] += linear[3, row]
     solve_in_place(matrix, found)
     return found
+
+
+@compiled(lambda t: t.void(t.matrix, t.of(Motion), t.matrix, t.matrix))
+def write_force_jacobian(linear: Floats, motion: Motion, by: Floats, matrix: Floats) -> None:
+    """Write the Jacobian of the equations in the forces, without the indentations, into the first rows and columns of `matrix`.
+
+    `by`: derivatives of the indentations by the approach that the forces cause, in its first columns, as `indentations_by` gives them.
+    """
+    size = len(motion.rate)
+    for row in range(size):
+        force_by_delta = linear[4, row] + linear[5, row]
+        for column in range(size):
+            matrix[row, column] = linear[6, row] * motion.rate_by_force[row, column] + force_by_delta * by[row, column]
+        matrix[row, row] += 1.0
 
 
 @compiled(
@@ -208,11 +214,9 @@ def newton_step(
     unknowns = size if event == GIVEN_LENGTH else size + 1  # the last one is the relative change of the length
     matrix = np.empty((unknowns, unknowns))
     right = np.empty((unknowns, 1))
+    write_force_jacobian(linear, motion, by, matrix)
     for row in range(size):
         force_by_delta = linear[4, row] + linear[5, row]
-        for column in range(size):
-            matrix[row, column] = linear[6, row] * motion.rate_by_force[row, column] + force_by_delta * by[row, column]
-        matrix[row, row] += 1.0
         right[row, 0] = now.force[row] - (linear[0, row] + linear[1, row]) + force_by_delta * by[row, size]
         if event != GIVEN_LENGTH:
             matrix[row, size] = (force_by_delta * by[row, size + 1] - linear[6, row] * by_length[1, row]) * length
@@ -383,17 +387,13 @@ def contact_histories(
         first = contact * nodes
         approach[contact, 0] = max(start.approach[contact], contacts.release_level[contact])
         delta[contact, 0] = begun[contact]
-        begun_rate = start.outer_rate[contact]
-        in_series = False
-        for element in range(len(surfaces.rate)):
-            begun_rate -= surfaces.incidence[contact, element] * surfaces.rate[element] * start.local[element]
-            in_series = in_series or surfaces.incidence[contact, element] != 0.0
-        if in_series:  # the rate of a massless element jumps with the force
-            begun_rate = 0.0
+        first_rate = begun_rate(surfaces, start, contact)
+        if surfaces.incidence[contact].any():  # the rate of a massless element jumps with the force
+            first_rate = 0.0
             for node in range(nodes):
-                begun_rate += basis.at_start[node] * rates[first + node]
-        rate[contact, 0] = begun_rate
-        fastest = abs(begun_rate)
+                first_rate += basis.at_start[node] * rates[first + node]
+        rate[contact, 0] = first_rate
+        fastest = abs(first_rate)
         for node in range(nodes):
             approach[contact, node + 1] = approaches[first + node]
             rate[contact, node + 1] = rates[first + node]

@@ -6,9 +6,9 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled
-from vibroimpact.dynamics.core.linear import solve_in_place
+from vibroimpact.dynamics.core.linear import product, solve_in_place
 from vibroimpact.dynamics.core.records import Motion
-from vibroimpact.dynamics.core.stretch import indentations_by, product
+from vibroimpact.dynamics.core.stretch import indentations_by, write_force_jacobian
 
 
 @compiled(lambda t: t.tuple(t.vector, t.vector)(t.of(Motion), t.matrix, t.vector, t.vector, t.vector))
@@ -36,11 +36,9 @@ def force_differences(motion: Motion, linear: Floats, approach: Floats, static: 
     by = indentations_by(linear, motion, columns)
     matrix = np.empty((size, size))
     right = np.empty((size, 1))
+    write_force_jacobian(linear, motion, by, matrix)
     for row in range(size):
         force_by_delta = linear[4, row] + linear[5, row]
-        for column in range(size):
-            matrix[row, column] = linear[6, row] * motion.rate_by_force[row, column] + force_by_delta * by[row, column]
-        matrix[row, row] += 1.0
         changed = static[row] + dissipative[row] + linear[6, row] * motion.rate[row]
         right[row, 0] = changed + force_by_delta * by[row, size]
     solve_in_place(matrix, right)

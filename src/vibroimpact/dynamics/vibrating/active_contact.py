@@ -139,9 +139,12 @@ def motion_speed(system: LinearSystem, number: int, law: CompliantLaw, closing: 
     return max(closing, float(np.sqrt(gravity * sag)))
 
 
-def record_peaks(impact: Impact, stretch: VibratingStretch, place: int, start: float) -> None:
-    """Add the peaks of force and indentation of one contact within a stretch that starts at a time [s] to its impact, and its impulse."""
-    rule, contact, indentations = stretch.rule, stretch.contacts[place], stretch.indentations(place)
+def record_peaks(impact: Impact, stretch: VibratingStretch, place: int, start: float, indentations: Floats) -> None:
+    """Add the peaks of force and indentation of one contact within a stretch to its impact, and its impulse.
+
+    `start`: time at which the stretch begins [s]. `indentations`: of the centre above, at the start and the nodes [m] (N + 1,).
+    """
+    rule, contact = stretch.rule, stretch.contacts[place]
     force = float(contact.force.max()) if contact.local.law.tension == "kept" else max(float(contact.force.max()), 0.0)
     impact.force.add(force, start, stretch, contact.force_at)
     impact.indentation.add(float(indentations[1:].max()), start, stretch, lambda x: np.asarray(rule.weights(x).T @ indentations))

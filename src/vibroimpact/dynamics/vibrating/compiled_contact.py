@@ -11,7 +11,7 @@ from vibroimpact.compiled import law_addresses, law_coefficients
 from vibroimpact.dynamics.core import contact as core
 from vibroimpact.dynamics.core import records
 from vibroimpact.dynamics.core.law import law_at_touch
-from vibroimpact.dynamics.vibrating.active_contact import ActiveContact
+from vibroimpact.dynamics.vibrating.active_contact import ActiveContact, record_peaks
 from vibroimpact.dynamics.vibrating.contact_history import ContactHistory
 from vibroimpact.dynamics.vibrating.contact_view import contact_view
 from vibroimpact.dynamics.vibrating.free_motion import FreePhase
@@ -37,10 +37,7 @@ class Limits:
 
 
 class CompiledContact:
-    """The contact of a march with one contact and without friction, from touch on.
-
-    `outcome`: how it goes on, of `core.contact`. `steps`: stretches that were tried.
-    """
+    """The contact of a march with one contact and without friction, from touch on."""
 
     def __init__(self, march: March, active: ActiveContact, limits: Limits) -> None:
         self.march = march
@@ -80,7 +77,6 @@ class CompiledContact:
         self.state = records.State(march.state.displacement, march.state.velocity, march.state.local)
         self.parts = _room(march.system.number, len(march.system.rate))
         self.locals = [active.local]
-        self.outcome = core.FULL
 
     @property
     def steps(self) -> int:
@@ -124,7 +120,7 @@ class CompiledContact:
                 continue
             stretch = self._stretch(part, local, begun)
             march.parts.append(MotionPart(start, stretch))
-            self._record_peaks(part, stretch, start)
+            record_peaks(self.active.impact, stretch, 0, start, parts.indentation[part].copy())
 
     def _stretch(self, part: int, local: LocalContact, begun: State) -> VibratingStretch:
         parts = self.parts
@@ -144,16 +140,6 @@ class CompiledContact:
             separation_loss=float(parts.separation_loss[part]),
         )
         return VibratingStretch(self.view, basis, float(parts.length[part]), begun, (history,), True, float(parts.roughness[part]))
-
-    def _record_peaks(self, part: int, stretch: VibratingStretch, start: float) -> None:
-        """Add the peaks of a stretch to those of the impact, and its impulse."""
-        impact, rule, force = self.active.impact, stretch.rule, self.parts.force[part]
-        indentation = self.parts.indentation[part].copy()
-        (contact,) = stretch.contacts
-        largest = float(force.max()) if contact.local.law.tension == "kept" else max(float(force.max()), 0.0)
-        impact.force.add(largest, start, stretch, contact.force_at)
-        impact.indentation.add(float(indentation[1:].max()), start, stretch, lambda x: np.asarray(rule.weights(x).T @ indentation))
-        impact.impulse += stretch.length * float(rule.integral[-1] @ force)
 
 
 @cache

@@ -326,7 +326,7 @@ class March:
     def accept(self, pushing: list[ActiveContact], stretch: VibratingStretch) -> None:
         """Append a stretch to the history, and update the contacts at its end."""
         for place, (contact, history, trend) in enumerate(zip(pushing, stretch.contacts, stretch.trend.tolist(), strict=True)):
-            record_peaks(contact.impact, stretch, place, self.time)
+            record_peaks(contact.impact, stretch, place, self.time, stretch.indentations(place))
             contact.delta, contact.force, contact.trend = float(history.delta[-1]), float(history.force[-1]), trend
             contact.fresh, contact.closing = False, float(stretch.closing_rates(place)[-1]) if contact.local.law.memories() else np.inf
         end, lost = stretch.end, stretch.lost
