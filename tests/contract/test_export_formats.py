@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ import pytest
 import vibroimpact as vi
 from support import one_in
 from told import MASS, RADIUS, STIFFNESS, told
+from vibroimpact.compiled import scalar
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
 from vibroimpact.contact.pair import ContactPair
@@ -35,6 +37,16 @@ def has_its_package(request: pytest.FixtureRequest) -> None:
         pytest.importorskip(PACKAGES[format.name])
 
 
+@scalar
+def strange_forces(delta: Any, delta_dot: Any, approach_speed: Any, coefficients: Any) -> tuple[Any, Any]:
+    return 1e4 * np.tanh(100.0 * delta), 0.0 * delta
+
+
+@scalar
+def strange_energies(delta: Any, coefficients: Any) -> tuple[Any, Any]:
+    return 100.0 * np.log(np.cosh(100.0 * delta)), 0.0 * delta
+
+
 @dataclass(frozen=True, kw_only=True)
 class Strange(CompliantLaw):
     """A law that no program has."""
@@ -44,12 +56,8 @@ class Strange(CompliantLaw):
     source = "nobody"
     contact_end = "zero-indentation"
     tension = "none"
-
-    def forces(self, delta: np.ndarray, delta_dot: np.ndarray, approach_speed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        return 1e4 * np.tanh(100.0 * delta), np.zeros_like(delta)
-
-    def elastic_energy(self, delta: np.ndarray) -> np.ndarray:
-        return 100.0 * np.log(np.cosh(100.0 * np.asarray(delta)))
+    scalar_forces = staticmethod(strange_forces)
+    scalar_energies = staticmethod(strange_energies)
 
 
 def written(format: ExportFormat, drop: Drop) -> dict[str, bytes] | None:

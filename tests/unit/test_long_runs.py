@@ -14,7 +14,6 @@ from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
 from vibroimpact.contact.laws.walton_braun import WaltonBraun
 from vibroimpact.dynamics.impact_rows import ImpactRows
 from vibroimpact.dynamics.packed_list import PackedList
-from vibroimpact.dynamics.phase_plane.collocation import PlaneRule
 from vibroimpact.results import fine_history
 
 BALL = vi.Body(mass=0.09, contact_offset=0.025)
@@ -35,7 +34,7 @@ def traced() -> Iterator[None]:
 
 @pytest.mark.usefixtures("traced")
 def test_an_impact_takes_less_than_two_thousand_bytes() -> None:
-    """Its two stretches of contact have twenty nodes each with three numbers of eight bytes, and there is little else to keep."""
+    """Of its contact no more is kept than how it began and ended."""
     held = []
     for impacts in (10, 20, 60):  # the first fills what is computed once
         before = tracemalloc.get_traced_memory()[0]
@@ -64,14 +63,12 @@ def test_legs_are_the_same_when_they_come_back() -> None:
     problem = drop(4, WaltonBraun(stiffness=4e5, restitution=0.6))
     response = vi.simulate(problem)
     assert isinstance(response.legs, PackedList)
-    again, many = PackedList(PlaneRule), [*response.legs] * 10  # the last ones are not packed
+    again, many = PackedList(), [*response.legs] * 10  # the last ones are not packed
     for leg in many:
         again.append(leg)
     for one, other in zip(many, again, strict=True):
         _same(one, other)
-    stretch = again[0].contact.pieces[0].motion
     assert again[0] is not again[0]
-    assert stretch.rule is again[1].contact.pieces[0].motion.rule  # shared by all
     law = again[0].contact.pieces[-1].law
     assert isinstance(law, WaltonBraun)
     assert law.memories() == again[0].contact.law.memories()
@@ -86,7 +83,7 @@ def _same(one: object, other: object) -> None:
         assert len(one) == len(other)
         for a, b in zip(one, other, strict=True):
             _same(a, b)
-    elif isinstance(one, PlaneRule) or not hasattr(one, "__dict__"):
+    elif not hasattr(one, "__dict__"):
         assert one is other or one == other
     else:
         for name, value in vars(one).items():
@@ -94,13 +91,15 @@ def _same(one: object, other: object) -> None:
 
 
 def test_the_history_of_a_drop_is_that_of_the_same_drop_in_a_batch() -> None:
-    """A batch keeps its legs as they are, one drop packs them: what is told of them must not differ."""
+    """A batch keeps its legs as they are and solves its contacts together, one drop packs them and follows its contacts."""
     law = LankaraniNikravesh(stiffness=np.array([5e8, 1e7]), restitution=np.array([0.9, 0.5]))
-    one, other = vi.simulate(drop(6, law)).drop(0).history(), vi.simulate(drop(6, law.take(0))).history()
+    together, alone = vi.simulate(drop(6, law)).drop(0), vi.simulate(drop(6, law.take(0)))
+    times = np.linspace(0.0, 0.999 * alone.end_time, 5000)
+    one, other = together.at(times), alone.at(times)
     assert one.keys() == other.keys()
     for name, values in other.items():
         scale = max(float(np.abs(values).max()), 1e-30)
-        np.testing.assert_allclose(one[name], values, atol=1e-9 * scale, rtol=0.0, err_msg=name)
+        np.testing.assert_allclose(one[name], values, atol=1e-6 * scale, rtol=0.0, err_msg=name)
 
 
 def test_a_history_that_is_too_long_keeps_its_first_impacts_whole_and_every_event() -> None:

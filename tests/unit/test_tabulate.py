@@ -18,7 +18,8 @@ from vibroimpact.dynamics import tabulate as module
 from vibroimpact.dynamics.contact import Contact
 from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.phase_plane import contact_solver as plane_contact
-from vibroimpact.dynamics.rigid.solve_contact import SolvesContact, collocated
+from vibroimpact.dynamics.rigid import line_contact
+from vibroimpact.dynamics.rigid.solve_contact import SolvesContact, followed
 
 LAWS = list(contact_laws().values())
 SMOOTH = {
@@ -88,9 +89,9 @@ def plane_only(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let every drop that the phase plane does not solve be an error."""
 
     def refuse(*_: object) -> None:
-        raise AssertionError("it was left to integration in time")
+        raise AssertionError("it was left to the core")
 
-    monkeypatch.setattr(plane_contact, "collocated", lambda *_: refuse)
+    monkeypatch.setattr(plane_contact, "followed", lambda *_: refuse)
 
 
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-8, 1e-9, 1e-10])
@@ -114,26 +115,26 @@ def test_most_drops_need_nothing_else(name: str, monkeypatch: pytest.MonkeyPatch
     exact = vi.simulate(replace(stated, tolerance=1e-12))
     left: list[int] = []
 
-    def counted(tolerance: float, size: int) -> SolvesContact:
-        in_time = collocated(tolerance, size)
+    def counted(tolerance: float) -> SolvesContact:
+        one_by_one = followed(tolerance)
 
         def solve(encounter: Encounter, drops: np.ndarray) -> tuple[Contact, np.ndarray, np.ndarray]:
             left.extend(drops)
-            return in_time(encounter, drops)
+            return one_by_one(encounter, drops)
 
         return solve
 
-    monkeypatch.setattr(plane_contact, "collocated", counted)
+    monkeypatch.setattr(plane_contact, "followed", counted)
     assert_agrees(vi.tabulate(stated), exact, 1e-9)
     assert len(left) <= {"adams-impact": 9, "kuwabara-kono": 2}.get(name, 0)  # of 180: that lose nearly all, or hardly pass the breakpoint
 
 
 @pytest.mark.parametrize("name", sorted(law.name for law in LAWS if issubclass(law, CompliantLaw) and law.contact_end != "pull-off"))
 @pytest.mark.parametrize("height", [0.03, 1.5])
-def test_histories_are_those_of_integration_in_time(name: str, height: float) -> None:
+def test_histories_are_those_of_a_single_drop(name: str, height: float) -> None:
     pair = ContactPair(2.4e9, 0.02, 0.1, 8e7, 0.3)
     stated = problem(laws=(vi.find_contact_law(name).example(pair),), height=height, impacts=2)
-    found, exact = vi.simulate(stated), vi.simulate(replace(stated, tolerance=1e-13))
+    found, exact = vi.simulate(replace(stated, height=np.full(2, height))).drop(0), vi.simulate(replace(stated, tolerance=1e-13))
     assert found.outcomes == exact.outcomes
     for start, duration in zip(exact.impacts["time_s"], exact.impacts["duration_s"], strict=True):
         times = start + duration * np.linspace(-0.1, 1.1, 1200)
@@ -144,7 +145,7 @@ def test_histories_are_those_of_integration_in_time(name: str, height: float) ->
 
 
 @pytest.mark.parametrize("name", ["adams-impact", "flores", "jankowski", "kuwabara-kono", "thornton"])
-def test_a_drop_has_its_history_in_a_batch_of_which_some_are_integrated_in_time(name: str) -> None:
+def test_a_drop_has_its_history_in_a_batch_of_which_some_are_followed(name: str) -> None:
     ball, pair = balls(12, 6)
     law = vi.find_contact_law(name).example(pair)
     if name == "flores":
@@ -267,6 +268,7 @@ def test_laws_of_each_impact() -> None:
 
 def test_what_fails_says_why(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Hertz, "elastic_energy", lambda self, delta: 0.5 * self.elastic_force(delta) * delta)
+    monkeypatch.setattr(line_contact, "_MOST_STEPS", 3)
     table = vi.tabulate(problem(laws=(Hertz(stiffness=5e8),), height=[1.0, 2.0]))
     assert table.outcomes == (vi.Outcome.FAILED, vi.Outcome.FAILED)
     assert set(table.failures) == {0, 1}

@@ -122,7 +122,8 @@ def _usage_words(usage: Mapping[str, Any]) -> str:
 
 def _compiler_words(compiler: Mapping[str, Any]) -> str:
     if not compiler["compiled"]:
-        return f"none, the solver runs in plain Python, which takes a hundred times as long: {compiler['reason']}"
+        slower = "some ten times slower, where bodies vibrate one to two hundred times"
+        return f"none: the solver runs in plain Python, {slower}: {compiler['reason']}"
     if not compiler["usable"]:
         return f"{compiler['folder']} is not a folder that can be written to: the solver is compiled again by each command"
     return f"{compiler['entries']} functions, {compiler['size_byte'] / 1e6:.3g} MB, in {compiler['folder']}"

@@ -56,8 +56,8 @@ def check_thin(density: Array, of_sphere: Array, key: str = "") -> None:
     part = float(np.max(density / of_sphere))
     if part > _DENSEST:
         raise InputError(
-            f"the medium of the fall has {100.0 * part:.3g} % of its density, and {100.0 * _DENSEST:g} % are the most: drag alone "
-            "acts on it, and in what is denser buoyancy, the mass of fluid that moves along, and the film over the plate count too; give a "
-            "liquid as contact.liquid",
+            f"the medium of the fall has {100.0 * part:.3g} % of the density of the sphere, and {100.0 * _DENSEST:g} % are the most: only "
+            "its drag is computed, and in what is denser buoyancy, the mass of fluid that moves along, and the film over the plate count "
+            "too; give a liquid as contact.liquid",
             key,
         )

@@ -12,7 +12,6 @@ from vibroimpact.arrays import Bools, Drops, Floats
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.dynamics.phase_plane.motion import PlaneMotion
 from vibroimpact.dynamics.rigid.glide import Glide
-from vibroimpact.dynamics.rigid.stretch import Stretch
 
 COMPRESSION, RESTITUTION, GLIDE, RELEASED, CAPTURED, FAILED, SETTLED, RIDING = range(8)
 """States of a drop in its contact; from RELEASED on the contact is over.
@@ -21,15 +20,15 @@ Only with bodies that vibrate: SETTLED, released below the rest speed and at res
 """
 
 
-class PartOfVisit(Protocol):
-    """A part of the contact of bodies that vibrate, of one drop."""
+class PartOfContact(Protocol):
+    """A part of a contact: of rigid bodies as the core followed it, or of bodies that vibrate."""
 
     @property
     def duration(self) -> Floats:
-        """Return the duration [s] (1,)."""
+        """Return the duration [s] (b,)."""
 
-    def take(self, drops: Bools) -> PartOfVisit:
-        """Return itself."""
+    def take(self, drops: Bools) -> PartOfContact:
+        """Return the part of the drops under a mask; of bodies that vibrate, itself."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +38,7 @@ class Piece:
     drops: Drops
     start: Floats
     """Time since first touch at which it begins [s], (b,)."""
-    motion: Stretch | PlaneMotion | Glide | PartOfVisit
+    motion: PlaneMotion | Glide | PartOfContact
     law: CompliantLaw
     """The law with its memory in this part, of all B drops of the contact."""
 

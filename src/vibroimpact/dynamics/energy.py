@@ -70,7 +70,7 @@ def why_failed(energy: Mapping[str, Any]) -> str:
     if written_off < -WRITE_OFF_LIMIT * float(energy["input_J"]):
         return f"the sphere was set to rest with {-written_off:.3g} J more than it and the bodies below it had left."
     if closure_relative > CLOSURE_LIMIT:
-        return f"the energy ledger does not close: {closure_relative:.2g} of the energy put in is missing (limit {CLOSURE_LIMIT:g})."
+        return f"the energy ledger does not close: it is off by {closure_relative:.2g} of the energy put in (limit {CLOSURE_LIMIT:g})."
     return (
         "the contact could not be integrated to the tolerance; try a larger tolerance (run.tolerance, up to 1e-6), and see what "
         "`vibroimpact check` doubts: a plate that deflects by many times its thickness is beyond the theory."

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.dynamics.phase_plane.contact_solver import contact_solver
+from vibroimpact.dynamics.phase_plane.contact_solver import solver_for
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.run import Run
 
@@ -26,5 +26,5 @@ def first_touch(problem: Problem) -> float:
     >>> round(first_touch(drop), 6)  # sqrt(2 h/g)
     0.451601
     """
-    run, drop = Run(problem, contact_solver(problem.laws[0], problem.tolerance, 1)), np.zeros(1, dtype=np.intp)
+    run, drop = Run(problem, solver_for(problem)), np.zeros(1, dtype=np.intp)
     return float(run.bodies.next_touch(drop, run.flights(drop), run.law(drop))[0][0])

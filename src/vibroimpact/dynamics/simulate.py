@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from vibroimpact.dynamics.collocation import Rule
 from vibroimpact.dynamics.leg import Leg
 from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.dynamics.packed_list import PackedList
 from vibroimpact.dynamics.phase_plane.collocation import PlaneRule
-from vibroimpact.dynamics.phase_plane.contact_solver import contact_solver
+from vibroimpact.dynamics.phase_plane.contact_solver import solver_for
 from vibroimpact.dynamics.problem import StatesProblem
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.run import Run
@@ -25,10 +23,10 @@ _HISTORY = 100.0  # factor between the tolerance of impacts and that of contacts
 def simulate(problem: StatesProblem, progress: Callable[[float], None] | None = None) -> Response:
     """Return the response of a sphere that falls and bounces until a stop rule.
 
-    Flight is exact. A contact is solved by Gauss collocation in the phase plane, speed over indentation, of order 39 at the
-    default tolerance, or where that does not come out by Radau collocation in a time in which the force is smooth. A batch
-    runs as arrays; one drop is a batch of one. Bodies that have modes vibrate: between contacts exactly, and the
-    next touch is the first meeting with the surface as it moves.
+    Flight is exact. The contact of a single drop is followed in steps of order 8, in a variable in which the force is smooth; each event is
+    the end of a step. The contacts of a batch, and oblique ones, are solved together by Gauss collocation in the phase plane, speed over
+    indentation, of order 39 at the default tolerance; those for which that does not come out are followed one by one. Bodies that have
+    modes vibrate: between contacts exactly, and the next touch is the first meeting with the surface as it moves.
 
     Parameters
     ----------
@@ -63,10 +61,10 @@ def simulate(problem: StatesProblem, progress: Callable[[float], None] | None = 
         raise InputError(f"simulate takes a Problem, or a case as vi.load_case(...) reads it, not {problem!r}")
     stated = problem.to_problem()
     with np.errstate(all="ignore"):  # Newton iterates may overflow; results that are not finite are detected and retried
-        run = Run(stated, contact_solver(stated.laws[0], stated.tolerance, math.prod(stated.shape), finer=_HISTORY))
+        run = Run(stated, solver_for(stated, finer=_HISTORY))
         legs: PackedList[Leg] | list[Leg] = []
         if stated.shape == () and not stated.vibrates:
-            legs = PackedList[Leg](Rule, PlaneRule, PlateMotion)
+            legs = PackedList[Leg](PlaneRule, PlateMotion)
         while run.moving.any():
             legs.append(run.advance())
             if progress is not None:

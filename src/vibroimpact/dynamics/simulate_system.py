@@ -222,8 +222,8 @@ def simulate_system(system: System, *, duration: float, progress: Callable[[floa
     linear, start = system.linear()
     if not (linear.rates(start) > 0.0).any() and not (linear.gravity > 0.0).any():
         raise InputError(
-            "no surfaces will ever touch: none approach each other at the start, and gravity, if there is any, lets both bodies of each "
-            "contact fall alike; give a body a velocity, or hold one"
+            "no surfaces will ever touch: none approach each other at the start, and gravity, if there is any, does not bring the bodies "
+            "of a contact together; give a body a velocity, or hold one"
         )
     march = March(
         linear, [ContactDefinition(one.law, one.series, not one.same_spot) for one in system.contacts.values()], start, system.tolerance
@@ -245,7 +245,8 @@ def simulate_system(system: System, *, duration: float, progress: Callable[[floa
     # an independent check of the integration
     energy = _ledger(linear, start, march)
     if not energy["closure_relative"] <= _CLOSURE:
-        raise ComputationError(f"the energy ledger does not close: {energy['closure_relative']:.2g} of the energy that moved is missing")
+        off = f"it is off by {energy['closure_relative']:.2g} of the energy of the motion (limit {_CLOSURE:g})"
+        raise ComputationError(f"the energy ledger does not close: {off}")
     return SystemResponse(system, columns, energy, duration, march)
 
 

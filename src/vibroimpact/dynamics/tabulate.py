@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.phase_plane.contact_solver import contact_solver
+from vibroimpact.dynamics.phase_plane.contact_solver import solver_for
 from vibroimpact.dynamics.problem import Problem, StatesProblem
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.rest import Rest
@@ -70,7 +70,7 @@ def tabulate(problem: StatesProblem, progress: Callable[[float], None] | None = 
 def _table_of(problem: Problem) -> Response:
     """Return the response of a block of drops, with arrays of a batch, and without its history."""
     with np.errstate(all="ignore"):  # Newton iterates may overflow; results that are not finite are detected and retried
-        run = Run(problem, contact_solver(problem.laws[0], problem.tolerance, math.prod(problem.shape)))
+        run = Run(problem, solver_for(problem))
         while run.moving.any():
             run.advance()
         return run.batch()

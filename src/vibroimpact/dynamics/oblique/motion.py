@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
@@ -22,8 +23,16 @@ from vibroimpact.dynamics.shaken.statement import PlateMotion
 
 _PARTS = 8  # of a step for twisting, whose moment grows steeply where a slip ends
 
-OBLIQUE_STEPS = 16
-"""Steps for each phase of a contact: the slip velocity at its end is then within 1e-4 of that at first touch."""
+_STEPS = 16  # of each phase of a contact at the default tolerance: the slip velocity at its end is within 1e-4 of that at first touch
+_DEFAULT_TOLERANCE = 1e-9
+_ORDER = 4  # of the error, in the steps
+_ROUNDING = 1e-9
+
+
+def friction_steps(tolerance: float) -> int:
+    """Return the number of steps of friction in each phase of a contact."""
+    finer: float = (_DEFAULT_TOLERANCE / tolerance) ** (1.0 / _ORDER)
+    return _STEPS * max(math.ceil(finer - _ROUNDING), 1)
 
 
 class ObliqueMotion:

@@ -6,21 +6,26 @@ square. It counts the steps of the grid.
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from vibroimpact.arrays import Drops, Floats
 from vibroimpact.dynamics.contact import Contact, Piece
 from vibroimpact.dynamics.encounter import Encounter
-from vibroimpact.dynamics.leg import Leg
 from vibroimpact.dynamics.phase_plane.collocation import PlaneRule
 from vibroimpact.dynamics.phase_plane.motion import PlaneMotion
-from vibroimpact.dynamics.rigid.timeline import segments_of
+
+if TYPE_CHECKING:
+    from vibroimpact.dynamics.rigid.line_contact import LineMotion
 
 _ROUNDING = 1e-9
 _HALVINGS = 30
 _MORE = 3  # times as many steps where the force is steep
+_TOLERANCE = 1e-10  # of contacts that are followed
+_ASIDE = 1e-6  # of a part: step of finite differences
 _NONE, _STEEP = 1e-6, 1e-2
 """Parts of the largest force: one that is zero, and a slope that is not."""
 
@@ -55,8 +60,8 @@ class NormalMotion:
         return found
 
 
-def normal_motions(leg: Leg, contact: Contact, encounter: Encounter, steps: int) -> list[tuple[Drops, NormalMotion]]:
-    """Return the normal motion of the contacts of a leg in groups that consist of the same parts, with the places of their drops.
+def normal_motions(contact: Contact, encounter: Encounter, steps: int) -> list[tuple[Drops, NormalMotion]]:
+    """Return the normal motion of contacts in groups that consist of the same parts, with the places of their drops.
 
     `steps`: of each segment of a phase; three times as many where the force is steep.
     """
@@ -67,14 +72,13 @@ def normal_motions(leg: Leg, contact: Contact, encounter: Encounter, steps: int)
     kinds, kind_of = member[:, :1], np.zeros(size, dtype=np.intp)
     if not member.all():
         kinds, kind_of = np.unique(member, axis=1, return_inverse=True)
-    found, alone = [], []
+    found = []
     for kind in range(kinds.shape[1]):
         places, parts = np.flatnonzero(kind_of.ravel() == kind), [pieces[number] for number in np.flatnonzero(kinds[:, kind])]
         if all(isinstance(part.motion, PlaneMotion) for part in parts):
             found.append((places, _joined([one for part in parts for one in _of_phase(part, encounter, places, steps)])))
         else:
-            alone.extend(places.tolist())
-    found.extend((np.array([place]), _read(leg.of(int(leg.contact_drops[place])), steps)) for place in alone)
+            found.extend((np.array([place]), _followed(encounter.pick(np.array([place])), steps)) for place in places.tolist())
     return found
 
 
@@ -172,18 +176,48 @@ def _joined(parts: list[NormalMotion]) -> NormalMotion:
     return NormalMotion(steps, **arrays)
 
 
-def _read(leg: Leg | None, steps: int) -> NormalMotion:
-    """Return the normal motion of the contact of one drop, read from its history; in each part the time is a cosine of the parameter."""
-    from scipy.interpolate import CubicSpline  # a drop along the normal does not load it
+def _followed(encounter: Encounter, steps: int) -> NormalMotion:
+    """Return the normal motion of one drop as the core follows it, in parts between which the force is not smooth."""
+    from vibroimpact.dynamics.rigid.line_contact import LineMotion, follow_contacts  # a drop of impulses does not load the compiler
 
-    assert leg is not None
-    parts, angle = [], np.linspace(0.0, np.pi, 6 * steps + 1)
-    for segment in segments_of(leg)[1:]:
-        half = 0.5 * (segment.end - segment.start)
-        time, pace = half * (1.0 - np.cos(angle)), half * np.sin(angle)
-        force = np.maximum(segment.at(time)[2], 0.0)
-        impulse = CubicSpline(angle, force * pace).antiderivative()(angle)
-        step = angle[1]
-        arrays = (time, step * pace, step**2 * half * np.cos(angle), force, step * CubicSpline(angle, force)(angle, 1), impulse)
-        parts.append(NormalMotion(np.ones(len(angle) - 1), *(values[:, None] for values in arrays)))
+    contact, *_ = follow_contacts(encounter, _TOLERANCE)
+    parts = []
+    for piece in contact.pieces:
+        motion, encounter = piece.motion, encounter.under(piece.law)
+        assert isinstance(motion, LineMotion)
+        for begin, end in itertools.pairwise(motion.corners().tolist()):
+            part = _of_part(motion, encounter, begin, end - begin, steps)
+            if _is_steep_at_end(part):
+                part = _of_part(motion, encounter, begin, end - begin, _MORE * steps)
+            parts.append(part)
     return _joined(parts)
+
+
+def _of_part(motion: LineMotion, encounter: Encounter, begin: float, length: float, steps: int) -> NormalMotion:
+    """Return the normal motion in a part of a contact that the core followed; the time is a cosine of the parameter.
+
+    `begin`, `length`: of the part, since the start of the motion [s].
+    """
+    angle = np.linspace(0.0, np.pi, steps + 1)
+    half, step = 0.5 * length, angle[1]
+    time, pace, bend = half * (1.0 - np.cos(angle)), step * half * np.sin(angle), step**2 * half * np.cos(angle)
+    delta, rate, _ = motion.at(begin + time, encounter)
+    law, speed = encounter.law, encounter.approach_speed
+    force = np.add(*law.forces(delta, rate, speed))
+    aside = _ASIDE * length
+    changes = aside * rate, aside * (encounter.gravity - force / encounter.mass)
+    later, earlier = (
+        np.add(*law.forces(np.maximum(delta + sign * changes[0], encounter.floor), rate + sign * changes[1], speed)) for sign in (1.0, -1.0)
+    )
+    slope = (later - earlier) / (2.0 * aside) * pace
+    if law.tension == "cut":
+        slope, force = np.where(force > 0.0, slope, 0.0), np.maximum(force, 0.0)
+    impulse = encounter.mass * (encounter.gravity * time - (rate - rate[0]))  # what stops the bodies is the force
+    arrays = (time, pace, bend, np.maximum(force, 0.0), slope, impulse)
+    return NormalMotion(np.ones(steps), *(values[:, None] for values in arrays))
+
+
+def _is_steep_at_end(part: NormalMotion) -> bool:
+    """Does the force pull at an end of a part, or begin or end there with a slope? The radius of the contact has an infinite one then."""
+    force, slope, most = part.force[[0, -1]], part.force_slope[[0, -1]] * len(part.steps), part.force.max()
+    return bool(((force <= _NONE * most) & (np.abs(slope) > _STEEP * most)).any())

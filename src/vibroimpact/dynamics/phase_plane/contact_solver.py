@@ -3,11 +3,12 @@
 The compression phase is solved up to the largest indentation, then the restitution phase with the law's memory of it, each in segments
 between the indentations where the force is not smooth (`collocation`). Where the force of a law without tension becomes zero in
 restitution, the contact ends, or the sphere moves freely within the indentation until the law pushes again. Contacts that are not solved
-to the tolerance here are integrated in time (`rigid.contact_in_time`).
+to the tolerance here, and those of a single drop, are followed by the core (`rigid.line_contact`).
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Self
@@ -24,16 +25,36 @@ from vibroimpact.dynamics.phase_plane.motion import PlaneMotion
 from vibroimpact.dynamics.phase_plane.peak_force import peak_force
 from vibroimpact.dynamics.phase_plane.phase import PhaseName, PlanePhase, solve_phase
 from vibroimpact.dynamics.phase_plane.zero_force import tensile_points, zero_force_point
+from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.rigid.glide import Glide, glide_until_push
-from vibroimpact.dynamics.rigid.solve_contact import SolvesContact, collocated
+from vibroimpact.dynamics.rigid.solve_contact import SolvesContact, followed
 
 _TIGHTEST = 1e-11  # a smaller tolerance is too close to rounding
-_LEAST_RESTITUTION = 0.1  # below it a drop may be captured, which the integration in time finds
+_LEAST_RESTITUTION = 0.1  # below it a drop may be captured, which the core finds
 _SWEEPS = 10
 _MARGIN = 5e-3  # of the depth: the estimated depth is not certain to pass a breakpoint that is closer
 _ABOUT = 10.0  # tolerances of the depth: a breakpoint passed by less counts as not passed
 _MORE = 8  # nodes, in a second attempt
 _INSIDE = 300.0  # tolerances: bound of the last coefficients of a phase that ends within a segment, where the error is of their order
+
+
+def solver_for(problem: Problem, *, finer: float = 1.0) -> SolvesContact:
+    """Return the solver of contacts of rigid bodies for the drops of a problem.
+
+    A single drop along the normal is followed by the core. Others are solved together, and the oblique ones on a grid that is the same for
+    one drop as for many.
+
+    Parameters
+    ----------
+    problem : Problem
+        The drops.
+    finer : float
+        Factor by which the error is reduced where histories are read within the contacts.
+    """
+    size = math.prod(problem.shape)
+    if size == 1 and problem.oblique is None:
+        return followed(problem.tolerance)
+    return contact_solver(problem.laws[0], problem.tolerance, size, finer=finer)
 
 
 def contact_solver(law: ContactLaw, tolerance: float, size: int, *, finer: float = 1.0) -> SolvesContact:
@@ -42,17 +63,17 @@ def contact_solver(law: ContactLaw, tolerance: float, size: int, *, finer: float
     `tolerance`: relative error of the state at the end of a contact. `finer`: the factor by which it is reduced where histories are read
     within the contacts, since collocation is less accurate between the ends of a segment than at them.
     """
-    in_time = collocated(tolerance, size)
+    one_by_one = followed(tolerance)
     if tolerance < _TIGHTEST or not (isinstance(law, CompliantLaw) and law.contact_end != "pull-off"):
-        return in_time
+        return one_by_one
     tolerance = max(tolerance / finer, _TIGHTEST)
-    number, always_in_time = _nodes_per_segment(law, tolerance), False
+    number, always_one_by_one = _nodes_per_segment(law, tolerance), False
     starts = _StartingValues(size, number, tolerance)
 
     def solve(encounter: Encounter, drops: Drops) -> tuple[Contact, Floats, Floats]:
-        nonlocal always_in_time
-        if always_in_time:
-            return in_time(encounter, drops)
+        nonlocal always_one_by_one
+        if always_one_by_one:
+            return one_by_one(encounter, drops)
         found = _Solutions.of_size(len(drops))
         with np.errstate(all="ignore"):  # values that are not finite fail the checks below
             _solve(encounter, found, np.arange(len(drops)), drops, starts, _MARGIN)
@@ -63,9 +84,9 @@ def contact_solver(law: ContactLaw, tolerance: float, size: int, *, finer: float
         left = np.flatnonzero(~found.good)
         if not left.size:
             return found.contact(encounter.law), found.force, found.when
-        later, force, when = in_time(encounter.pick(left), drops[left])
-        always_in_time = left.size == size
-        if always_in_time:
+        later, force, when = one_by_one(encounter.pick(left), drops[left])
+        always_one_by_one = left.size == size
+        if always_one_by_one:
             return later, force, when
         contact = found.contact(encounter.law)
         contact.put(left, later)

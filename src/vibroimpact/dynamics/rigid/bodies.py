@@ -15,7 +15,7 @@ from vibroimpact.dynamics.contact import FAILED, Contact
 from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.leg import Leg
-from vibroimpact.dynamics.oblique.motion import OBLIQUE_STEPS, ObliqueMotion
+from vibroimpact.dynamics.oblique.motion import ObliqueMotion
 from vibroimpact.dynamics.oblique.normal_motion import normal_motions
 from vibroimpact.dynamics.oblique.state import ObliqueContacts
 from vibroimpact.dynamics.rigid.solve_contact import SolvesContact
@@ -33,11 +33,14 @@ class RigidBodies:
         Number of drops.
     solve_contact : SolvesContact
         Solver of their contacts.
+    friction_steps : int
+        Steps of friction in each phase of a contact.
     """
 
-    def __init__(self, size: int, solve_contact: SolvesContact) -> None:
+    def __init__(self, size: int, solve_contact: SolvesContact, friction_steps: int) -> None:
         self.columns = tuple(IMPACT_COLUMNS)
         self.solve_contact = solve_contact
+        self.friction_steps = friction_steps
         self.left = np.full(size, np.nan)
         self.lying: list[RestMotion | None] = [None] * size
 
@@ -66,7 +69,7 @@ class RigidBodies:
         """Advance drops along the plate, driven by the normal motion of their contacts, which does not feel friction."""
         assert leg.contact is not None
         assert leg.encounter is not None
-        return oblique.collide(leg.contact_drops, normal_motions(leg, leg.contact, leg.encounter, OBLIQUE_STEPS), row)
+        return oblique.collide(leg.contact_drops, normal_motions(leg.contact, leg.encounter, self.friction_steps), row)
 
     def falls_back(self, contact: Contact, law: CompliantLaw, gravity: Floats) -> Bools:
         """Return which drops fall back into the indentation before they have risen to the touch level of the law."""

@@ -6,6 +6,7 @@ A segment counts time from its own start: a contact may be a billion times short
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -13,14 +14,30 @@ from vibroimpact.arrays import Floats
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.flight import Flight
-from vibroimpact.dynamics.phase_plane.motion import PlaneMotion
 from vibroimpact.dynamics.rigid.glide import Glide
-from vibroimpact.dynamics.rigid.stretch import Stretch
 from vibroimpact.dynamics.shaken.ride import RideSegment
 
 Motion = tuple[Floats, Floats, Floats, Floats, Floats, Floats]
 """Gap [m], upward velocity [m/s], contact force [N], stored energy [J], and energy lost in damping and in
 plastic deformation since the start [J]."""
+
+
+class MotionInContact(Protocol):
+    """The motion of one drop in a part of its contact."""
+
+    @property
+    def duration(self) -> Floats:
+        """Return the duration [s] (1,)."""
+
+    @property
+    def begins_at(self) -> float:
+        """Return the indentation at its start [m]."""
+
+    def grid(self) -> Floats:
+        """Return times since the start at which it is well resolved [s]."""
+
+    def at(self, time: Floats, encounter: Encounter) -> tuple[Floats, Floats, Floats]:
+        """Return indentation [m], its rate [m/s] and the energy dissipated since the start [J] at times since then [s]."""
 
 
 @dataclass(frozen=True)
@@ -44,11 +61,11 @@ class FlightSegment:
 
 @dataclass(frozen=True)
 class ContactSegment:
-    """A part of the contact of one drop that was solved as a whole, in time or in the phase plane, and its `Encounter`."""
+    """Compression or restitution of one drop, or a part of it, and its `Encounter`."""
 
     start: float
     end: float
-    motion: Stretch | PlaneMotion
+    motion: MotionInContact
     encounter: Encounter
 
     @property

@@ -1,4 +1,4 @@
-"""The interface of contact solvers of rigid bodies, and the one that integrates in time."""
+"""The interface of contact solvers of rigid bodies, and the one that follows each drop on its own."""
 
 from __future__ import annotations
 
@@ -7,9 +7,6 @@ from typing import Protocol
 from vibroimpact.arrays import Drops, Floats
 from vibroimpact.dynamics.contact import Contact
 from vibroimpact.dynamics.encounter import Encounter
-from vibroimpact.dynamics.rigid.contact_in_time import integrate_contact
-from vibroimpact.dynamics.rigid.peak_force import force_peak
-from vibroimpact.dynamics.rigid.starting_values import WarmStarts
 
 
 class SolvesContact(Protocol):
@@ -20,12 +17,12 @@ class SolvesContact(Protocol):
         ...
 
 
-def collocated(tolerance: float, size: int) -> SolvesContact:
-    """Return the solver that integrates the contacts of a run of `size` drops in time, started from their earlier contacts."""
-    starts = WarmStarts(size)
+def followed(tolerance: float) -> SolvesContact:
+    """Return the solver that follows each drop on its own, whatever its law."""
 
     def solve(encounter: Encounter, drops: Drops) -> tuple[Contact, Floats, Floats]:
-        contact = integrate_contact(encounter, tolerance, starts, drops)
-        return contact, *force_peak(contact, encounter)
+        from vibroimpact.dynamics.rigid.line_contact import follow_contacts  # a law without a force does not load the compiler
+
+        return follow_contacts(encounter, tolerance)
 
     return solve

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import overload
+from typing import cast, overload
 
 import numpy as np
 
 from vibroimpact.arrays import Floats, Indices
 from vibroimpact.dynamics.leg import Leg
-from vibroimpact.dynamics.phase_plane.motion import PlaneMotion
 from vibroimpact.dynamics.rigid.glide import Glide
-from vibroimpact.dynamics.rigid.segments import ContactSegment, FlightSegment, GlideSegment, RestSegment, Segment
-from vibroimpact.dynamics.rigid.stretch import Stretch
+from vibroimpact.dynamics.rigid.segments import ContactSegment, FlightSegment, GlideSegment, MotionInContact, RestSegment, Segment
 from vibroimpact.dynamics.shaken.ride import RideSegment
 
 
@@ -112,11 +110,10 @@ def segments_of(leg: Leg) -> list[Segment]:
     for piece in leg.contact.pieces:
         begin = touch + float(piece.start[0])
         finish = begin + float(piece.motion.duration[0])
-        if isinstance(piece.motion, (Stretch, PlaneMotion)):
-            segments.append(ContactSegment(begin, finish, piece.motion, leg.encounter.under(piece.law)))
-        else:
-            assert isinstance(piece.motion, Glide)
+        if isinstance(piece.motion, Glide):
             segments.append(GlideSegment(begin, finish, piece.motion, piece.law))
+        else:
+            segments.append(ContactSegment(begin, finish, cast(MotionInContact, piece.motion), leg.encounter.under(piece.law)))
     return segments
 
 

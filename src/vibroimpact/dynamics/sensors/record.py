@@ -101,8 +101,11 @@ def _check(problem: Problem, sensors: Sequence[Sensor], end: float) -> None:
         rate = sensor.rate if meter is None else finer_rate(sensor.rate, meter.resonance)
         count = sample_count(end, rate) * (len(sensors) if rate == sensor.rate else 1)
         if count > MOST_SAMPLES:
-            why = "" if rate == sensor.rate else ", at which the clipping of its range is followed,"
-            raise InputError(f"{count:.3g} samples{why} are more than {MOST_SAMPLES:.0e}; ask for a lower rate", "sensors")
+            whose, remedy = "of all sensors", "ask for a lower rate or a shorter run"
+            if rate != sensor.rate:
+                whose = f'by which the clipping of the sensor "{sensor.name}" is followed'
+                remedy = "ask for a shorter run or a lower rate, or leave out its range"
+            raise InputError(f"{count:.3g} samples, {whose}, are more than {MOST_SAMPLES:.0e}; {remedy}", "sensors")
 
 
 def _check_place(modes: ModalBasis | None, sensor: Sensor) -> None:

@@ -62,7 +62,7 @@ class PlateMotion:
                 *(np.atleast_1d(np.asarray(part, dtype=float)) for part in (self.amplitude, self.frequency, self.phase))
             )
         except ValueError:
-            raise InputError("amplitude, frequency and phase of the plate's motion must agree in number, one of each harmonic") from None
+            raise InputError("amplitude, frequency and phase of the plate's motion must agree in number, one for each harmonic") from None
         for name, value in zip(("amplitude", "frequency", "phase"), found, strict=True):
             object.__setattr__(self, name, value)
         direction: Any = np.asarray(self.direction)

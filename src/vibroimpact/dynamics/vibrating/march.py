@@ -120,8 +120,8 @@ class March:
             stretches += 1
             if stretches > _MOST_STRETCHES:
                 raise ComputationError(
-                    f"after {_MOST_STRETCHES} stretches of contact the system is at {self.time:g} s: contacts follow each other ever "
-                    "faster, as where a body comes to rest; ask for a shorter duration"
+                    f"after {_MOST_STRETCHES} stretches of motion the system is at {self.time:g} s: contacts are many, as where they "
+                    "follow each other ever faster because a body comes to rest, or last long; ask for a shorter duration"
                 )
             self.step(end - self.time)
             if progress is not None:
@@ -235,7 +235,7 @@ class March:
         span, speed = min(contact.span for contact in pushing), max(contact.speed for contact in self.active.values())
         energy = max(contact.energy for contact in pushing)
         if self.next_length < 1e-12 * span:
-            raise NotIntegrable(f"the contact at {self.time:g} s can not be integrated to the tolerance")
+            raise NotIntegrable(f"the contact at {self.time:g} s can't be integrated to the tolerance")
         time_map: Map = "touch" if any(contact.fresh for contact in pushing) else "inside"
         stretch = self.stretch_problem(pushing, time_map, min(self.next_length, longest)).solve()
         event = first_event(stretch, speed, span) if stretch.solved else None

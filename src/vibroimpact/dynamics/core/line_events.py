@@ -1,0 +1,182 @@
+"""Where a step of the contact of two rigid bodies has to end: at an indentation, where it turns, where it no longer pushes, and so on."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.compiled import compiled, force_at
+from vibroimpact.dynamics.core.line_records import Line, LineState
+from vibroimpact.dynamics.core.line_step import FREE, advance, energies_of, force_of, force_trend
+
+NO_END, AT_LEVEL, AT_TURN, AT_NO_FORCE, AT_CAPTURE = range(5)
+"""Ends of a step: none; at an indentation; at a rate of zero; at a force of zero; where the energy no longer takes the bodies apart."""
+
+_MOST_ITERATIONS = 100
+_NEAR = 1e-15  # of the step
+_PROBES = np.array([0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 0.95, 0.99, 0.999, 0.9999])
+_SAMPLES = 32
+_NEAR_PEAK = 1e-8  # of the span
+_FIRST_SAG = 1e-9  # m
+_MOST_DOUBLINGS = 200
+_MOST_HALVINGS = 200
+
+
+@compiled(lambda t: t.real(t.of(Line), t.integer, t.real, t.of(LineState)))
+def distance_to(line: Line, end: int, level: float, state: LineState) -> float:
+    """Return how far a state is from an end [m], [m/s], [N] or [J]; `level`: an indentation [m], or the least energy to part [J]."""
+    if end == AT_LEVEL:
+        return state.delta - level
+    if end == AT_TURN:
+        return state.rate
+    if end == AT_NO_FORCE:
+        return force_of(line, state)
+    return energy_to_part(line, state) - level
+
+
+@compiled(lambda t: t.real(t.of(Line), t.of(LineState)))
+def energy_to_part(line: Line, state: LineState) -> float:
+    """Return the energy above that with which the bodies would part without speed, if nothing more were lost [J]."""
+    weight = line.mass * line.gravity
+    elastic, plastic = energies_of(line, state.delta)
+    barrier, _ = energies_of(line, line.release)
+    return 0.5 * line.mass * state.rate * state.rate + elastic + plastic - barrier - weight * (state.delta - line.release)
+
+
+@compiled(lambda t: t.real(t.of(Line), t.integer, t.of(LineState), t.real, t.real, t.integer, t.real, t.matrix))
+def length_to(line: Line, variable: int, begun: LineState, low: float, high: float, end: int, level: float, stages: Floats) -> float:
+    """Return the length of a step to an end between two lengths, by the secant within a bracket."""
+    low_value = distance_to(line, end, level, advance(line, variable, begun, low, stages).state)
+    high_value = distance_to(line, end, level, advance(line, variable, begun, high, stages).state)
+    if low_value == 0.0:
+        return low
+    if (low_value > 0.0) == (high_value > 0.0):
+        return high
+    kept = 0
+    for _ in range(_MOST_ITERATIONS):
+        middle = low + (high - low) * low_value / (low_value - high_value)
+        if not abs(high - low) > _NEAR * abs(high) or middle in (low, high):
+            break
+        value = distance_to(line, end, level, advance(line, variable, begun, middle, stages).state)
+        if value == 0.0:
+            return middle
+        if (value > 0.0) == (high_value > 0.0):
+            high = middle
+            high_value = value
+            low_value *= 0.5 if kept == 1 else 1.0  # or one end would stay where it is
+            kept = 1
+        else:
+            low = middle
+            low_value = value
+            high_value *= 0.5 if kept == -1 else 1.0
+            kept = -1
+    return low if abs(low_value) < abs(high_value) else high
+
+
+@compiled(lambda t: t.real(t.of(Line), t.integer, t.of(LineState), t.real, t.real, t.matrix))
+def length_to_tension(line: Line, variable: int, begun: LineState, length: float, slack: float, stages: Floats) -> float:
+    """Return the length of a step to where the force becomes tensile by more than `slack` [N]; infinite where it does not."""
+    before = 0.0
+    for probe in range(len(_PROBES) + 1):
+        share = _PROBES[probe] if probe < len(_PROBES) else 1.0
+        if force_of(line, advance(line, variable, begun, share * length, stages).state) < -slack:
+            return length_to(line, variable, begun, before * length, share * length, AT_NO_FORCE, 0.0, stages)
+        before = share
+    return np.inf
+
+
+@compiled(lambda t: t.tuple(t.real, t.boolean, t.boolean)(t.of(Line), t.of(LineState)))
+def end_of_glide(line: Line, begun: LineState) -> tuple[float, bool, bool]:
+    """Return how long bodies move freely within the indentation [s], whether the law then pushes, and whether they stay within.
+
+    They stay where gravity turns them before they separate.
+    """
+    above = begun.delta - line.release
+    square = begun.rate * begun.rate - 2.0 * line.gravity * above
+    stays = square < 0.0
+    length = -begun.rate / line.gravity if stays else 2.0 * above / (math.sqrt(square) - begun.rate)
+    no_room = np.empty((4, 0))
+    before = 0.0
+    for sample in range(1, _SAMPLES):  # at separation itself the force is zero to rounding
+        share = sample / _SAMPLES
+        time = length * share * (2.0 - share)  # dense near the end, where the force is small
+        if force_of(line, advance(line, FREE, begun, time, no_room).state) > 0.0:
+            if sample == 1:
+                return time, True, False
+            return length_to(line, FREE, begun, before, time, AT_NO_FORCE, 0.0, no_room), True, False
+        before = time
+    return length, False, stays
+
+
+@compiled(lambda t: t.of(LineState)(t.of(Line), t.of(LineState), t.real, t.boolean))
+def after_glide(line: Line, begun: LineState, length: float, within: bool) -> LineState:
+    """Return the state after free motion for a time [s], `within` the indentation or to release; the energy stored meanwhile is lost."""
+    after = advance(line, FREE, begun, length, np.empty((4, 0))).state
+    delta = after.delta if within else line.release
+    lost = energies_of(line, begun.delta)[0] - energies_of(line, delta)[0]
+    return LineState(after.time, delta, after.rate, after.lost + lost)
+
+
+@compiled(lambda t: t.real(t.of(Line), t.real))
+def static_force_of(line: Line, delta: float) -> float:
+    """Return the static force of the law [N]."""
+    static, _ = force_at(line.force)(delta, 0.0, line.speed, line.coefficients)
+    return float(static)
+
+
+@compiled(lambda t: t.real(t.of(Line), t.real))
+def sag_of(line: Line, weight: float) -> float:
+    """Return the indentation at which the static force equals a weight [m]."""
+    low = line.release
+    high = low + _FIRST_SAG
+    for _ in range(_MOST_DOUBLINGS):
+        if not static_force_of(line, high) < weight:
+            break
+        low = high
+        high = line.release + 4.0 * (high - line.release)
+    for _ in range(_MOST_HALVINGS):
+        middle = 0.5 * (low + high)
+        if not low < middle < high:
+            break
+        if static_force_of(line, middle) < weight:
+            low = middle
+        else:
+            high = middle
+    return high
+
+
+@compiled(lambda t: t.tuple(t.real, t.real)(t.of(Line), t.integer, t.of(LineState), t.real, t.real, t.real, t.matrix))
+def peak_within(
+    line: Line, variable: int, begun: LineState, length: float, rising: float, falling: float, stages: Floats
+) -> tuple[float, float]:
+    """Return the largest force in a step [N], and its time since touch [s].
+
+    `rising`, `falling`: rates of change of the force at its start, positive, and at its end, negative [N/s].
+    """
+    low = 0.0
+    high = length
+    kept = 0
+    highest = 0.0
+    when = begun.time
+    for _ in range(_MOST_ITERATIONS):
+        middle = low + (high - low) * rising / (rising - falling)
+        step = advance(line, variable, begun, middle, stages)
+        moved = abs(step.state.time - when)
+        highest = step.force
+        when = step.state.time
+        if moved <= _NEAR_PEAK * line.span or middle in (low, high):
+            break
+        trend = force_trend(line, step.state, step.force)
+        if trend > 0.0:
+            low = middle
+            rising = trend
+            falling *= 0.5 if kept == 1 else 1.0
+            kept = 1
+        else:
+            high = middle
+            falling = trend
+            rising *= 0.5 if kept == -1 else 1.0
+            kept = -1
+    return highest, when

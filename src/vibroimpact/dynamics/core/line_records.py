@@ -1,0 +1,107 @@
+"""What the core computes the contact of two rigid bodies with.
+
+The annotations name the types of compiled code, in `vibroimpact.compiler.types`.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple, TypeAlias
+
+from vibroimpact.arrays import Bools, Integers
+from vibroimpact.dynamics.core.records import Integer, Matrix, Real, Vector
+
+Address: TypeAlias = int
+Booleans: TypeAlias = Bools
+
+
+class Line(NamedTuple):
+    """Two rigid bodies in contact, with the indentation as their only coordinate.
+
+    force, energies: addresses of the functions of the law. coefficients (K,): of the law, with its memory. speed: at touch [m/s]. release:
+    indentation at release [m]. root: power of the indentation in whose root the force is smooth, 2 or 4. mass: effective [kg]. gravity
+    [m/s^2]. span: approximate duration of a contact [s]. Errors allowed in a step: root_scale of the root of the indentation, speed_scale
+    [m/s], time_scale [s], energy_scale [J].
+    """
+
+    force: Address
+    energies: Address
+    coefficients: Vector
+    speed: Real
+    release: Real
+    root: Integer
+    mass: Real
+    gravity: Real
+    span: Real
+    root_scale: Real
+    speed_scale: Real
+    time_scale: Real
+    energy_scale: Real
+
+
+class LineState(NamedTuple):
+    """State of the contact of two rigid bodies: time since touch [s], indentation delta [m], its rate [m/s], energy lost in damping [J]."""
+
+    time: Real
+    delta: Real
+    rate: Real
+    lost: Real
+
+
+class Advance(NamedTuple):
+    """A step of the contact of two rigid bodies: the state after it, its error over the tolerance, its least and its last force [N]."""
+
+    state: LineState
+    error: Real
+    least_force: Real
+    force: Real
+
+
+class LineManner(NamedTuple):
+    """Two rigid bodies as they touch, and what stays the same through their contact.
+
+    root: power of the indentation in whose root the force is smooth. tension, contact_end: numbers of the law's, of `events`. mass:
+    effective [kg]. gravity [m/s^2]. depth: largest indentation without damping [m]. speed_scale: of the speed in contact [m/s]. tolerance:
+    relative error allowed in a step. most_steps: how many steps are tried.
+    """
+
+    root: Integer
+    tension: Integer
+    contact_end: Integer
+    mass: Real
+    gravity: Real
+    depth: Real
+    speed_scale: Real
+    tolerance: Real
+    most_steps: Integer
+
+
+class LineSteps(NamedTuple):
+    """Room for P steps of the contact of two rigid bodies.
+
+    variable (P,): of `line_step`. after (P,): has the deepest point been passed, so that the law has its memory of it? begun (P, 4): time
+    [s], indentation [m], its rate [m/s] and energy lost [J] at the start. length (P,): in the variable. written (1,): number of steps;
+    those for which there is no room are counted.
+    """
+
+    variable: Integers
+    after: Booleans
+    begun: Matrix
+    length: Vector
+    written: Integers
+
+
+class LineContact(NamedTuple):
+    """The contact of two rigid bodies: its outcome, of `core.line`, and how it ended.
+
+    end: the state at its end. deepest: largest indentation [m]. time_of_deepest [s]. peak_force [N], time_of_peak_force [s].
+    plastic: plastic work [J]. stored: energy left in the contact [J]. All times are since touch.
+    """
+
+    outcome: Integer
+    end: LineState
+    deepest: Real
+    time_of_deepest: Real
+    peak_force: Real
+    time_of_peak_force: Real
+    plastic: Real
+    stored: Real

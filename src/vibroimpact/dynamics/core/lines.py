@@ -1,0 +1,154 @@
+"""Contacts of many pairs of rigid bodies, one after the other, and the motion within one of them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vibroimpact.arrays import Floats, Integers
+from vibroimpact.compiled import compiled
+from vibroimpact.dynamics.core.law import law_after, law_at_touch
+from vibroimpact.dynamics.core.line import follow_line, line_under
+from vibroimpact.dynamics.core.line_records import Line, LineManner, LineState, LineSteps
+from vibroimpact.dynamics.core.line_step import FREE, IMPLICIT, advance, energies_of
+from vibroimpact.dynamics.core.records import Law
+
+_MOST_ITERATIONS = 60
+_NEAR = 4e-16  # of the time since touch
+
+
+@compiled(lambda t: t.of(LineManner)(t.of(LineManner), t.vector))
+def with_bodies(manner: LineManner, touch: Floats) -> LineManner:
+    """Return what stays the same through the contact of two bodies; `touch` (5,): as in `follow_lines`."""
+    return LineManner(
+        manner.root,
+        manner.tension,
+        manner.contact_end,
+        touch[0],
+        touch[1],
+        touch[3],
+        touch[4],
+        manner.tolerance,
+        manner.most_steps,
+    )
+
+
+@compiled(lambda t: t.void(t.of(LineManner), t.integers, t.matrix, t.matrix, t.integers, t.matrix))
+def follow_lines(manner: LineManner, addresses: Integers, coefficients: Floats, touches: Floats, outcomes: Integers, ends: Floats) -> None:
+    """Follow the contacts of B pairs of rigid bodies, each from touch on.
+
+    Parameters
+    ----------
+    manner : LineManner
+        What all have in common; the bodies of each pair take the place of those in it.
+    addresses : array of int, shape (4,)
+        The functions of their law.
+    coefficients : array, shape (B, K)
+        Its coefficients for each pair.
+    touches : array, shape (5, B)
+        Effective mass [kg], gravity [m/s^2], approach speed [m/s], depth [m] and speed scale [m/s] of each pair.
+    outcomes : array of int, shape (B,)
+        Room for the outcomes.
+    ends : array, shape (10, B)
+        Room for duration [s], indentation [m] and its rate at the end [m/s], energy lost in damping [J], deepest indentation [m] and its
+        time [s], largest force [N] and its time [s], plastic work and stored energy [J].
+    """
+    steps = LineSteps(np.zeros(0, np.int64), np.zeros(0, np.bool_), np.zeros((0, 4)), np.zeros(0), np.zeros(1, np.int64))
+    for pair in range(len(outcomes)):
+        law = law_at_touch(addresses, coefficients[pair], np.zeros(7), touches[2, pair])
+        contact = follow_line(law, with_bodies(manner, touches[:, pair].copy()), steps)
+        outcomes[pair] = contact.outcome
+        ends[0, pair] = contact.end.time
+        ends[1, pair] = contact.end.delta
+        ends[2, pair] = contact.end.rate
+        ends[3, pair] = contact.end.lost
+        ends[4, pair] = contact.deepest
+        ends[5, pair] = contact.time_of_deepest
+        ends[6, pair] = contact.peak_force
+        ends[7, pair] = contact.time_of_peak_force
+        ends[8, pair] = contact.plastic
+        ends[9, pair] = contact.stored
+
+
+@compiled(lambda t: t.void(t.of(Law), t.of(LineManner), t.real, t.of(LineSteps), t.vector, t.matrix))
+def read_line(law: Law, manner: LineManner, deepest: float, steps: LineSteps, times: Floats, motion: Floats) -> None:
+    """Read the motion of a contact at rising times, each as the end of a shorter step.
+
+    Parameters
+    ----------
+    law, manner
+        As `follow_line` took them.
+    deepest : float
+        The largest indentation [m].
+    steps : LineSteps
+        What it has written.
+    times : array, shape (T,)
+        Times since touch [s], rising.
+    motion : array, shape (3, T)
+        Room for indentation [m], its rate [m/s], and energy lost since touch [J].
+    """
+    coming = line_under(law, manner)
+    leaving = line_under(law_after(law, deepest) if deepest > law.memory_level else law, manner)
+    stages = np.empty((4, 13))
+    number = 0
+    for point in range(len(times)):
+        time = times[point]
+        while number + 1 < steps.written[0] and steps.begun[number + 1, 0] <= time:
+            number += 1
+        line = leaving if steps.after[number] else coming
+        begun = begun_of(steps, number)
+        state = state_at(line, steps.variable[number], begun, steps.length[number], time, stages)
+        motion[0, point] = max(state.delta, line.release)
+        motion[1, point] = state.rate
+        motion[2, point] = state.lost
+        if steps.variable[number] == FREE:
+            motion[2, point] += energies_of(line, begun.delta)[0] - energies_of(line, state.delta)[0]
+
+
+@compiled(lambda t: t.void(t.of(Law), t.of(LineManner), t.real, t.of(LineSteps), t.matrix))
+def time_line(law: Law, manner: LineManner, deepest: float, steps: LineSteps, times: Floats) -> None:
+    """Write the times at which a contact is well resolved [s] (steps, n): at the start of n parts of each step."""
+    coming = line_under(law, manner)
+    leaving = line_under(law_after(law, deepest) if deepest > law.memory_level else law, manner)
+    stages = np.empty((4, 13))
+    parts = times.shape[1]
+    for number in range(times.shape[0]):
+        line = leaving if steps.after[number] else coming
+        for part in range(parts):
+            length = steps.length[number] * part / parts
+            times[number, part] = advance(line, steps.variable[number], begun_of(steps, number), length, stages).state.time
+
+
+@compiled(lambda t: t.of(LineState)(t.of(LineSteps), t.integer))
+def begun_of(steps: LineSteps, number: int) -> LineState:
+    """Return the state at the start of a step."""
+    begun = steps.begun[number]
+    return LineState(begun[0], begun[1], begun[2], begun[3])
+
+
+@compiled(lambda t: t.of(LineState)(t.of(Line), t.integer, t.of(LineState), t.real, t.real, t.matrix))
+def state_at(line: Line, variable: int, begun: LineState, length: float, time: float, stages: Floats) -> LineState:
+    """Return the state at a time within a step [s], by Newton's method within a bracket; `length`: of the step."""
+    if variable in (FREE, IMPLICIT):
+        return advance(line, variable, begun, time - begun.time, stages).state
+    if time <= begun.time:
+        return begun
+    low = 0.0
+    high = length
+    part = length
+    state = begun
+    for _ in range(_MOST_ITERATIONS):
+        state = advance(line, variable, begun, part, stages).state
+        excess = state.time - time
+        if abs(excess) <= _NEAR * abs(time):
+            break
+        if excess > 0.0:
+            high = part
+        else:
+            low = part
+        nearer = part - excess / stages[2, 12]
+        if not (nearer - low) * (nearer - high) < 0.0:
+            nearer = 0.5 * (low + high)
+        if nearer == part:
+            break
+        part = nearer
+    return state

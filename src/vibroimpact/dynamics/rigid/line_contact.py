@@ -1,0 +1,216 @@
+"""Contacts of rigid bodies, followed by the core one drop after the other, and the motion within them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+
+from vibroimpact.arrays import Bools, Floats
+from vibroimpact.compiled import law_addresses, law_coefficients
+from vibroimpact.contact.law import CompliantLaw
+from vibroimpact.dynamics.contact import CAPTURED, FAILED, RELEASED, Contact, Piece
+from vibroimpact.dynamics.core import line_records as records
+from vibroimpact.dynamics.core.law import law_at_touch
+from vibroimpact.dynamics.core.line import follow_line
+from vibroimpact.dynamics.core.line_step import BY_ROOT, FREE
+from vibroimpact.dynamics.core.lines import follow_lines, read_line, time_line
+from vibroimpact.dynamics.core.records import Law
+from vibroimpact.dynamics.encounter import Encounter
+
+_OUTCOMES = np.array([RELEASED, CAPTURED, FAILED], dtype=np.int8)
+_TENSIONS = ("none", "cut", "kept")
+_ENDS = ("zero-indentation", "zero-force", "pull-off")
+_MOST_STEPS = 1_000_000  # the stiffest sensible contacts need thousands
+_ROOM = 200  # steps of a contact, at first
+_PARTS = 4  # of a step in a history
+_NO_COMPLIANCE = np.zeros(7)
+_OF_STEP = 0.01  # of the tolerance: error of a step, of which a contact has some dozens
+_LEAST_ERROR = 1e-14
+_ON_CORNER = 1e-9  # of a duration
+
+
+def follow_contacts(encounter: Encounter, tolerance: float) -> tuple[Contact, Floats, Floats]:
+    """Return the contacts of B drops, their largest forces [N], and the times of these since first touch [s].
+
+    Parameters
+    ----------
+    encounter : Encounter
+        The impact: law, mass, gravity, approach speed.
+    tolerance : float
+        Relative error allowed.
+    """
+    law, size = encounter.law, len(encounter.mass)
+    touches = np.array([encounter.mass, encounter.gravity, encounter.approach_speed, encounter.depth, encounter.speed_scale])
+    outcomes, ends = np.zeros(size, dtype=np.int64), np.zeros((10, size))
+    laws = [_law_of_drop(law, drop) for drop in range(size)]  # kept: compiled code may call them
+    coefficients = np.array([law_coefficients(one) for one in laws])
+    follow_lines(_manner(encounter, 0, tolerance), law_addresses(type(law)), coefficients, touches, outcomes, ends)
+    duration, final_delta, final_rate, dissipated, deepest, time_of_deepest, peak_force, time_of_peak, plastic, stored = ends
+    after = law.after_compression(deepest)
+    pieces = [Piece(np.arange(size), np.zeros(size), LineMotion(encounter, tolerance, "compression", time_of_deepest), law)]
+    left = np.flatnonzero(duration > time_of_deepest)
+    if left.size:
+        spans = (duration - time_of_deepest)[left]
+        pieces.append(Piece(left, time_of_deepest[left], LineMotion(encounter.take(left), tolerance, "restitution", spans), after))
+    contact = Contact(
+        pieces=pieces,
+        outcome=_OUTCOMES[outcomes],
+        duration=duration,
+        final_delta=final_delta,
+        final_rate=final_rate,
+        max_delta=deepest,
+        time_of_max_delta=time_of_deepest,
+        dissipated=dissipated,
+        plastic=plastic,
+        stored=stored,
+        law=after,
+    )
+    return contact, peak_force, time_of_peak
+
+
+@dataclass(frozen=True)
+class LineMotion:
+    """The motion of b contacts in compression or restitution, which is computed again where it is read.
+
+    Parameters
+    ----------
+    encounter : Encounter
+        The impact, with the law as it is at touch.
+    tolerance : float
+        Relative error allowed.
+    phase : {"compression", "restitution"}
+        Which part of the contact this is.
+    duration : array, shape (b,)
+        Of this part [s].
+    """
+
+    encounter: Encounter
+    tolerance: float
+    phase: Literal["compression", "restitution"]
+    duration: Floats
+
+    def take(self, drops: Bools) -> LineMotion:
+        """Return the motion of the drops under a mask."""
+        if drops.all():
+            return self
+        return LineMotion(self.encounter.pick(np.flatnonzero(drops)), self.tolerance, self.phase, self.duration[drops])
+
+    @cached_property
+    def recorded(self) -> RecordedContact:
+        """The contact of one drop with its steps."""
+        return RecordedContact.of(self.encounter, self.tolerance)
+
+    @property
+    def begins_at(self) -> float:
+        """Return the indentation at its start, of one drop [m]."""
+        return self.recorded.law.touch if self.phase == "compression" else self.recorded.contact.deepest
+
+    @property
+    def begins(self) -> float:
+        """Time since touch at which it begins, of one drop [s]."""
+        return 0.0 if self.phase == "compression" else self.recorded.contact.time_of_deepest
+
+    def grid(self) -> Floats:
+        """Return times since the start at which the motion of one drop is well resolved [s]."""
+        times = self.recorded.times(self.phase == "restitution") - self.begins
+        return np.append(times[times < self.duration[0]], self.duration[0])
+
+    def corners(self) -> Floats:
+        """Return times since the start, and the end, between which the force of one drop is smooth [s]."""
+        within = self.recorded.corners() - self.begins
+        within = within[(within > _ON_CORNER * self.duration[0]) & (within < (1.0 - _ON_CORNER) * self.duration[0])]
+        return np.concatenate([[0.0], within, self.duration])
+
+    def at(self, time: Floats, encounter: Encounter) -> tuple[Floats, Floats, Floats]:
+        """Return indentation [m], its rate [m/s] and the energy dissipated since the start [J] of one drop at times since then [s]."""
+        delta, rate, lost = self.recorded.motion(self.begins + np.append(time, 0.0))
+        return delta[:-1], rate[:-1], lost[:-1] - lost[-1]
+
+
+@dataclass(frozen=True)
+class RecordedContact:
+    """The contact of one drop with its steps.
+
+    Parameters
+    ----------
+    law, manner : Law, LineManner
+        As the core takes them.
+    steps : LineSteps
+        Its steps.
+    contact : LineContact
+        How it ended.
+    held : CompliantLaw
+        The law, which compiled code may call.
+    """
+
+    law: Law
+    manner: records.LineManner
+    steps: records.LineSteps
+    contact: records.LineContact
+    held: CompliantLaw
+
+    @classmethod
+    def of(cls, encounter: Encounter, tolerance: float) -> RecordedContact:
+        """Follow the contact of one drop again, and record its steps."""
+        held = _law_of_drop(encounter.law, 0)
+        law = law_at_touch(law_addresses(type(held)), law_coefficients(held), _NO_COMPLIANCE, float(encounter.approach_speed[0]))
+        manner, room = _manner(encounter, 0, tolerance), _ROOM
+        while True:
+            steps = records.LineSteps(
+                variable=np.zeros(room, dtype=np.int64),
+                after=np.zeros(room, dtype=bool),
+                begun=np.zeros((room, 4)),
+                length=np.zeros(room),
+                written=np.zeros(1, dtype=np.int64),
+            )
+            contact = follow_line(law, manner, steps)
+            room = int(steps.written[0])
+            if room <= len(steps.length):
+                return cls(law, manner, steps, contact, held)
+
+    def motion(self, times: Floats) -> Floats:
+        """Return indentation [m], its rate [m/s] and energy dissipated [J] (3, T) at times since touch [s]."""
+        order = np.argsort(times, kind="stable")
+        motion = np.empty((3, len(times)))
+        read_line(self.law, self.manner, self.contact.deepest, self.steps, np.ascontiguousarray(times[order]), motion)
+        found = np.empty_like(motion)
+        found[:, order] = motion
+        return found
+
+    def times(self, after: bool) -> Floats:
+        """Return the times at which the contact is well resolved before, or after, its deepest point [s]."""
+        number = int(self.steps.written[0])
+        times = np.empty((number, _PARTS))
+        time_line(self.law, self.manner, self.contact.deepest, self.steps, times)
+        return np.asarray(times[self.steps.after[:number] == after].ravel())
+
+    def corners(self) -> Floats:
+        """Return the times at which the force is not smooth [s], except for the deepest point."""
+        number = int(self.steps.written[0])
+        starts, variables = self.steps.begun[1:number, 0], self.steps.variable[:number]
+        return np.asarray(starts[(variables[:-1] == BY_ROOT) | (variables[:-1] == FREE) | (variables[1:] == FREE)])
+
+
+def _manner(encounter: Encounter, drop: int, tolerance: float) -> records.LineManner:
+    """Return a drop of an encounter as the core takes it."""
+    law = encounter.law
+    return records.LineManner(
+        root=law.root,
+        tension=_TENSIONS.index(law.tension),
+        contact_end=_ENDS.index(law.contact_end),
+        mass=float(encounter.mass[drop]),
+        gravity=float(encounter.gravity[drop]),
+        depth=float(encounter.depth[drop]),
+        speed_scale=float(encounter.speed_scale[drop]),
+        tolerance=max(_OF_STEP * tolerance, _LEAST_ERROR),
+        most_steps=_MOST_STEPS,
+    )
+
+
+def _law_of_drop(law: CompliantLaw, drop: int) -> CompliantLaw:
+    """Return the law of one drop, with floats for arrays."""
+    values = {item.name: getattr(law, item.name) for item in fields(law)}
+    return law.changed({name: float(value[drop]) for name, value in values.items() if np.ndim(value)})
