@@ -57,7 +57,7 @@ def test_the_run() -> None:
     says(PAGE, "the restitution achieved is {}.", first(response, "restitution_achieved"))
     says(PAGE, "make the largest force about {} % too large", 100.0 * plate_mesh_error(response.problem.facts, response.impacts))
     of_mesh, *doubts = vi.result_of(response).doubts
-    assert "about +0.57 % too large; give plate.mesh.element_size" in of_mesh
+    assert "about 0.57 % too large; give plate.mesh.element_size" in of_mesh
     assert [("cracks" in doubt, "no strength is given" in doubt) for doubt in doubts] == [(True, False), (True, True)]
 
 

@@ -233,7 +233,7 @@ def test_chosen_features_are_those_of_all() -> None:
         (np.zeros((1, 5), dtype=complex), {}, "complex128; they must be real numbers"),
         ([["a", "b"]], {}, "must be real numbers"),
         ([[1.0], [1.0, 2.0]], {}, "rows of different lengths"),
-        (np.zeros((1, 5)), {"rate": 0.0}, "the rate is 0.0; it must be a number of Hz above 0"),
+        (np.zeros((1, 5)), {"rate": 0.0}, "the rate is 0.0; it must be a finite number of Hz above 0"),
         (np.zeros((1, 5)), {"rate": np.nan}, "the rate is nan"),
         (np.zeros((1, 5)), {"rate": "10 kHz"}, "the rate is"),
         (np.zeros((1, 5)), {"names": ["kurtossis"]}, 'Did you mean "kurtosis"'),

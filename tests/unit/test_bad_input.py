@@ -149,7 +149,7 @@ def test_unreadable_files(
         (("run", "."), ".: this is a directory"),
         (("run", ""), "this is a directory"),
         (("run", "paper:"), "there is no shipped case"),
-        (("run", "paper:type1-theory", "-o", ""), "the folder you stand in"),
+        (("run", "paper:type1-theory", "-o", ""), "this is the current folder"),
         (("run", "paper:type1-theory", "-o", "/proc/no/such"), "can't be"),
         (("materials", "steal"), 'Did you mean "steel"?'),
         (("run",), "Missing argument"),

@@ -331,17 +331,17 @@ class TestCaseFile:
             (
                 {},
                 [
-                    "of a mean density of 80.57 kg/m3, 0.0576 of its material's, so hollow or light inside; "
+                    "of a mean density of 80.57 kg/m3, 0.0576 times its material's, so hollow or light inside; "
                     "a stiffness from Hertz's theory is that of a solid ball"
                 ],
             ),
-            ({"sphere__mass": 0.1}, ["of a mean density of 2984 kg/m3, 2.13 of its material's, so heavy inside"]),
-            ({"sphere__mass": 0.047}, ["of a mean density of 1403 kg/m3, 1 of its material's"]),
-            ({"sphere__inertia": "hollow"}, ["moment of inertia 7.2e-07 kg m2, 0.6667 of mass and squared radius"]),
+            ({"sphere__mass": 0.1}, ["of a mean density of 2984 kg/m3, 2.13 times its material's, so heavy inside"]),
+            ({"sphere__mass": 0.047}, ["of a mean density of 1403 kg/m3, 1 times its material's"]),
+            ({"sphere__inertia": "hollow"}, ["moment of inertia 7.2e-07 kg m2, 0.6667 times mass and squared radius"]),
             (
                 OBLIQUE,
                 [
-                    "moment of inertia 4.32e-07 kg m2, 0.4 of mass and squared radius, as of a solid ball; "
+                    "moment of inertia 4.32e-07 kg m2, 0.4 times mass and squared radius, as of a solid ball; "
                     'of a shell: sphere.inertia = "hollow"'
                 ],
             ),

@@ -235,7 +235,7 @@ def test_signals_to_be_recognised_are_doubted_where_they_have_offsets() -> None:
     signals: Any = LabelledSignals.__new__(LabelledSignals)
     object.__setattr__(signals, "sensors", {"a1": SensorSignals(values, RATE, "m/s2")})
     (doubt,) = baseline_doubts(signals)
-    assert doubt.startswith('from 2 of 3 signals of "a1" offsets of up to 30 m/s2 were removed, more than a tenth')
+    assert doubt.startswith('from 2 of 3 signals of "a1" baselines with offsets of up to 30 m/s2 were removed, more than a tenth')
 
 
 def test_a_record_without_its_baseline_is_left_as_it_is() -> None:

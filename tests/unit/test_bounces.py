@@ -285,11 +285,11 @@ def test_json_and_options(call, file: Path) -> None:
     [
         (("bounces.wav", "--gravity", "9.81 m"), "--gravity: "),
         (("bounces.wav", "--height", "-1"), "the height is -1 m; it must be above 0"),
-        (("bounces.wav", "--set", "run.impacts=3"), "--set changes the keys of a case, and a record has none"),
+        (("bounces.wav", "--set", "run.impacts=3"), "--set changes the keys of a case, and a record or a table has none"),
         (("bounces.wav", "--channel", "bounce"), 'there is no channel "bounce"; it has "bounces". Did you mean "bounces"?'),
         (("none.wav",), "there is no such file"),
         (("paper:calibration", "--height", "1 m"), "--height goes with a record of bounces"),
-        (("stereo.wav",), 'it has several channels, "stereo 1", "stereo 2"; name one by channel'),
+        (("stereo.wav",), 'it has several channels, "stereo 1", "stereo 2"; name one by --channel (in a case the key channel)'),
         (("stereo.wav", "--channel", "stereo 2"), "stereo.wav: it is silent"),
     ],
 )
@@ -316,7 +316,7 @@ def test_a_case_is_calibrated_to_what_is_heard(file: Path) -> None:
     np.testing.assert_allclose(found.observations.speeds, speed * 0.72 ** np.arange(6), rtol=1e-3)
     later = calibrated({"file": str(file)}, drop={"speed": 2.0 * speed})
     assert (len(later.values), later.observations.of_the_drop) == (5, False)
-    assert "the first is not that of the drop" in later.observations.notes[0]
+    assert "the first is not taken for that of the drop" in later.observations.notes[0]
 
 
 def test_a_channel_of_a_table_is_heard(tmp_path: Path) -> None:

@@ -117,5 +117,5 @@ def test_the_folder(bound: Bound, tmp_path: Path) -> None:
 
 
 def test_what_has_no_bound() -> None:
-    with pytest.raises(vi.InputError, match=r"sweep.design: it has no classes; a bound needs design = \"population\""):
+    with pytest.raises(vi.InputError, match=r"sweep.design: the study has no classes; a bound needs design = \"population\""):
         bound_of(vi.load_sweep("paper:sweep"))

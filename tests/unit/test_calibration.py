@@ -56,7 +56,7 @@ def test_one_restitution_an_impact() -> None:
     found, response = calibrated({"target": {"law": "newton", "restitution": wanted}}, run={"impacts": 3})
     assert response.impacts["restitution_achieved"] == pytest.approx(wanted, rel=1e-8)
     assert found.curve is None, "there is no one restitution at another speed"
-    with pytest.raises(vi.InputError, match="has one value an impact"):
+    with pytest.raises(vi.InputError, match="has one value per impact"):
         calibrated({"target": {"law": "newton", "restitution": wanted}, "speeds": {"from": 1, "to": 5}})
 
 

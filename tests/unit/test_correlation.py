@@ -395,12 +395,12 @@ def changed(**one: Any) -> list[Record]:
         ({"name": "a3"}, {}, 'no sensor "a3"; it has "a1", "a2"'),
         ({"unit": "V"}, {}, '"a1" is in V'),
         ({"rate": 10e3}, {}, "give records of one acquisition, or resample"),
-        ({"start": 5.0}, {}, "do not overlap in time"),
+        ({"start": 5.0}, {}, "longer records that overlap in time"),
         ({"start": 0.3 / RATE}, {}, "not sampled at the same instants"),
         ({"value": np.zeros(5120)}, {}, '"a1" is constant'),
         ({"value": np.full(5120, np.nan)}, {}, '"a1" is not a finite number'),
         ({}, {"window": 1e-3}, "64 are needed"),
-        ({}, {"window": -1.0}, "it is above 0"),
+        ({}, {"window": -1.0}, "it must be longer than 0 s"),
         ({}, {"band": (100.0, 7e3)}, "5760 Hz"),
         ({}, {"force": Record("hammer", np.ones(5120), RATE, "V")}, "the force of a hammer is in N"),
     ],
@@ -456,7 +456,7 @@ def test_the_command(command: Callable[..., tuple[int, str, str]]) -> None:
     assert code == 0
     assert json.loads(out)["records"] == told["records"]
     for words, message in (
-        (("bare.txt", "-o", "new"), "no header is above them; write a header, such as time [s],force [n], or give --columns"),
+        (("bare.txt", "-o", "new"), "no header is above it; write a header, such as time [s],force [n], or give --columns"),
         (("tap.csv", "-o", "new"), 'no sensor "hammer"'),
         (("tap.csv", "-o", "new", "--hammer", "hamer"), "did you mean"),
         (("tap.csv", "-o", "new", "--band", "300 Hz"), "give a lower and an upper frequency"),

@@ -83,7 +83,7 @@ def test_a_rebound_that_no_local_element_gives_is_refused_with_what_it_can() -> 
 
 def test_a_basis_that_leaves_nothing_of_the_law_is_refused() -> None:
     sphere = {"model": "elastic", "modes": 8, "attachment_mode": True, **COARSE}
-    with pytest.raises(vi.InputError, match=r"sphere\.modes: the modes of the sphere carry .* so that the force would not be definite"):
+    with pytest.raises(vi.InputError, match=r"sphere\.modes: the modes of the sphere carry .* so that the force would not be unique"):
         vi.read_case(case(sphere, RIGID)).to_problem()
 
 

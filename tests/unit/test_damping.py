@@ -69,7 +69,7 @@ def test_one_ratio_a_mode() -> None:
     np.testing.assert_array_equal(RatioOfEach((0.01, 0.02, 0.03)).ratios(FREQUENCIES[:1]), [0.01])
     assert (
         RatioOfEach(tuple(np.arange(1, 7) / 100)).description
-        == "damping ratios of the modes one by one: 0.01, 0.02, 0.03, 0.04, ...; the last goes on"
+        == "damping ratios of the modes one by one: 0.01, 0.02, 0.03, 0.04, ...; the last holds for all further modes"
     )
 
 

@@ -90,8 +90,8 @@ def test_deviations_are_near_the_bound_of_cramer_and_rao() -> None:
         ([record(np.zeros(SAMPLES))], (200.0, 5000.0), '"a" is constant'),
         ([record(np.full(SAMPLES, np.nan))], (200.0, 5000.0), "not a finite number"),
         ([record(tone(800.0, 0.01)), record(tone(800.0, 0.01)[1:])], (200.0, 5000.0), "different rates or numbers of samples"),
-        ([record(tone(800.0, 0.01))], (500.0, 200.0), "lies between 0 and 6400 Hz"),
-        ([record(tone(800.0, 0.01))], (500.0, 7000.0), "lies between 0 and 6400 Hz"),
+        ([record(tone(800.0, 0.01))], (500.0, 200.0), "its ends must rise, from above 0 to 6400 Hz"),
+        ([record(tone(800.0, 0.01))], (500.0, 7000.0), "its ends must rise, from above 0 to 6400 Hz"),
         ([record(tone(800.0, 0.01)[:100])], (700.0, 900.0), "take a longer decay or a wider band"),
     ],
 )

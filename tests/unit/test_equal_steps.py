@@ -75,4 +75,4 @@ def test_times_with_a_number_of_digits(form: str) -> None:
     found = at_equal_steps(written, [swing(time)])
     assert found.rate == pytest.approx(rate, rel=1e-3)
     np.testing.assert_array_equal(found.values[0], swing(time))
-    assert found.doubts[0].startswith(f"its times are rounded to {form[2]} digits, up to ")
+    assert found.doubts[0].startswith(f"its times are rounded to {form[2]} significant digits, up to ")

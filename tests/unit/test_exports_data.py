@@ -180,7 +180,7 @@ def test_other_folders_are_refused(variable: vi.Response, tmp_path: Path) -> Non
     made = tmp_path / "made"
     made.mkdir()
     write_result(result_of(vi.simulate(replace(variable.problem, source=None))), made)
-    with pytest.raises(vi.InputError, match="its problem was made in Python"):
+    with pytest.raises(vi.InputError, match="its problem was defined in Python"):
         load_drop(made)
 
 
@@ -393,7 +393,7 @@ def test_a_step_that_has_more_digits_than_the_format_is_told(rigid: Drop) -> Non
 def test_a_history_that_can_not_be_sampled_is_left_out(rigid: Drop) -> None:
     case = vi.read_case(plain_case(contact={"law": "newton", "restitution": 0.7}))
     instant = drop_of_result(result_of(vi.simulate(case)), case)
-    with pytest.raises(vi.InputError, match="has no sensors, and no contact in it has a duration"):
+    with pytest.raises(vi.InputError, match="has no sensor with two samples or more, and no contact in it has a duration"):
         files_of("uff58", instant)
     assert "The history is left out: no contact" in notes_of("uff58", instant)
     assert history_rate(replace(rigid, end_time=1e3)) is None
@@ -456,8 +456,8 @@ def test_rates_that_a_wav_file_can_hold(rate: float, words: str | None, rigid: D
         return
     read, samples = wavfile.read(BytesIO(files_of("wav", drop)["a.wav"]))
     assert (read, samples.tolist()) == (round(rate), [0.0] * 5)
-    assert ("it has 44100.4" in notes_of("wav", drop)) == (rate == 44100.4)
-    assert ("Players may not take" in notes_of("wav", drop)) == (rate == 1e6)
+    assert ("the signal has 44100.4" in notes_of("wav", drop)) == (rate == 44100.4)
+    assert ("Players may not play" in notes_of("wav", drop)) == (rate == 1e6)
 
 
 # ParaView --------------------------------------------------------------------------------------------

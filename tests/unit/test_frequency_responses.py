@@ -108,7 +108,7 @@ def test_without_a_unit_it_is_taken_as_si_and_said(tmp_path: Path) -> None:
     assert any('plate.uff, "12", "13": it states no unit, and there is no dataset 164' in doubt for doubt in found.doubts)
     unknown = compared(tmp_path, **labels, ordinate_spec_data_type=0, orddenom_spec_data_type=0)
     assert unknown.units == ("m/s2/N", "m/s2/N")
-    assert any("it states neither a unit nor what was measured" in doubt for doubt in unknown.doubts)
+    assert any("it states neither a unit nor a data type of motion" in doubt for doubt in unknown.doubts)
 
 
 @pytest.mark.parametrize(
@@ -285,7 +285,7 @@ def test_gain_polarity_and_coherence_are_told(tmp_path: Path) -> None:
     coherence = np.where(np.abs(FREQUENCY - resonance) < 5.0, 0.6, 0.99)
     found = compared(tmp_path, 1.1 * RIGHT[0], -RIGHT[1], coherence=coherence)
     words = " ".join(found.doubts)
-    assert 'the response "12" has 1.1 times the size' in words
+    assert 'the response "12" has 1.1 times the simulated magnitude' in words
     assert 'the response "13" has inverted polarity' in words
     assert found.polarity.tolist() == [1.0, -1.0]
     assert 'the coherence of "12" is below 0.9 at the mode of 12' in words
@@ -346,7 +346,7 @@ def test_three_directions_at_a_node(tmp_path: Path) -> None:
     found = vi.correlate_responses(a_case(), vi.read_responses(by_pyuff(tmp_path / "a.uff", *sets)))
     assert [sensor.name for sensor in found.sensors] == ["12"]
     assert found.frac[0] > 0.97
-    assert any("2 responses have no sensor of their name" in doubt for doubt in found.doubts)
+    assert any("2 responses have no sensor of that name and direction" in doubt for doubt in found.doubts)
 
 
 @pytest.mark.parametrize(
@@ -374,7 +374,7 @@ def test_names_that_do_not_match(tmp_path: Path) -> None:
 
 def test_bad_bands_and_frequencies(tmp_path: Path) -> None:
     responses = responses_in(tmp_path)
-    with pytest.raises(vi.InputError, match=r"a band from 10 to 300 Hz is not allowed; it lies between 40 and 799.5 Hz"):
+    with pytest.raises(vi.InputError, match=r"a band from 10 to 300 Hz is not allowed; it must rise, within the 40 to 799.5 Hz measured"):
         vi.correlate_responses(a_case(), responses, band=(10.0, 300.0))
     low = [vi.FrequencyResponse(one.response, one.reference, one.frequency[:60], one.value[:60], one.unit) for one in responses]
     with pytest.raises(vi.InputError, match="the lowest mode of the plate has"):

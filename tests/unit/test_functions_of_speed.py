@@ -151,7 +151,7 @@ def test_what_is_expected_is_that_of_the_first_speed() -> None:
         ({"polynomial": [0.9, -0.1]}, "from is missing"),
         ({"polynomial": [0.9, -0.1], "from": 1, "to": 20}, "between 1 and 20 m/s it comes to -1.1"),
         ({"polynomial": [0.5, 2.0, -2.0], "from": 0, "to": 1}, "between 0 and 1 m/s it comes to 1"),
-        ({"polynomial": [0.9], "from": 3, "to": 1}, "the second must be higher"),
+        ({"polynomial": [0.9], "from": 3, "to": 1}, "to must be greater than from"),
         ({"polynomial": ["0.9 m"], "from": 1, "to": 2}, "a plain number is wanted"),
     ],
 )
@@ -213,7 +213,7 @@ def test_as_a_target_and_as_a_law_that_is_compared() -> None:
 
 def test_a_function_is_no_start_of_a_calibration() -> None:
     table = plain_case(contact={"law": "tsuji", "restitution": TABLE}, calibrate={"target": {"restitution": 0.7}})
-    with pytest.raises(vi.InputError, match=r"contact\.restitution: a calibration begins from a number"):
+    with pytest.raises(vi.InputError, match=r"contact\.restitution: a calibration begins from numbers"):
         calibrate_case(read_calibration(table))
 
 

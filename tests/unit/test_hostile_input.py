@@ -168,7 +168,7 @@ def test_levels_of_a_long_range_are_not_compared_as_texts() -> None:
 
 @pytest.mark.parametrize(
     ("name", "words"),
-    [("/", "this is where all files are"), ("a\0b", "NUL"), ("x" * 300, "200 letters at most"), ("x" * 250, "200 letters at most")],
+    [("/", "this is the root of the file system"), ("a\0b", "NUL"), ("x" * 300, "200 bytes at most"), ("x" * 250, "200 bytes at most")],
 )
 def test_folders_that_can_not_be(name: str, words: str) -> None:
     with pytest.raises(InputError) as caught:

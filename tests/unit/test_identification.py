@@ -290,7 +290,7 @@ def test_sampling_that_is_too_slow_is_told_with_the_number() -> None:
     sensors = [{"name": name, "position": list(place), "rate": 2000.0} for name, place in list(SENSORS.items())[:2]]
     drop = {"speed": 3.0, "position": [0.06, 0.04]}
     case = a_case(20, sensors=sensors, run={"impacts": 1, "duration": 0.06}, drop=drop)
-    with pytest.raises(vi.InputError, match="hear up to 900 Hz, which tells contacts of 556 us or longer; sample faster than at 2000 Hz"):
+    with pytest.raises(vi.InputError, match="hear up to 900 Hz, enough for contacts of 556 us or longer; sample faster than at 2000 Hz"):
         vi.identify(case, its_records(case), window=0.05)
 
 

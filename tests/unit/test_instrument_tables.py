@@ -73,7 +73,7 @@ def test_the_track_of_a_video_calibrates_a_case(tmp_path: Path) -> None:
     case = plain_case(sphere=sphere, drop={"speed": SPEED, "gravity": 9.80665}, contact=contact, calibrate=section)
     found = vi.calibrate_case(vi.read_calibration(case))
     assert found.values == pytest.approx(RESTITUTION, abs=2e-3)
-    assert "position: 2 of its samples have no number, the first in line 43: it is evaluated without them" in found.doubts
+    assert "position: 2 of its samples have no number, the first in line 43: the record is evaluated without them" in found.doubts
 
 
 def test_the_units_of_a_track_are_asked_for(command: Callable[..., tuple[int, str, str]], tmp_path: Path) -> None:
@@ -135,7 +135,10 @@ def test_what_labview_leaves_open(tmp_path: Path) -> None:
     for data, message in (
         (lvm("One", rows, more=further), "a further segment of the LabVIEW file begins, with a header of its own; a record is one segment"),
         (lvm("One", rows, dimension="Frequency"), "line 13: X_Dimension is Frequency; a record is over time"),
-        (lvm("No", rows).replace(b"Delta_X", b"Delta"), 'the channel "ax" has neither times (X_Columns is No) nor a Delta_X'),
+        (
+            lvm("No", rows).replace(b"Delta_X", b"Delta"),
+            'the channel "ax" has neither times (X_Columns is No) nor X0 and a positive Delta_X',
+        ),
         (b"LabVIEW Measurement\nSeparator\tTab\n0\t1\n", "the header of the LabVIEW file does not end"),
     ):
         with pytest.raises(vi.InputError) as caught:
@@ -350,7 +353,7 @@ def test_the_option_of_features_and_calibrate(command: Callable[..., tuple[int, 
         code, _, err = command(*words)
         assert code == 2
         assert (
-            'line 1: it has 2 numbers, and no header is above them; write a header, such as time [s],force [N], or give --columns "time=s,f'
+            'line 1: it has 2 numbers, and no header is above it; write a header, such as time [s],force [N], or give --columns "time=s,f'
             in err
         )
     code, out, _ = command("features", "bounces.txt", "--columns", "time=s,plate=V", "--only", "peak", "--json")
@@ -364,7 +367,7 @@ def test_the_option_of_features_and_calibrate(command: Callable[..., tuple[int, 
     assert code == 0
     assert [row["restitution"] for row in json.loads(out)["restitutions"]["rows"]] == [0.81, 0.78, 0.74]
     assert "--columns goes with a record of bounces" in command("calibrate", "paper:calibration", "--columns", "time=s,force=N")[2]
-    assert "whose columns --columns states; leave it out" in command("features", "found/summary.wav", "--columns", "time=s,force=N")[2]
+    assert "and this is none; leave it out" in command("features", "found/summary.wav", "--columns", "time=s,force=N")[2]
 
 
 def test_the_keys_of_a_case(tmp_path: Path) -> None:

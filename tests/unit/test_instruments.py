@@ -184,7 +184,7 @@ def test_low_sound_of_a_plate_in_no_baffle_is_doubted() -> None:
     low, high = (np.sin(2.0 * np.pi * frequency * time) for frequency in (300.0, 2000.0))
     said = sensor_doubts(resolved, {"a1": Signal(vi.Sensor("a1", "pressure"), low + high, 0.0)}, 1e3, 1e-3)
     assert len(said) == 1
-    assert '50 % of the power of the microphone "a1" lies below 408.6\N{NO-BREAK SPACE}Hz' in said[0]
+    assert '50 % of the power of the signal of microphone "a1" lies below 408.6\N{NO-BREAK SPACE}Hz' in said[0]
     assert not sensor_doubts(resolved, {"a1": Signal(vi.Sensor("a1", "pressure"), 0.1 * low + high, 0.0)}, 1e3, 1e-3)
 
 

@@ -107,8 +107,8 @@ def test_a_sensor_that_is_moved_has_the_shapes_of_its_new_place() -> None:
 @pytest.mark.parametrize(
     ("errors", "words"),
     [
-        ({"sensor_place": -1e-3}, "an error of -0.001 of the positions of the sensors is not allowed; 5 mm is 0.005"),
-        ({"gain": 2.0}, "an error of 2 of the sensitivities of the sensors is not allowed; 2 % is 0.02, and it is at most 0.3"),
+        ({"sensor_place": -1e-3}, "an error of -0.001 of the positions of the sensors is not allowed; it must be 0 to 0.1 m"),
+        ({"gain": 2.0}, "an error of 2 of the sensitivities of the sensors is not allowed; it must be 0 to 0.3 "),
         ({"modulus": float("nan")}, "an error of nan of the modulus of the plate is not allowed"),
     ],
 )
@@ -159,7 +159,7 @@ def test_an_offset_before_first_touch_is_removed() -> None:
 CAUSES = {
     "moved": (a_case(moved={"b": (-0.045, 0.08)}), measured, '"b" lies', 'state --sensor-error "'),
     "gain": (a_case(), lambda: changed("c", lambda value: 1.1 * value), '"c" reads', "state --gain-error"),
-    "thickness": (a_case({"size": [0.3, 0.3, 0.0202]}), measured, "makes frequencies", "state --thickness-error"),
+    "thickness": (a_case({"size": [0.3, 0.3, 0.0202]}), measured, "makes its frequencies", "state --thickness-error"),
 }
 
 

@@ -108,7 +108,7 @@ def in_water(speed: float) -> dict[str, Any]:
         ("drag_coefficient", 1.0, in_water(5.9), in_water(6.1), ["Reynolds number", "uncertain"]),
         # 1 - (rho - 1.2) / (rho + 0.6) of a density rho
         ("air_buoyancy", 0.01, light(180.0), light(179.0), ["buoyancy", "contact.liquid = { density = 1.2, viscosity = 1.81e-05 }"]),
-        ("mach", 0.3, in_air(102.0), in_air(104.0), ["speed of sound", "drop.speed"]),
+        ("mach", 0.3, in_air(102.0), in_air(104.0), ["speed of sound", "take the rebounds for uncertain"]),
         ("speeds_given", 1.05, given_up_to(0.96), given_up_to(0.95), ["is given for approach speeds", "the nearest one holds"]),
     ],
 )

@@ -57,7 +57,7 @@ def no_mesh(monkeypatch: pytest.MonkeyPatch) -> None:
 )
 def test_bodies_that_are_too_large_are_refused_before_they_are_meshed(case: dict[str, Any], key: str, what: str) -> None:
     most = {"modes": MOST_MODES, "nodes": MOST_NODES}[what]
-    with pytest.raises(InputError, match=rf"^{key}: \S+ {what} are more than the {most} of the live page; vibroimpact run takes more$"):
+    with pytest.raises(InputError, match=rf"^{key}: \S+ {what} are more than the {most:,} of the live page; vibroimpact run takes more$"):
         check_bounds(a_case(**case))
 
 
@@ -121,7 +121,7 @@ def test_a_message_is_measured_in_bytes() -> None:
 def test_null_is_refused_in_one_sentence(table: dict[str, Any], key: str) -> None:
     with pytest.raises(InputError) as refused:
         check_table(table)
-    assert refused.value.lines == (f"{key}: null is no value of a case; leave the key out",)
+    assert refused.value.lines == (f"{key}: null is not a value of a case; leave it out",)
 
 
 def answers(*messages: str) -> list[dict[str, Any]]:

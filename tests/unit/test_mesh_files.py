@@ -394,7 +394,7 @@ FAULTS: list[tuple[str, str | bytes, str]] = [
     ("mesh.bdf", FREE + "CPYRAM,1,1,1,2,3,4\n", ":5: CPYRAM 1 has 4 nodes; it must have 5 or 13"),
     ("mesh.bdf", TETRA + "GRID,1,,2.\n", ":6: node 1 was given other coordinates in line 1; a node may be given once"),
     ("mesh.bdf", TETRA + "CTETRA,1,1,4,1,2,3\n", ":6: element 1 was given in line 5 already; an element may be given once"),
-    ("mesh.bdf", "GRID,1,3\n", ":1: the coordinate system 3 is not in the file; its CORD2R, CORD2C or CORD2S must be"),
+    ("mesh.bdf", "GRID,1,3\n", ":1: the coordinate system 3 is not in the file; its CORD1R, CORD1C"),
     ("mesh.bdf", "GRDSET,,3\nGRID,1\n", ":2: the coordinate system 3 is not in the file"),
     ("mesh.bdf", "GRID,1,3\nCORD2R,3,,0.,0.,0.,0.,0.,1.\n,0.,0.,5.\n", ":2: the three points of the coordinate system 3 lie on one line"),
     ("mesh.bdf", "GRID,1,3\nCORD2R,3,4,,,,,,1.\n,1.\nCORD2R,4,3,,,,,,1.\n,1.\n", "refers to itself"),
@@ -420,7 +420,7 @@ FAULTS: list[tuple[str, str | bytes, str]] = [
     (
         "mesh.bdf",
         TETRA + "INCLUDE 'more\n.bdf'\n",
-        ":6: the file to include is not given; its name must stand in quotes on the line of INCLUDE",
+        ":6: the file to include is not given; its name must be on the line of INCLUDE, in quotes",
     ),
     ("mesh.inp", DECK + "*INCLUDE\n", ":9: the file to include is not given; *INCLUDE must have INPUT=file on its first line"),
     ("mesh.inp", DECK + "*ELEMENT, TYPE=C3D4,\nINPUT=more.inp\n", ":9: the file to include is not given; *ELEMENT must have"),
@@ -428,7 +428,7 @@ FAULTS: list[tuple[str, str | bytes, str]] = [
     ("mesh.inp", "*NODE\n1 0 0\n", ":2: a node must have a number and up to three coordinates"),
     ("mesh.inp", "*NODE, SYSTEM=C\n1,0,0,0\n", ":1: the nodes are in cylindrical or spherical coordinates"),
     ("mesh.inp", "*NODE\n1,0,0,inf\n", ":2: node 1 has the coordinate inf"),
-    ("mesh.inp", DECK + "*ELEMENT,TYPE=C3D7\n2,1,2,3,4,1\n", ':9: "C3D7" is a solid element that is not read; the part must be of C3D4'),
+    ("mesh.inp", DECK + "*ELEMENT,TYPE=C3D7\n2,1,2,3,4,1\n", ':9: "C3D7" is a solid element that is not read; solid elements must be C3D4'),
     ("mesh.inp", DECK + "*ELEMENT,TYPE=C3D15V\n2,1\n", ":10: element 2 has 1 nodes; C3D15V must have 15"),
     ("mesh.inp", DECK + "*ELEMENT\n", ":9: *ELEMENT has no TYPE"),
     ("mesh.inp", NODES + "*ELEMENT,TYPE=C3D4\n1,1,2,3\n", ":8: element 1 has 3 nodes; C3D4 must have 4"),
@@ -436,7 +436,7 @@ FAULTS: list[tuple[str, str | bytes, str]] = [
     ("mesh.inp", NODES + "*ELEMENT,TYPE=C3D4\n1,1,2,3,4,4\n", ":8: element 1 has 5 nodes; C3D4 must have 4"),
     ("mesh.inp", DECK + "*NSET,NSET=a\nbse\n*NSET,NSET=b\n1", ':10: "bse" is neither a number nor a *NSET before this line'),
     ("mesh.inp", DECK + "*NSET,NSET=base\n1\n*NSET,NSET=b\nbse", 'one of them. Did you mean "BASE"?'),
-    ("mesh.inp", DECK + "*NSET,NSET=a,GENERATE\n5,1\n", ":10: GENERATE needs first, last and step"),
+    ("mesh.inp", DECK + "*NSET,NSET=a,GENERATE\n5,1\n", ":10: GENERATE needs first and last"),
     ("mesh.inp", DECK + "*NSET\n1\n", ":9: *NSET has no name"),
     ("mesh.inp", DECK + "*NGEN\n1,2\n", ":9: *NGEN makes nodes or elements by a rule"),
     ("mesh.inp", DECK + "*SYSTEM\n1,0,0\n", ":9: *SYSTEM moves the nodes"),
@@ -513,7 +513,7 @@ def test_wrong_paths(tmp_path: Path) -> None:
         read_mesh("mesh.step", size=-1)
     with pytest.raises(InputError, match="order: 3 is not allowed; it must be 1 or 2"):
         mesh_geometry("mesh.step", order=3)
-    with pytest.raises(InputError, match="a STEP file names its own unit; leave unit_in_metres at 1"):
+    with pytest.raises(InputError, match="a STEP file states its own unit; leave this out"):
         read_mesh("mesh.stp", unit_in_metres=1e-3)
 
 

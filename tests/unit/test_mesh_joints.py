@@ -156,7 +156,7 @@ def test_nodes_off_the_surface(tmp_path: Path) -> None:
         mesh, surface(mesh, "FOLLOWS", "part0", -1e-4) + surface(mesh, "LEADS", "part1") + "*TIE,NAME=T\nFOLLOWS, LEADS\n", tmp_path, "inp"
     )
     (remark,) = joined.remarks
-    assert "are moved onto its faces, by up to 0.0001 (in the unit of the file)" in remark
+    assert "are moved onto the faces of the second, by up to 0.0001 (in the unit of the file)" in remark
     assert held_by(solid_structure(joined, STEEL)).rigid.shape[1] == 6
     apart = read(
         mesh,
@@ -413,7 +413,7 @@ def test_equations_between_nodes_that_are_not_at_one_place(gap: float, works: bo
     if works:
         np.testing.assert_allclose(frequencies(joined), frequencies(WHOLE), rtol=1e-5)
     else:
-        with pytest.raises(ComputationError, match=r"in place of which \*TIE, or one RBE2 of all of them, turns with the body"):
+        with pytest.raises(ComputationError, match=r"replace these by \*TIE, or by one RBE2 of all the nodes, which turn with the body"):
             elastic_system(held_by(solid_structure(joined, STEEL)))
         (one, other), *rest = pairs(mesh)
         followers = [other, *(node for pair in rest for node in pair)]

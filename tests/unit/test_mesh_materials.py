@@ -178,7 +178,7 @@ def test_what_can_not_be_used_is_refused(text: str, message: str, tmp_path: Path
 def test_elements_without_a_material_are_refused(tmp_path: Path) -> None:
     file = nastran(tmp_path, BDF_MM, 1e3, sections="PSOLID,1,1\nPSOLID,3,2\n")
     file.write_text(file.read_text().replace("CHEXA,1,1,", "CHEXA,1,3,"))
-    with pytest.raises(InputError, match=r"the file gives 8 of its elements no material, and the others 2; give mesh\.materials"):
+    with pytest.raises(InputError, match=r"the file gives 8 of its elements no material, and the others 2 materials; give mesh\.materials"):
         meshes_of(case_of(file))
 
 
@@ -276,8 +276,8 @@ NAMED = {
     "CELAS2,100,1.+3,1,1\nCBUSH,101,3,1,2\n": "CELAS2 (1), CBUSH (1); springs, dampers and connectors are not part of the body",
     "RSPLINE,100,1.,1,2,123,3\nMPC,1,1,1,1.,2,1,-1.\n": "RSPLINE (1), MPC (1); constraints between nodes are not applied",
     "CQUAD4,100,3,1,2,3,4\nCBAR,101,3,1,2\n": "CQUAD4 (1), CBAR (1); beams, shells and membranes are not part of the body",
-    "SPC1,7,123,1,2\nSPC,8,1,1\n": "SPC (1), SPC1 (1); nodes that the file holds are not held by it",
-    "GRID,900,,1.,1.,1.,,123\n": "PS of GRID (1); nodes that the file holds",
+    "SPC1,7,123,1,2\nSPC,8,1,1\n": "SPC (1), SPC1 (1); supports of the file are not used",
+    "GRID,900,,1.,1.,1.,,123\n": "PS of GRID (1); supports of the file",
 }
 
 
@@ -293,7 +293,12 @@ def test_what_an_abaqus_file_holds_besides_is_named(tmp_path: Path) -> None:
         "*EQUATION\n1\n1,1,1.\n*BOUNDARY\n1,1,3\n*ELEMENT, TYPE=F3D8\n902,1,2,3,4,5,6,7,8\n*STEP\n*STATIC\n*END STEP\n"
     )
     found = doubts_of(abaqus(tmp_path, INP_MM, 1e3, more))
-    for words in ("MASS (1), *MASS (1); masses", "SPRINGA (1), *SPRING (1); springs", "*EQUATION (1); constraints", "*BOUNDARY (1); nodes"):
+    for words in (
+        "MASS (1), *MASS (1); masses",
+        "SPRINGA (1), *SPRING (1); springs",
+        "*EQUATION (1); constraints",
+        "*BOUNDARY (1); supports",
+    ):
         assert words in found
     assert "F3D8 (1); the fluid is not part" in found
     assert "STEP" not in found

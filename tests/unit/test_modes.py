@@ -116,7 +116,7 @@ def test_too_many_modes_or_none(number: int) -> None:
 def test_as_many_modes_as_a_small_mesh_has() -> None:
     small = elastic(solid_structure(box_mesh((1.0, 1.0, 1.0), (1, 1, 1), "hex8"), STEEL))
     assert len(small.modes(18).angular_frequencies) == 18
-    with pytest.raises(InputError, match="19 modes are not to be had from 24 degrees of freedom; it must be from 1 to 18"):
+    with pytest.raises(InputError, match="19 modes are not to be had from 24 degrees of freedom; ask for 1 to 18"):
         small.modes(19)
 
 
@@ -125,7 +125,7 @@ def test_too_little_memory(monkeypatch: pytest.MonkeyPatch) -> None:
     structure = plate_structure(plate_mesh((0.5, 0.4), 0.05), STEEL, 0.01)
     with pytest.raises(
         InputError,
-        match=r"the factors of 6765 degrees of freedom need about 0\.0\d+ GB of memory, and 0\.001 GB are free; use larger elements",
+        match=r"the factors of 6765 degrees of freedom need about 0\.0\d+ GB of memory, and 0\.001 GB are free, .*; use larger elements",
     ):
         elastic(structure)
 

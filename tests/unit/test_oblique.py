@@ -359,7 +359,7 @@ FAULTS: list[tuple[dict[str, Any], str]] = [
     ({"drop": {"speed": 3.0, "angle": "95 deg"}}, 'drop.angle: "95 deg" is not allowed; it must be greater than -1.5708 and less than'),
     (
         {"drop": {"velocity": [1.0, 0.0, 2.0]}},
-        "drop.velocity: its z is 2 m/s, which leads away from the plate; at first touch it is negative",
+        "drop.velocity: its z is 2 m/s, which does not lead to the plate; at first touch it is negative",
     ),
     ({"drop": {"speed": 3.0, "velocity": [1.0, 0.0, -2.0]}}, "drop: give either speed or velocity; both are given"),
     ({"drop": {"height": 1.0, "angle": 0.2}}, "drop.angle: an angle needs the speed at first touch; give speed, or velocity in place"),

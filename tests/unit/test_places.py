@@ -32,8 +32,8 @@ OFF: list[tuple[dict[str, Any], str]] = [
     (plate({"type": "patch", "position": [0.3, 0], "radius": 0.02}), "plate.supports.position: (0.3, 0) m lies outside the plate"),
     (
         plate({"type": "patch", "position": [0.24, 0], "radius": 0.019}),
-        "plate.supports.radius: 0.019 m around (0.24, 0) m reaches beyond the plate, which reaches to (0.26, 0.21) m from its centre; "
-        "between it and the edge must be at least 0.15 radii",
+        "plate.supports.radius: 0.019 m around (0.24, 0) m is too near the edge of the plate, which reaches to (0.26, 0.21) m "
+        "from its centre; between it and the edge must be at least 0.15 radii",
     ),
     (
         plate({"type": "patch", "position": [0.25, 0], "size": [0.05, 0.05]}),

@@ -116,7 +116,7 @@ def test_it_is_told_and_doubted_and_the_remedy_is_one(tmp_path: Path) -> None:
     (told,) = (value for row, value in deformation_rows(result) if row == words)
     assert told == f"{100.0 * error:.2g}\u00a0%"
     (doubt,) = (text for text in result.doubts if "elements of the plate are large for its thickness" in text)
-    assert f"about +{100.0 * error:.1f} % too large" in doubt
+    assert f"about {100.0 * error:.1f} % too large" in doubt
     size = doubt.split('give plate.mesh.element_size = "')[1].split('"')[0]
     finer = result_of(vi.simulate(case(mesh={"element_size": size})))
     assert 0.0 < plate_mesh_error(finer.deformation, finer.impacts) < 0.005

@@ -77,7 +77,7 @@ def test_the_window_is_cut_at_the_last_sample_before_it() -> None:
         window.samples(np.array([]), 20e3, 4000)
     with pytest.raises(ComputationError, match=r"touches 0 s after the start, less than the 0.001 s"):
         window.samples(np.array([0.0]), 20e3, 4000)
-    with pytest.raises(ComputationError, match=r"ends at 0.2 s, before the window at 0.204 s"):
+    with pytest.raises(ComputationError, match=r"ends at 0.2 s, before the window does, at 0.204 s"):
         window.samples(np.array([0.2]), 20e3, 4000)
 
 

@@ -155,7 +155,7 @@ def test_one_flight_alone_takes_the_zero_as_right_and_says_so() -> None:
     seen = seen_in(made._replace(time=made.time[begin:], position=made.position[begin:]))
     assert seen.corrections["zero"] == (0.0, 0.0, "m")
     (doubt,) = (doubt for doubt in seen.doubts if "one flight alone" in doubt)
-    assert "1 mm makes 0.13 % of the restitution" in doubt
+    assert "1 mm changes the restitution by 0.13 %" in doubt
     assert restitutions(seen)[0] == pytest.approx(0.9, rel=1e-6)
 
 

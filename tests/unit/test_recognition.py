@@ -96,8 +96,8 @@ def test_of_a_large_data_set_whole_groups_are_drawn(folder: Path) -> None:
     [
         (lambda file: file.attrs.update(format="other 2"), 'the attribute "format" is "other 2"; this version reads'),
         (lambda file: file.pop("signal_a1"), "there are no signals"),
-        (lambda file: file["signal_a1"].attrs.update(rate_Hz=0.0), "neither an attribute rate_Hz that is greater than 0 nor times"),
-        (lambda file: file["class"].attrs.pop("flag_meanings"), "no flag_values and flag_meanings"),
+        (lambda file: file["signal_a1"].attrs.update(rate_Hz=0.0), "rate_Hz of signal_a1 is 0.0; it must be a number greater than 0"),
+        (lambda file: file["class"].attrs.pop("flag_meanings"), "lacks flag_values or flag_meanings"),
         (lambda file: file["class"].attrs.update(flag_meanings="coal"), "2 flag_values and 1 flag_meanings"),
         (lambda file: file["class"].attrs.update(flag_values=[0, 7]), "1 is in the variable class and not in its flag_values"),
     ],
@@ -535,7 +535,7 @@ def test_a_saved_model_recognises_other_signals(saved: Path, tmp_path: Path) -> 
 
 def test_signals_that_a_model_was_trained_on_are_a_doubt(saved: Path, folder: Path) -> None:
     assert vi.apply_recogniser(saved, folder).doubts == (
-        "the model was trained on these signals, so it recognises them better than others",
+        "the model was trained on signals of this data set, so it may recognise them better than others",
     )
 
 

@@ -89,7 +89,7 @@ def test_a_description_says_what_follows_what() -> None:
         (table({"drop.speed": {**SPEED, "each": "rock"}, "sphere.radius": RADIUS}), "has neither plates nor rocks"),
         (table({"drop.speed": {**SPEED, "at": "10 m/s"}, "sphere.radius": RADIUS}), "drop.speed"),
         (table({"drop.speed": {**SPEED, "factor": [-1.0]}, "sphere.radius": RADIUS}), r'"drop.speed".factor: -1'),
-        (table({"plate.model": SPEED, "sphere.radius": RADIUS}), "one key follows another where both are quantities"),
+        (table({"plate.model": SPEED, "sphere.radius": RADIUS}), "a key can follow another only if both are quantities"),
         (
             population(
                 {"sphere.radius": {**SPEED, "value": "1 mm", "of": "drop.speed", "at": 1.0}, "drop.speed": [1.0, 2.0]},

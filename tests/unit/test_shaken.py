@@ -72,7 +72,7 @@ def test_refused_motions(values: dict[str, Any], words: str) -> None:
     [
         ({"motion": 25.0}, "must be a PlateMotion"),
         ({"oblique": vi.Oblique(friction=vi.find_friction_law("coulomb")(coefficient=0.3))}, "no tangential compliance"),
-        ({"height": 0.0115, "motion": vi.PlateMotion(amplitude=2e-3, frequency=25.0, phase=1.5)}, "begins its motion above"),
+        ({"height": 0.0115, "motion": vi.PlateMotion(amplitude=2e-3, frequency=25.0, phase=1.5)}, "begins its motion at or above"),
         ({"speed": 0.1, "motion": vi.PlateMotion(amplitude=2e-3, frequency=25.0, phase=np.pi)}, "recedes"),
         ({"motion": vi.PlateMotion(amplitude=[1e-3, 1e-3], frequency=[20.0, 31.0])}, "give the duration"),
     ],
@@ -354,13 +354,16 @@ def test_tables_without_their_columns(tmp_path: Path) -> None:
     ("values", "words"),
     [
         ({"plate.motion": {"amplitude": "2 mm"}}, r"plate\.motion: this key needs frequency"),
-        ({"plate.motion": {"amplitude": "2 mm", "frequency": "25 Hz", "file": "deck.csv"}}, "either a file or amplitude and frequency"),
+        (
+            {"plate.motion": {"amplitude": "2 mm", "frequency": "25 Hz", "file": "deck.csv"}},
+            "either a file or a harmonic motion; leave out amplitude and frequency",
+        ),
         ({"plate.motion.repeat": True}, r"plate\.motion\.repeat: only the motion of a file is repeated"),
         ({"plate.motion.frequenzy": "25 Hz"}, 'Did you mean "frequency"'),
         ({"plate.motion.direction": [0, 0, 0]}, "length 0"),
         ({"plate.motion.amplitude": "2 Hz"}, r"plate\.motion\.amplitude"),
         ({"contact.friction": {"law": "rigid", "coefficient": 0.3}}, "no tangential compliance"),
-        ({"drop.height": "21 mm", "plate.motion.phase": "90 deg"}, "begins its motion above"),
+        ({"drop.height": "21 mm", "plate.motion.phase": "90 deg"}, "begins its motion at or above"),
         ({"plate.motion": 3}, "not a table"),
     ],
 )

@@ -126,7 +126,7 @@ def test_its_radius_can_be_swept(supports: dict[str, str], tmp_path: Path) -> No
 
 def test_it_is_not_exported(tmp_path: Path) -> None:
     folder = vi.save_result(vi.simulate(case_of({"radius": 0.02})), tmp_path / "run")
-    with pytest.raises(vi.InputError, match=r"plate.radius: what is exported falls on a flat plate, and this sphere falls on another"):
+    with pytest.raises(vi.InputError, match=r"plate.radius: only a drop on a flat plate can be exported, and this sphere"):
         load_drop(folder)
 
 
@@ -135,7 +135,7 @@ def test_it_is_not_exported(tmp_path: Path) -> None:
     [
         ({"radius": 0.02, "size": [1.0, 1.0, 0.01]}, {}, "plate.size: a sphere takes the place of the plate, and has no size"),
         ({"radius": 0.02, "model": "elastic", "supports": "free"}, {}, "plate.model: a sphere in the place of the plate is rigid but for"),
-        ({"radius": 0.02, "supports": "clamped"}, {}, 'plate.supports: a sphere in place of the plate is held fixed, or "free"'),
+        ({"radius": 0.02, "supports": "clamped"}, {}, 'plate.supports: a sphere in the place of the plate is held fixed, or "free"'),
         (
             {"radius": 0.02, "supports": "free"},
             {"drop": {"gravity": 9.8}},

@@ -18,7 +18,7 @@ def test_memory_with_which_most_of_the_time_would_go_to_chunks_is_refused(tmp_pa
     with pytest.raises(InputError) as told:
         compute_study(LARGE, tmp_path / "study", memory=1e6)
     assert told.value.key == "memory"
-    expected = "1 MB is too little for 100,000 drops: computed 155 at a time they take several times as long; give 17 MB or more"
+    expected = "1 MB is too little for 100,000 drops: computed 155 at a time they take over a third longer; give 17 MB or more"
     assert told.value.message == expected
     assert not (tmp_path / "study").exists()
 

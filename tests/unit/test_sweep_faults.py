@@ -389,7 +389,7 @@ def test_a_chunk_that_is_not_as_it_was_written_is_computed_again(tmp_path: Path)
     file = folder / "chunks" / "000001.h5"
     file.write_bytes(file.read_bytes()[:-1] + b"x")
     compute_study(sweep, folder, resume=True, tell=told.append)
-    assert told == ["chunk 1 on disk is damaged; it is computed again"]
+    assert told == ["chunk 1 on disk is damaged or missing; it is computed again"]
     assert results(folder) == results(compute_study(sweep, tmp_path / "undisturbed", memory=SMALL))
 
 

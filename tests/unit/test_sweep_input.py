@@ -52,7 +52,7 @@ FAULTS: list[tuple[object, str]] = [
         f'{RADIUS}.fro: unknown key "fro"; it takes from, to, number, scale. Did you mean "from"?',
     ),
     (over(sphere__radius={"form": 0.01}), f"{RADIUS}: {{ form = 0.01 }} has no values; it must be a list of values, a range"),
-    (over(sphere__radius={"from": 0.02, "to": 0.01}), f"{RADIUS}.to: 0.01 is not more than where it begins, 0.02"),
+    (over(sphere__radius={"from": 0.02, "to": 0.01}), f"{RADIUS}.to: 0.01 is not greater than from, 0.02"),
     (over(sphere__radius={"from": 0.01, "to": 0.02, "number": 0}), f"{RADIUS}.number"),
     (
         over(sphere__radius={"from": 0.01, "to": 0.02, "scale": "cubic"}),

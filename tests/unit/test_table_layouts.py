@@ -74,8 +74,8 @@ def test_bytes_that_are_no_text_are_refused(text: bytes, tmp_path: Path) -> None
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("0,0\n0.001,1\n", r"line 1: it has 2 numbers, and no header is above them; write a header, such as time \[s\],force \[N\]"),
-        ("# time [s],force [N],way [m]\n0,0\n1,1\n", r"line 2: it has 2 numbers, and the comment before them does not have as many"),
+        ("0,0\n0.001,1\n", r"line 1: it has 2 numbers, and no header is above it; write a header, such as time \[s\],force \[N\]"),
+        ("# time [s],force [N],way [m]\n0,0\n1,1\n", r"line 2: it has 2 numbers, and the comment before it does not have as many names"),
         ("# time [s],force [N]\n0,0\n0.001,x\n", r'line 3, column "force \[N\]": "x" is not a number'),
         ("sep=;\n", "the file is empty"),
         ("Recorder\n\ntime [s],force [N]\n0,0\n0.001,1\n0.002,x\n", r'line 6, column "force \[N\]": "x" is not a number'),

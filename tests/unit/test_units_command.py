@@ -140,7 +140,7 @@ def test_an_option_takes_a_bare_number_in_si() -> None:
     [
         (("3",), "is not a number with a unit"),
         (("3", "N/m", "--to", "N"), "can't be converted"),
-        (("3", "degC"), '"degC" holds temperature; only units of mass, length and time are shown'),
+        (("3", "degC"), '"degC" holds temperature; only units of force, mass, length and time are shown'),
         (("3", "A"), "holds current"),
         (("3", "m/m"), "holds no dimension"),
         (("N/m", "3"), "is not a number with a unit"),

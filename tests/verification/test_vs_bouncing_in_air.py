@@ -178,5 +178,5 @@ def test_beyond_what_air_lets_rise() -> None:
 
 
 def test_air_where_nothing_flew() -> None:
-    with pytest.raises(vi.InputError, match=r"calibrate\.air: nothing that is to be matched flew"):
+    with pytest.raises(vi.InputError, match=r"calibrate\.air: the target has no measured flights"):
         evaluated({"restitution": 0.7}, True)

@@ -45,7 +45,7 @@ def check_table(table: dict[str, Any]) -> None:
         within, where = left.pop()
         for key, value in within.items() if isinstance(within, dict) else enumerate(within):
             if value is None:
-                raise InputError("null is no value of a case; leave the key out", f"{where}{key}")
+                raise InputError("null is not a value of a case; leave it out", f"{where}{key}")
             if isinstance(value, (dict, list)):
                 left.append((value, f"{where}{key}."))
     for body, key in (("sphere", "mesh"), ("plate", "mesh"), ("plate", "motion")):
@@ -119,5 +119,6 @@ def _nodes(recipe: Recipe) -> float:
 
 def _bound(value: float, most: float, key: str, what: str) -> None:
     if not value <= most:
-        told = float(f"{value:.3g}")
-        raise InputError(f"{told:g} {what} are more than the {most:g} of the live page; vibroimpact run takes more", key)
+        rounded = float(f"{value:.3g}")
+        there = rounded if rounded > most else value
+        raise InputError(f"{there:,.12g} {what} are more than the {most:,.12g} of the live page; vibroimpact run takes more", key)

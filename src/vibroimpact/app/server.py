@@ -120,7 +120,7 @@ def _guarded(app: ASGIApp, port: int) -> ASGIApp:
             return
         host = next((value.decode("latin-1") for name, value in scope["headers"] if name == b"host"), "")
         if host not in _hosts(port):
-            await _refuse(scope, receive, send)
+            await _refuse(scope, receive, send, port)
             return
         policy = _POLICY.format(socket=f"ws://{host}")
 
@@ -142,12 +142,13 @@ def _guarded(app: ASGIApp, port: int) -> ASGIApp:
     return guarded
 
 
-async def _refuse(scope: Scope, receive: Receive, send: Answer) -> None:
+async def _refuse(scope: Scope, receive: Receive, send: Answer, port: int) -> None:
     if scope["type"] == "websocket":
         await receive()
         await send({"type": "websocket.close", "code": 1008, "reason": "another host"})
         return
-    await PlainTextResponse("this page is for the machine on which it runs", 403)(scope, receive, send)
+    words = f"this page is only for the machine on which it runs; open http://{_NAMES[0]}:{port} there"
+    await PlainTextResponse(words, 403)(scope, receive, send)
 
 
 def _is_own(origin: str, port: int) -> bool:

@@ -72,6 +72,9 @@ def _sensors(bound: Bound) -> Chart:
     rows = tuple(f"{one / 1e3:g} kHz" for one in BANDWIDTHS)
     columns = tuple(f"{one:g} dB" for one in SIGNAL_TO_NOISE)
     values = Map(np.arange(float(len(columns))), np.arange(float(len(rows))), 100.0 * bound.map, scale)
-    panel = Panel(Axis("Peak of the median force over noise in 10 kHz", names=columns), Axis("Bandwidth", names=rows), (values,))
-    caption = "The Bayes error from impulse and contact time of one impact, over bandwidth and signal-to-noise ratio of the sensor."
+    panel = Panel(Axis("Peak force of the median fall over noise in 10 kHz", names=columns), Axis("Bandwidth", names=rows), (values,))
+    caption = (
+        "Upper bounds on the Bayes error from impulse and contact time of one impact at a known position, over bandwidth and "
+        "signal-to-noise ratio of the sensor."
+    )
     return Chart("sensors", "Bayes error over bandwidth and noise", ((panel,),), caption, 4.0)

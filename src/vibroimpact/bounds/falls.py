@@ -89,7 +89,7 @@ def falls_of_sweep(sweep: Sweep) -> Falls:
         If the study has no classes.
     """
     if sweep.population is None:
-        raise InputError('it has no classes; a bound needs design = "population"', "sweep.design")
+        raise InputError('the study has no classes; a bound needs design = "population"', "sweep.design")
     plate = {key: value for key, value in sweep.table["plate"].items() if key in _OF_RIGID_PLATES}
     sphere = {key: value for key, value in sweep.table["sphere"].items() if key in ("radius", "material", "mass", "inertia")}
     table = {**sweep.table, "plate": plate, "sphere": sphere, "run": {"impacts": 1}}

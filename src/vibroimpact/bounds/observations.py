@@ -67,11 +67,17 @@ OBSERVATIONS = (
     Observation("impulse", "the impulse of one impact alone, as from the amplitude of a slow sensor", ("impulse",)),
     Observation("contact time", "the duration of one contact alone, as from a normalised signal", ("duration",)),
     Observation("one impact", "impulse and contact time of one impact at a known position, as from two sensors", ("impulse", "duration")),
-    Observation("one impact, place unknown", "the same from one sensor, at an unknown distance", ("far impulse", "duration")),
+    Observation(
+        "one impact, place unknown",
+        "impulse and contact time of one impact, from one sensor at an unknown distance",
+        ("far impulse", "duration"),
+    ),
     Observation("with the bounce", "impulse and contact time, and the time to the next impact", ("impulse", "duration", "interval")),
     Observation("height known", "impulse and contact time, and the speed", ("impulse", "duration", "speed")),
     Observation(
-        "height known, with the bounce", "with the speed and the time to the next impact", ("impulse", "duration", "speed", "interval")
+        "height known, with the bounce",
+        "impulse and contact time, the speed and the time to the next impact",
+        ("impulse", "duration", "speed", "interval"),
     ),
     Observation("size seen", "impulse and contact time, and the radius, as from a camera", ("impulse", "duration", "radius")),
     Observation("height, bounce and size", "all of these", ("impulse", "duration", "speed", "interval", "radius")),

@@ -17,8 +17,8 @@ def bound_summary(bound: Bound) -> RenderableType:
     columns += [TerminalColumn(heading, cells, text=True) for heading, cells in zip(HEADERS[1:3], errors_and_left[:2], strict=True)]
     columns += [TerminalColumn(heading, cells) for heading, cells in zip(HEADERS[3:], errors_and_left[2:], strict=True)]
     note = (
-        "Without scatter: with an exact amplitude. Remaining: standard deviation of the logarithm after the best linear estimate, over "
-        "that in the population."
+        "Without scatter: without that of the amplitude; the noise remains. Remaining: standard deviation of the logarithm after the best "
+        "linear estimate, over that in the population."
     )
     return Group(
         Text(f"Bounds on the classification error: {bound.name}", style="bold"),

@@ -56,7 +56,10 @@ def impacts_in_bounces(bounces: Bounces, *, gravity: float, first_speed: float, 
     restitution = flown.start / speeds
     heard = abs(np.log(restitution[0] / restitution[1])) <= np.log(_UNLIKE)
     kept = slice(0 if heard else 1, None)
-    first = f"; the first is not that of the drop, at {first_speed:.4g} m/s, and only begins the first flight"
+    first = (
+        f"; the first is not taken for that of the drop, at {first_speed:.4g} m/s, as its restitution would be {restitution[0]:.3g} and "
+        f"that of the next is {restitution[1]:.3g}: it only begins the first flight"
+    )
     sounds = len(bounces.others)
     others = f"; {sounds} other sound{'s are' if sounds > 1 else ' is'} no bounce" if sounds else ""
     return Observations(

@@ -149,8 +149,8 @@ def calibrate_case(
     names = friction_names(section.parameter)
     if not names and problem.by_speed:
         name = next(iter(problem.by_speed))
-        words = "a calibration begins from a number, and finds how it depends on the approach speed"
-        raise InputError(f"{words}; give one in place of the function", f"contact.{name}")
+        words = "a calibration begins from numbers, and takes no function of the approach speed"
+        raise InputError(f"{words}; give a number in place of the function", f"contact.{name}")
     if not names and problem.same_spot and getattr(problem.laws[0], "lasting", False) and impact_count(problem) > 1:
         words = f"{case.contact.law} leaves a dent that the next impact falls into, and each impact is matched on fresh surfaces"
         raise InputError(f"{words}; set it to false, or run.impacts = 1", "drop.same_spot")

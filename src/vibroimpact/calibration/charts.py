@@ -64,6 +64,7 @@ def parameter_words(found: Calibration) -> str:
 def _parameter_chart(found: Calibration) -> Chart:
     function, speeds, words = found.fit.function, found.observations.speeds, parameter_words(found)
     marks: list[Mark] = []
+    fitted_too = ""
     if function.degree or len(speeds) > 1:
         smooth = np.linspace(function.slowest, function.fastest, _SMOOTH)
         fitted, band = function(smooth), found.fit.band(smooth, found.confidence)
@@ -73,6 +74,7 @@ def _parameter_chart(found: Calibration) -> Chart:
             marks.append(Band(smooth, low, high, f"{100.0 * found.confidence:g} % {of_what}", "band"))
         name = ("constant", "line")[function.degree] if function.degree < 2 else f"polynomial of degree {function.degree}"
         marks.append(Line(smooth, fitted, name, "fit"))
+        fitted_too = f", and the {name} fitted to them"
     if found.curve is not None:
         marks.append(Line(*found.curve, "exact at each speed"))
     low, high = (None, None) if found.intervals is None else found.intervals.T
@@ -80,7 +82,8 @@ def _parameter_chart(found: Calibration) -> Chart:
     if found.as_given and not np.allclose(found.given, found.values, rtol=1e-3):
         marks.append(Points(speeds, found.given, "as the case gives it", "muted", found.observations.labels))
     panel = Panel(Axis("Approach speed", "m/s"), Axis(_begun(words), found.unit), tuple(marks))
-    caption = f"In a case it is {found.parameter}. Each impact by itself, and the polynomial fitted to them."
+    key = found.parameter if "." in found.parameter else f"contact.{found.parameter}"
+    caption = f"In a case it is {key}. Each impact by itself{fitted_too}."
     if found.intervals is not None:
         caption += f" Bars: the interval of each impact at {100.0 * found.confidence:g} %."
     return Chart("parameter", f"{_begun(words)} over the approach speed", ((panel,),), caption, height=3.4)

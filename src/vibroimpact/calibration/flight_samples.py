@@ -104,8 +104,11 @@ def with_enough_samples(selected: Mapping[int, Indices], ends: Sequence[int], at
         elif 0 < number < len(ends) - 2:
             raise InputError(
                 f"between the impacts at {at(ends[number])} and {at(ends[number + 1])} only {len(inside)} samples show the sphere above "
-                f"its radius, and it takes {_FEWEST}; sample faster, end the record sooner, or look at sign and unit of the position"
+                f"the plate, but {_FEWEST} are needed; sample faster, end the record before, or look at sign and unit of the position"
             )
     if 1 not in found:
-        raise InputError("the record ends before it shows how high the sphere rebounds from the first impact")
+        raise InputError(
+            f"the record shows too little of the rebound from the first impact, of which at least {_FEWEST} samples above the plate are "
+            "needed; record longer, or sample faster"
+        )
     return found

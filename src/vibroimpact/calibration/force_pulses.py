@@ -90,7 +90,7 @@ def find_pulses(time: Floats, force: Floats) -> DetectedPulses:
         raise InputError("the record does not show an impact: the force is the same throughout")
     middle = float(np.median(force))
     if middle - low > max(_UPSIDE_DOWN * (high - middle), 2.0 * ABOVE_NOISE * noise):
-        raise InputError("the force is negative; it must be positive where it pushes the sphere up")
+        raise InputError("the pulses of the force are negative; it must be positive where it pushes the sphere up")
     rest = np.full_like(force, np.median(force[force < 0.5 * (low + high)]))  # first estimate of the baseline
     for number in range(_PASSES):
         above = force - rest

@@ -93,7 +93,7 @@ def impacts_in_force(
             raise InputError(f"the record {'begins' if begin == 0 else 'ends'} in the middle of an impact, at {at(begin)}")
         if end - begin < _FEWEST:
             raise InputError(
-                f"the impact at {at(begin)} has only {end - begin} samples, and it takes {_FEWEST}; sample faster, or smooth less"
+                f"the impact at {at(begin)} has only {end - begin} samples, but {_FEWEST} are needed; sample faster, or smooth less"
             )
     pulses = evaluate_pulses(time, seen, runs)
     begins = np.array([pulse.begin for pulse in pulses])
@@ -111,7 +111,7 @@ def impacts_in_force(
         )
     gaps = begins[1:] - np.array([pulse.begin + pulse.duration for pulse in pulses])[: len(begins) - 1]
     if gravity == 0.0 and len(gaps):
-        raise InputError(f"without gravity the sphere does not come back, and the record shows {len(runs) + len(cut)} impacts")
+        raise InputError(f"without gravity the sphere does not come back, and the record shows {len(begins)} impacts")
     flown = (flights or VacuumFlights(gravity)).end_speeds(gaps)
     number = len(pulses)
     speeds = np.append(first_speed, flown.end)[:number]
@@ -183,11 +183,12 @@ def _separations(
         if abs(scale - 1.0) > _GAIN:
             words = f"the impulses are {100.0 * (1.0 / scale - 1.0):+.1f} % off from those computed from the times of flight"
             more = "" if timed == number else " (the rebound of the last impact is corrected)"
-            doubts.append(f"{words}: the scale of the force, the mass or gravity can't be right{more}")
+            doubts.append(f"{words}: the scale of the force, the mass, the drop or gravity can't be right{more}")
     else:
         per_cent = 0.01 * pulses[-1].impulse / mass
         doubts.append(
-            f"one impact alone: its rebound follows from the impulse, and 1 % in the scale of the force makes {per_cent:.2g} m/s of it"
+            "one impact alone: its rebound follows from the impulse, and 1 % in the scale of the force changes its separation speed by "
+            f"{per_cent:.2g} m/s"
         )
     # the start of a flight and its end are both uncertain; in a vacuum the derivative of the initial speed is g / 2
     deviation = flown.start_slope * np.hypot(ends[:timed], begins[1 : timed + 1])
@@ -199,8 +200,8 @@ def _separations(
     if last.excess_scatter:
         part = 100.0 * last.excess_scatter / last.largest
         doubts.append(
-            f"the force at rest wanders by {part:.2g} % of the largest beside the last impact, more than its noise does, which makes "
-            f"{last.impulse_deviation / mass:.2g} m/s of the rebound uncertain"
+            f"the force at rest wanders by {part:.2g} % of the largest force beside the last impact, more than by its noise, which "
+            f"contributes {last.impulse_deviation / mass:.2g} m/s to the standard deviation of its separation speed"
         )
     return np.append(flown.start, after), np.append(deviation, np.hypot(of_last, gravity * ends[-1])), tuple(doubts)
 

@@ -119,5 +119,5 @@ def check_counts(table: TableFile) -> None:
     count = table.columns.get("count")
     wrong = np.flatnonzero((count < 1.0) | (count != np.round(count))) if count is not None else np.zeros(0)
     if count is not None and wrong.size:
-        words = f"count is {count[wrong[0]]:g}; it must be a whole number, of which the row is the mean"
+        words = f"count is {count[wrong[0]]:g}; it must be the number of impacts of which the row is the mean, 1 or more"
         raise InputError(f"{table.path}, line {table.lines[wrong[0]]}: {words}", "target")

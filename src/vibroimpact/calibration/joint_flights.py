@@ -256,7 +256,9 @@ def _solved(
         rows.append(_prior_row(_CLOCK, 1.0 - at.clock, _CLOCK_DEVIATION, number))
         if meetings is not None:
             if np.any(at.tops <= meetings.radius):
-                raise InputError("the sphere never rises above its radius; position must be the height of its centre above the plate")
+                raise InputError(
+                    "in a flight the sphere does not rise above its radius; position must be the height of its centre above the plate"
+                )
             rows.append(_meeting_rows(at, flying, meetings))
         if _CONTACT in shared and meetings is not None:
             rows.append(_prior_row(_CONTACT, meetings.contact - at.contact, meetings.contact_deviation, number))

@@ -89,7 +89,10 @@ def match_drop(
     if speeds is not None:
         over = np.asarray(speeds, dtype=float)
         if not alike:
-            raise InputError("a contact law has one value an impact, and over a range of speeds it must have one for all", "speeds")
+            raise InputError(
+                "the contact law has one value per impact, and over a range of speeds it must have one for all; leave this out",
+                "speeds",
+            )
     elif len(at) > 1 and len(weights) == 1 and not problem.vibrates and alike:
         over = np.linspace(at.min(), at.max(), _CURVE_POINTS)
     if over is not None:
@@ -139,7 +142,7 @@ def match_measurement(
     fit = fit_observations(tuned, seen, weights, _degree(seen.speeds, degree), alone)
     tell(0.5)
     doubts = list(seen.doubts) + [
-        f"{label}: no {tuned.name} meets it, which noise explains; {nearest:.5g}, as near as {tuned.name} can come, stands for it"
+        f"{label}: no {tuned.name} meets it exactly, though within the noise; the nearest that is allowed, {nearest:.5g}, is taken"
         for label, value, nearest in zip(seen.labels, alone, values, strict=True)
         if np.isnan(value)
     ]

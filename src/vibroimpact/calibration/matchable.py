@@ -58,7 +58,7 @@ def check_weights(weights: Mapping[str, float]) -> None:
         if name not in known:
             raise InputError(f"{shown(name)} can't be matched; there are {choices(known, name)}", "match")
         if not 0.0 < weight < math.inf:
-            raise InputError(f"{weight:g} is not allowed as a weight; it must be greater than 0", f"match.{name}")
+            raise InputError(f"{weight:g} is not allowed as a weight; it must be greater than 0 and finite", f"match.{name}")
     for alike in (REBOUNDS, DIRECTIONS):
         if len(given := [name for name in alike if name in weights]) > 1:
             raise InputError(f"{' and '.join(given)} are equivalent; give one of them", "match")

@@ -39,8 +39,10 @@ def heights_measurement(case: Case, heights: Floats, deviation: Floats | None, l
             at = int(higher[0])
             start = case.drop.height or radius + 0.5 * speed**2 / gravity
             fallen = heights[at - 1] if at else start
-            what = f"{heights[at]:g} m is higher than the {fallen:g} m from which the sphere fell"
-            raise InputError(f"{labels[at]}: {what}, {_by_noise(values[at], limit.most[at], limit.why)}", "target")
+            higher_than = "higher than" if heights[at] > fallen else "too high for"
+            what = f"{heights[at]:g} m is {higher_than} the {fallen:g} m from which the sphere fell"
+            words = f"{what}, and a restitution of {values[at]:.4g} is {_beyond_noise(limit.most[at], limit.why)}"
+            raise InputError(f"{labels[at]}: {words}", "target")
         return seen
 
     return Measurement(evaluated, float(heights.max()) - radius)
@@ -95,7 +97,7 @@ def check_restitutions(seen: Observations, case: Case) -> None:
     over = np.flatnonzero(values > limit.most)
     if over.size:
         at = int(over[0])
-        words = f"restitution is {values[at]:.5g}; it is 1 at most, {_by_noise(values[at], limit.most[at], limit.why)}"
+        words = f"restitution is {values[at]:.5g}; it is 1 at most, and {values[at]:.4g} is {_beyond_noise(limit.most[at], limit.why)}"
         raise InputError(f"{seen.labels[at]}: {words}", "target")
 
 
@@ -111,8 +113,8 @@ def _limit(seen: Observations, case: Case) -> RestitutionLimit:
     return restitution_limit(seen.speeds, values, deviations)
 
 
-def _by_noise(value: float, most: float, why: str) -> str:
-    return f"and {value:.4g} is more than the {most:.4g} that is attributed to noise ({why}); check speeds, heights and their units"
+def _beyond_noise(most: float, why: str) -> str:
+    return f"more than the {most:.4g} that is attributed to noise ({why}); check speeds, heights and their units"
 
 
 def _check_above(case: Case, heights: Floats, labels: tuple[str, ...]) -> None:

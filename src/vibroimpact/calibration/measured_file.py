@@ -169,7 +169,8 @@ def _without(channel: RecordedChannel, rises: Bools) -> list[str]:
     """Return what a record lacks, as sentences: samples that are missing, and others at the time of the one before."""
     told, missing = [], channel.missing
     if missing:
-        told.append(f"{len(missing)} of its samples have no number, the first in line {missing[0]}: it is evaluated without them")
+        have, them = ("have no number, the first", "them") if len(missing) > 1 else ("has no number,", "it")
+        told.append(f"{len(missing)} of its samples {have} in line {missing[0]}: the record is evaluated without {them}")
     change = np.append(0.0, np.abs(np.diff(channel.value)))
     other = np.flatnonzero(~rises & (change > _SAME * float(np.ptp(channel.value))))
     if other.size:
@@ -209,7 +210,7 @@ def _record_measurement(case: Case, record: Recorded, by_rebound: bool) -> Measu
         doubts: tuple[str, ...] = ()
         if (rounded := behind_decimals(time)) is not None:
             time, last = rounded
-            doubts = (f"the times are rounded to {last:g} s: the equal steps behind them are taken",)
+            doubts = (f"the times are rounded to {last:g} s: they are replaced by times in equal steps",)
         sphere = {"radius": radius, "gravity": case.drop.gravity, "contact_duration": HERTZ_TIME * float(depth)}
 
         def in_position(flights: Flights | None) -> Observations:
@@ -241,7 +242,9 @@ def _rows_measurement(case: Case, table: TableFile) -> Measurement:
             columns.setdefault(f"separation_speed{ending}", columns[f"restitution{ending}"] * speeds)
     wanted = {name: columns[name] for name in MATCHABLE if name in columns}
     if not wanted:
-        raise InputError(f"{table.path}: beside approach_speed a column is missing: restitution, {', '.join(MATCHABLE)}", "target")
+        raise InputError(
+            f"{table.path}: beside approach_speed a column is missing; give one of restitution, {', '.join(MATCHABLE)}", "target"
+        )
     for name in wanted:
         check_positive(table, next(column for column in (name, "restitution", "restitution_achieved") if column in table.columns))
     deviations = known_deviations(table.path, columns, wanted)

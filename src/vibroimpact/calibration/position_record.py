@@ -165,8 +165,8 @@ def _told(
     if len(joint.tops) == 1:
         part = 100.0 * 0.5e-3 / float(rises[0])
         doubts.append(
-            "the record shows one flight alone, which does not determine the zero of its positions: it is taken as right, and 1 mm makes "
-            f"{part:.2g} % of the restitution; record the fall before the impact as well"
+            "the record shows one flight alone, which does not determine the zero of its positions: it is taken as right, and 1 mm "
+            f"changes the restitution by {part:.2g} %; record the fall before the impact as well"
         )
     else:
         moves = f" and drifts by {_known(drift)}" if drift.deviation else "; one impact does not tell whether it drifts"

@@ -47,7 +47,7 @@ def _force_chart(overlays: Sequence[Overlay]) -> Chart:
         upper += [_measured(one.touch + measured_at, force), Line(one.touch + at, simulated, "simulated", "detail")]
         lower.append(Line(one.touch + measured_at, apart, "measured less simulated", "matched"))
     panels = (Panel(time, Axis("Contact force", "N"), tuple(upper)),), (Panel(time, Axis("Difference", "N"), tuple(lower)),)
-    caption = "The record around each contact, and the simulation with the calibrated values: each impact at its measured approach speed."
+    caption = "The record around each contact, and the simulation with the calibrated values: each impact at its own approach speed."
     return Chart("record", "Measured and simulated contact force", panels, caption, height=2.3)
 
 

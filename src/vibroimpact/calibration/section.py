@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import BeforeValidator, Field, StrictBool, model_validator
 
-from vibroimpact.calibration.matchable import MATCHABLE, check_weights
+from vibroimpact.calibration.matchable import ALONG_PLATE, MATCHABLE, check_weights
 from vibroimpact.cases.fields.contact import ContactSection, in_table, law_schema, read_contact
 from vibroimpact.cases.fields.json_schema import JsonSchema
 from vibroimpact.cases.fields.quantities import Quantity
@@ -72,7 +72,9 @@ class ImpactTarget(Section):
     separation_speed: Annotated[float, Quantity("m/s", "speed after the impact", _POSITIVE)] | None = None
     rebound_height: _Height | None = None
     restitution: _Measured | None = None
-    relative_deviation: Annotated[float, Quantity("", "standard deviation of each, as a part of it", Range(above=0, below=1))] | None = None
+    relative_deviation: (
+        Annotated[float, Quantity("", "standard deviation of each, as a fraction of it", Range(above=0, below=1))] | None
+    ) = None
 
     @model_validator(mode="after")
     def _one_rebound(self) -> ImpactTarget:
@@ -86,12 +88,12 @@ class FileTarget(Section):
     """A file: impacts, rebound heights, a record of position, force or the sphere's acceleration, or one in which bounces are heard."""
 
     file: FileName = Field(
-        description="a CSV file whose header names its columns with their units, a universal file (UFF 58) with a record, or a WAV or "
-        "NetCDF file with a record of bounces"
+        description="a CSV file whose header names its columns with their units, a universal file (UFF 58) with a record, or a "
+        "sound (WAV, FLAC, ...) or NetCDF file with a record of bounces"
     )
     function: str | None = Field(None, description="which function of a universal file, by its first line of identification or its number")
     channel: str | None = Field(
-        None, description="the channel with the bounces: of a WAV or NetCDF file that has several, or of a file of another kind"
+        None, description="the channel with the bounces: of a sound or NetCDF file that has several, or of a file of another kind"
     )
     contact_duration: Annotated[float, Quantity("s", "contact time of the impacts in a record of bounces", _POSITIVE)] | None = None
     columns: str | None = Field(
@@ -114,7 +116,7 @@ def _read_target(value: Any) -> Any:
     if isinstance(value, str):
         return read_table(FileTarget, {"file": value})
     if not isinstance(value, dict):
-        raise InputError(f"{shown(value)} is not allowed; it must be a table with law, {', '.join(_KEYS)}, or the name of a file")
+        raise InputError(f"{shown(value)} is not allowed; it must be a table with one of law, {', '.join(_KEYS)}, or the name of a file")
     if "law" in value:
         return read_contact(value)
     kind = next((key for key in _KEYS if key in value), None)
@@ -133,7 +135,8 @@ def _read_match(value: Any) -> Any:
     if isinstance(value, str):
         value = {value: 1.0}
     if not isinstance(value, dict):
-        raise InputError(f"{shown(value)} is not allowed; it must be one of {', '.join(MATCHABLE)}, or a table of them with weights")
+        known = ", ".join((*MATCHABLE, *ALONG_PLATE))
+        raise InputError(f"{shown(value)} is not allowed; it must be one of {known}, or a table of them with weights")
     wrong = next((weight for weight in value.values() if isinstance(weight, bool) or not isinstance(weight, (int, float))), None)
     if wrong is not None:
         raise InputError(f"{shown(wrong)} is not allowed; the weights must be numbers, such as {{ separation_speed = 1, max_force = 0.5 }}")
@@ -156,7 +159,7 @@ class SpeedsTable(Section):
     @model_validator(mode="after")
     def _rises(self) -> SpeedsTable:
         if not self.end > self.start:
-            raise InputError(f"{self.end:g} m/s is not more than where it starts, {self.start:g} m/s", "to")
+            raise InputError(f"{self.end:g} m/s is not more than the first speed, {self.start:g} m/s", "to")
         return self
 
     def values(self) -> np.ndarray:
@@ -168,14 +171,15 @@ _LAW = "a contact law and its parameters"
 
 
 def _target_schema() -> dict[str, Any]:
-    file = {"type": "string", "description": "a CSV or universal file"}
+    file = {"type": "string", "description": "the name of a file with what was measured"}
     tables = [kind.model_json_schema() for kind in dict.fromkeys(_KEYS.values())]
     return {"anyOf": [file, {"description": _LAW, **law_schema()}, *tables]}
 
 
 def _match_schema() -> dict[str, Any]:
-    weights = {"type": "object", "properties": {name: {"type": "number"} for name in MATCHABLE}, "additionalProperties": False}
-    return {"anyOf": [{"enum": list(MATCHABLE)}, weights]}
+    known = [*MATCHABLE, *ALONG_PLATE]
+    weights = {"type": "object", "properties": {name: {"type": "number"} for name in known}, "additionalProperties": False}
+    return {"anyOf": [{"enum": known}, weights]}
 
 
 def _some_names(given: Any) -> Any:
@@ -188,10 +192,10 @@ class CalibrateSection(Section):
     """Settings of `vibroimpact calibrate`; a run ignores them."""
 
     target: Annotated[Any, BeforeValidator(_read_target), JsonSchema("target of the calibration", _target_schema)] = Field(
-        None, description="target of the calibration; by default the law of the case, and the model is Adams' IMPACT"
+        None, description="target of the calibration; by default the law of the case"
     )
     model: Annotated[Any, BeforeValidator(_read_model), JsonSchema(_LAW, law_schema)] = Field(
-        None, description="the tuned contact law; by default that of the case"
+        None, description="the tuned contact law; by default that of the case, or, without a target, Adams' IMPACT"
     )
     parameter: Annotated[Name | tuple[Name, ...], BeforeValidator(_some_names), at_most(_MOST_PARAMETERS, "parameters")] | None = Field(
         None,
@@ -201,7 +205,7 @@ class CalibrateSection(Section):
     air: StrictBool | None = Field(
         None,
         description="whether the sphere was measured in air: its flights then have the drag of drop.air, or of air at 20 C and sea "
-        "level; without both keys they are those in a vacuum, and a doubt is raised where drag matters",
+        "level; without either key they are those in a vacuum, and a doubt is raised where drag matters",
     )
     match: Annotated[Any, BeforeValidator(_read_match), JsonSchema("matched quantity of an impact", _match_schema)] = Field(
         None,
@@ -214,7 +218,7 @@ class CalibrateSection(Section):
     confidence: Annotated[float, Quantity("", "confidence level of the intervals", Range(above=0, below=1))] = 0.95
     bootstrap: Annotated[int, Field(ge=0, le=100_000, strict=True)] | None = Field(
         None,
-        description="number of bootstrap samples for the intervals, 0 or at least 20; by default some hundred where they are wide",
+        description="number of bootstrap samples for the intervals, 0 or at least 20; by default 0, or some hundred where they are wide",
     )
     seed: Annotated[int, Field(ge=0, strict=True)] = Field(0, description="seed of the bootstrap")
 
@@ -245,7 +249,7 @@ def _as_table(value: Target) -> dict[str, Any]:
     return value.model_dump(exclude_none=True, mode="json")
 
 
-_MEASURED = FileKind("what was measured is in a CSV file or a universal file", 500_000_000, "keep the part with the impacts")
+_MEASURED = FileKind("what was measured is in a CSV, universal, sound or NetCDF file", 500_000_000, "keep the part with the impacts")
 
 
 def check_target(section: CalibrateSection | None) -> None:

@@ -139,7 +139,9 @@ def given_sentences(found: Calibration) -> list[str]:
         misses = abs(off[worst]) > _MET
         within = found.intervals is not None and bool(np.prod(found.intervals[worst] - found.given[worst]) <= 0.0)
         verdict = ", within the uncertainty of the measurement" if within else ": it does not meet the target" if misses else ""
-        told.append(f"{words} is {instead} instead of {asked}, a deviation of {_off(off[worst])[0]} %{verdict}. {meets} meets the target.")
+        met = abs(found.outcomes[name][worst] / wanted[worst] - 1.0) <= _MET
+        best = f"{meets} {'meets' if met else 'comes nearest to'} the target"
+        told.append(f"{words} is {instead} instead of {asked}, a deviation of {_off(off[worst])[0]} %{verdict}. {best}.")
         missed |= misses and not within
     if missed and found.others:
         each = [f"{name} = {digits(value, 6)} {law_parameter(found.problem, name).unit}".rstrip() for name, value in found.others.items()]

@@ -32,7 +32,7 @@ def target_of(case: Case, problem: Problem, section: CalibrateSection) -> Proble
     if isinstance(target, (HeightsTarget, ImpactTarget, FileTarget)):
         return evaluate(case, _measured(case, target, section), section.air)
     if section.air:
-        raise InputError("nothing that is to be matched flew; leave this out", "air")
+        raise InputError("the target has no measured flights, which alone depend on air; leave this out", "air")
     if isinstance(target, ContactSection):
         try:
             other = case.model_copy(update={"contact": target})

@@ -131,9 +131,9 @@ def undetermined_doubts(
     told, percent = [], f"{100.0 * confidence:g} %"
     if intervals is None:
         if fit.freedom > 0:
-            told.append(f"{tunable.name} has no influence on one of the impacts, so that it has no interval")
+            told.append(f"{tunable.name} has no influence on one of the impacts, so that there are no intervals")
         else:
-            told.append("as many impacts as coefficients, and no standard deviation: their uncertainty is unknown")
+            told.append("there are no more measured values than coefficients, and no standard deviations: their uncertainty is unknown")
         return told
     wide = np.flatnonzero(intervals[:, 1] - intervals[:, 0] > _DETERMINED * np.abs(values))
     for row in wide[:_MOST_TOLD]:
@@ -141,7 +141,8 @@ def undetermined_doubts(
         value = f"{values[row]:.4g} {tunable.unit}".rstrip()
         told.append(f"{observations.labels[row]} does not determine {tunable.name}: {value}, but {low:.4g} to {high:.4g} at {percent}")
     if len(wide) > _MOST_TOLD:
-        told.append(f"the same holds for {len(wide) - _MOST_TOLD} more impacts")
+        more = len(wide) - _MOST_TOLD
+        told.append(f"the same holds for {more} more impact{'s' if more > 1 else ''}")
     highest, half = fit.function.coefficients[-1], fit.half_widths(confidence)[-1]
     if fit.function.degree and not abs(highest) > half:
         known = f"the highest coefficient is {highest:.3g}, known to {half:.2g} at {percent}"
@@ -153,10 +154,10 @@ def other_drop_doubts(problem: Problem, seen: Observations) -> list[str]:
     """Return a warning if successive impacts were measured of another drop than that of the case."""
     if not is_other_drop(problem, seen):
         return []
-    own = first_approach_speed(problem)
+    own, in_place = first_approach_speed(problem), " in place of drop.height" if problem.height is not None else ""
     return [
         f"the first impact that was measured is at {seen.speeds[0]:.4g} m/s, and that of the drop at {own:.4g} m/s: the calibrated case "
-        f"has the values of the polynomial at its own speeds; drop.speed = {seen.speeds[0]:.4g} makes it the drop measured"
+        f"has the values of the polynomial at its own speeds; drop.speed = {seen.speeds[0]:.4g}{in_place} makes it the drop measured"
     ]
 
 
@@ -177,13 +178,14 @@ def fit_doubts(
         off, size = function.misfit(*curve), np.nanmax(np.abs(curve[1]), initial=0.0)
         if off > _FOLLOWS * size:
             told.append(
-                f"the polynomial of degree {function.degree} deviates by up to {off:.3g} {tunable.unit}, of {size:.3g} at most; use a "
-                "higher degree, or a narrower range of speeds"
+                f"the polynomial of degree {function.degree} deviates by up to {off:.3g} from values of up to "
+                f"{f'{size:.3g} {tunable.unit}'.rstrip()}; use a higher degree, or a narrower range of speeds"
             )
     beyond = function.beyond(speeds)
     if beyond.size and function.degree:
+        last = f" to {beyond.max():.4g}" if beyond.size > 1 else ""
         told.append(
-            f"the drop has impacts at {beyond.min():.4g} to {beyond.max():.4g} m/s, and the polynomial was fitted over "
+            f"the drop has impacts at {beyond.min():.4g}{last} m/s, and the polynomial was fitted over "
             f"{function.slowest:.4g} to {function.fastest:.4g} m/s: there it is an extrapolation"
         )
     rings = problem.sphere.modes is not None or problem.plate.modes is not None or problem.local_element is not None

@@ -45,7 +45,7 @@ def check_reached(tunable: Tunable, problem: Problem, seen: Observations, weight
             continue
         others = other_parameters(problem, tunable, seen, weights, row=int(row))
         hint = "; with the rest as given it would take " + " or ".join(_value(problem, *item) for item in others.items()) if others else ""
-        asked = f"{seen.labels[row]}: after {seen.speeds[row]:.5g} m/s a {words} of {wanted[row]:.5g} {unit} is wanted"
+        asked = f"{seen.labels[row]}: at an approach speed of {seen.speeds[row]:.5g} m/s a {words} of {wanted[row]:.5g} {unit} is wanted"
         reach = f"{found.least[row]:.5g} to {found.most[row]:.5g} {unit}, whatever {tunable.name} is"
         if beyond <= 0.0:
             reach = f"{reach}, but jumps over this one"

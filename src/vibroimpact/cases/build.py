@@ -54,7 +54,9 @@ def check_case(case: CaseTable) -> None:
     if impact_limit(case) is None and run_duration(case) is None:
         remedy = "give a number or a duration"
         if is_conservative(law):
-            raise InputError(f'"all" needs a law that loses energy, and this {law.name} never comes to rest; {remedy}', "run.impacts")
+            raise InputError(
+                f'"all" needs a law that loses energy, and under this {law.name} the sphere never comes to rest; {remedy}', "run.impacts"
+            )
         if isinstance(law, CompliantLaw) and law.lasting and case.drop.same_spot and is_conservative(law.after_compression(1.0)):
             words = f"and {law.name} loses none on a dent that it has made"
             raise InputError(f'"all" needs a law that loses energy, {words}; {remedy}, or drop.same_spot = false', "run.impacts")

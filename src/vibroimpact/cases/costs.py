@@ -137,7 +137,7 @@ def _impact_costs(case: Case) -> Iterator[Cost]:
         (_VIBRATING_SECONDS if vibrate else _IMPACT_SECONDS) * number,
         _IMPACT_BYTES * number + _POINT_BYTES * points,
         _IMPACT_ON_DISK * number + _POINT_ON_DISK * points,
-        f"{'up to ' if vibrate else ''}about {float(f'{number:.2g}'):,.0f} impacts",
+        f"{'up to ' if vibrate else ''}about {float(f'{number:.2g}'):,.0f} impact{'s' if number > 1 else ''}",
         "give fewer run.impacts, or a higher run.rest_speed" if impact_limit(case) is None else "give fewer run.impacts",
     )
 
@@ -168,7 +168,7 @@ def _mode_costs(case: Case) -> Iterator[Cost]:
         share = 0.3 + 0.7 * number / _MODES_NUMBER
         seconds = _MODES_SECONDS * (dofs / _MODES_DOFS) ** (4.0 / 3.0) * share * (_WHOLE if isinstance(recipe.shape, ImportedMesh) else 1.0)
         fewer = f"fewer {name}.modes" if recipe.reduction.max_frequency is None else f"a lower {name}.max_frequency"
-        remedy = f"give {fewer} or larger elements; they are computed once and kept"
+        remedy = f"give {fewer} or larger elements; the modes are computed once and kept"
         yield Cost(seconds, _DOF_BYTES * dofs, 8.0 * dofs * number, f"the modes of the {name}", remedy)
 
 

@@ -80,7 +80,11 @@ def _samples(file: str, columns: str | None, repeat: bool) -> tuple[float, Float
     name = next(name for name in table.columns if name != "time")
     time, values = table.columns["time"], table.columns[name]
     if not _FEWEST <= len(time) <= _MOST:
-        many = f"it takes {_FEWEST}" if len(time) < _FEWEST else f"more than {_MOST:,} can't be followed; keep a part, or fewer a second"
+        many = (
+            f"at least {_FEWEST} are needed"
+            if len(time) < _FEWEST
+            else f"more than {_MOST:,} can't be followed; keep a part, or fewer a second"
+        )
         raise InputError(f"{file}: {len(time)} samples are no motion that can be followed: {many}")
     _check_steps(table, time)
     _check_sampling(table, name, values)

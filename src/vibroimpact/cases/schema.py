@@ -151,7 +151,12 @@ class DropSection(Section):
 
     height: (
         Annotated[
-            float, UncertainQuantity("m", "initial height of the sphere's centre above the plate's upper surface, at rest", Range(above=0))
+            float,
+            UncertainQuantity(
+                "m",
+                "initial height of the sphere's centre above the plate's upper surface, at rest unless velocity is given",
+                Range(above=0),
+            ),
         ]
         | None
     ) = None
@@ -185,7 +190,7 @@ class DropSection(Section):
         elif self.speed is not None:
             raise InputError("give either speed or velocity; both are given")
         elif self.height is None and self.velocity[2] >= 0.0:
-            words = f"its z is {self.velocity[2]:g} m/s, which leads away from the plate"
+            words = f"its z is {self.velocity[2]:g} m/s, which does not lead to the plate"
             raise InputError(f"{words}; at first touch it is negative, or give the height at which the drop starts", "velocity")
         if self.angle is not None and self.speed is None:
             raise InputError("an angle needs the speed at first touch; give speed, or velocity in place of both", "angle")
@@ -198,6 +203,9 @@ def _read_impacts(value: Any) -> Any:
         return value
     raise InputError(f'{shown(value)} is not allowed; it must be a whole number from 1 to {MOST_IMPACTS}, or "all" to continue until rest')
 
+
+_MEASURED_BY = {"strain": "strain-gauge", "pressure": "microphone", "force": "force"}
+"""Instruments by the quantity that no other measures."""
 
 _DIRECTIONS = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
@@ -232,7 +240,8 @@ class SensorSection(Section):
         None, description="measured quantity: acceleration by default, or the output of the instrument"
     )
     direction: Literal["x", "y", "z"] | tuple[_Part, _Part, _Part] = Field(
-        "z", description='direction of measurement: "x", "y", "z" (upwards), or three numbers along x, y and z'
+        "z",
+        description='direction of measurement: "x", "y", "z" (upwards), or numbers along x, y and z; of a strain gauge "x" by default',
     )
     rate: Annotated[float, Quantity("Hz", "sampling rate", Range(above=0))] = 50e3
     filter: Annotated[Literal["sigma-delta", "butterworth", "none"], _one_of(FILTERS)] = Field(
@@ -261,7 +270,8 @@ class SensorSection(Section):
         if isinstance(instrument, Microphone) and self.direction not in ("z", (0.0, 0.0, 1.0)):
             raise InputError("a microphone is omnidirectional; leave out the direction", "direction")
         if instrument is None and self.quantity not in (None, *MOTIONS):
-            raise InputError(f'{self.quantity} is the output of an instrument; name one, such as instrument = "geophone"', "quantity")
+            kind = _MEASURED_BY.get(str(self.quantity), "geophone")
+            raise InputError(f'{self.quantity} is the output of an instrument; name one, such as instrument = "{kind}"', "quantity")
         if instrument is not None and self.quantity not in (None, instrument.quantity):
             words = f"{INSTRUMENTS[str(self.instrument)]} measures {instrument.quantity}"
             raise InputError(f"{words}; leave out quantity, or the {self.instrument}", "quantity")
@@ -316,7 +326,8 @@ class RunSection(Section):
     """When to stop, and how exact to be."""
 
     impacts: Annotated[int | Literal["all"] | None, BeforeValidator(_read_impacts)] = Field(
-        None, description='number of impacts after which the run ends; "all": until rest; by default 5, or all if a duration is given'
+        None,
+        description='number of impacts after which the run ends; "all": until rest; by default 5, or all if a duration or a motion ends it',
     )
     duration: Annotated[float, Quantity("s", "time at which the run ends", Range(above=0))] | None = None
     rest_speed: Annotated[float, Quantity("m/s", "separation speed below which the sphere is at rest", Range(at_least=0))] | None = None
@@ -361,7 +372,8 @@ class CaseTable(Section):
                 "drop.height",
             )
         if height is not None and self.drop.gravity == 0:
-            raise InputError("without gravity a sphere does not fall; give drop.speed instead of drop.height", "drop.gravity")
+            remedy = "give drop.speed instead of drop.height" if self.drop.velocity is None else "leave out drop.height"
+            raise InputError(f"without gravity a sphere does not fall; {remedy}", "drop.gravity")
         if self.plate.radius is not None:
             check_sphere_below(self)
         # the extent of an imported mesh is not known before it is read

@@ -54,7 +54,7 @@ def sensor_doubts(case: ResolvedCase, signals: Mapping[str, Signal], highest: fl
         if apart < _NEAR:
             part = _finite_or_zero(signal.uncertainty) + _thickness_error(case, signal, duration)
             cause = f"{apart:.2g} thicknesses from the contact, the motion through the thickness and the modes left out"
-            remedy = _remedy(signal, highest) if signal.uncertainty > _PROMISED else f"place it {_NEAR:g} thicknesses or more away"
+            remedy = _remedy(signal, highest) if signal.uncertainty > _PROMISED else f"keep a distance of {_NEAR:g} thicknesses or more"
             alike.setdefault((cause, remedy), {})[name] = part
         elif signal.uncertainty > _PROMISED:
             cause = f"the modes of the plate left out (above {text(highest, 'Hz')}, at {signal.sensor.rate:g} samples per second)"
@@ -78,7 +78,7 @@ def _range_doubts(signal: Signal, end: float | None) -> list[str]:
     least, long = float(f"{_ENOUGH * signal.peak:.1g}"), text(signal.overload_time, "s", 2)
     least = least if least >= signal.peak else 2.0 * least
     return [
-        f'the accelerometer of sensor "{signal.sensor.name}" is overloaded beyond {limit} for {long} in all, by up to '
+        f'the accelerometer of sensor "{signal.sensor.name}" is overloaded beyond {limit} for {long} in all, with up to '
         f"{signal.peak:.4g} m/s2: the signal is clipped there, and wrong around it; take one with a range of {least:g} m/s2 "
         "or so"
     ]
@@ -110,9 +110,9 @@ def _baffle_doubts(case: ResolvedCase, signal: Signal, speed: float) -> list[str
     if part < _LOW:
         return []
     return [
-        f'{_per_cent(part)} of the power of the microphone "{signal.sensor.name}" lies below {text(lowest, "Hz")}, where half a '
+        f'{_per_cent(part)} of the power of the signal of microphone "{signal.sensor.name}" lies below {text(lowest, "Hz")}, where half a '
         "wavelength is longer than the plate is wide: the plate is assumed to lie in a rigid baffle, and without one its two sides cancel "
-        "there; use higher frequencies"
+        "there; use the signal above that frequency only"
     ]
 
 

@@ -62,7 +62,10 @@ def _isolate_matplotlib() -> None:
     try:
         settings.read_text(encoding="utf-8") if settings.is_file() else None
     except (OSError, ValueError):
-        fail("matplotlibrc: this file, with which matplotlib sets itself, is not UTF-8 text; mend it, or rename it", 2)
+        fail(
+            "matplotlibrc: this file in the working directory, with settings of matplotlib, can't be read as UTF-8 text; mend or rename it",
+            2,
+        )
 
 
 def _run() -> int:

@@ -50,7 +50,7 @@ def bound(
     if not 10.0 <= band <= 1e7:
         raise InputError(f"{bandwidth} is not allowed; it must be 10 Hz or more, and at most 10 MHz", "--bandwidth")
     if not -60.0 <= signal_to_noise <= 200.0:
-        raise InputError(f"{signal_to_noise:g} is not allowed; it must be from -60 to 200", "--snr")
+        raise InputError(f"{signal_to_noise:g} is not allowed; it must be from -60 to 200 dB", "--snr")
     screen = console(err=as_json)
     with exit_on_interrupt(), patient_progress("Bayes error", screen) as progress:
         found = read_study(population) if Path(population).is_dir() else load_sweep(population, samples)

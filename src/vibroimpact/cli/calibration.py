@@ -78,7 +78,7 @@ def calibrate(
     given = {"--channel": channel, "--gravity": gravity, "--height": height, "--contact": contact}
     if Path(case).suffix.lower() in RECORDS:
         if changes:
-            raise InputError("--set changes the keys of a case, and a record has none")
+            raise InputError("--set changes the keys of a case, and a record or a table has none")
         check_free(target, force=force)
         if Path(case).suffix.lower() in TABLES and holds_restitutions(case, columns):
             of_records = [option for option, value in given.items() if value is not None]

@@ -48,7 +48,7 @@ def correlate(
     ] = None,
     hammer: Annotated[
         str | None,
-        typer.Option("--hammer", metavar="CHANNEL", help="Channel with the force of the hammer; of responses its node."),
+        typer.Option("--hammer", metavar="CHANNEL", help="Channel with the force of the hammer; for frequency responses, its node."),
     ] = None,
     window: Annotated[
         str | None,
@@ -61,7 +61,7 @@ def correlate(
             metavar="FROM,TO",
             help=(
                 'Band of frequencies, such as "100 Hz, 5 kHz"; by default from half the lowest mode to the highest, or to what the sensors '
-                "pass."
+                "pass or the force excites, if that is less."
             ),
         ),
     ] = None,
@@ -71,7 +71,10 @@ def correlate(
             "--compare",
             metavar="KIND",
             autocompletion=complete_compared,
-            help="What of UFF files with both is compared: records, or responses, as by default without a record named by --hammer.",
+            help=(
+                "For UFF files with both: records or responses; by default responses, unless --window, the channel of --hammer or another "
+                "file asks for records."
+            ),
         ),
     ] = None,
     columns: Columns = None,

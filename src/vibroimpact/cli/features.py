@@ -116,4 +116,4 @@ def _records(
             except InputError as error:
                 raise with_path(record.source, error) from None
     if len(told) > _TOLD:
-        note(f"doubt: there are {len(told) - _TOLD:,} further doubts of this kind; the columns offset and drift have all of them")
+        note(f"doubt: there are {len(told) - _TOLD:,} further doubts about records; the columns offset and drift have what was removed")

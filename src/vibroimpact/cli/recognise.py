@@ -33,7 +33,7 @@ def recognise(
         typer.Option(
             "--folds",
             metavar="N",
-            help="Number of folds of the cross-validation; by default 5, or as many as each class has groups, if fewer than 10.",
+            help="Number of folds of the cross-validation; by default 5, or the smallest number of groups of a class, if below 10.",
         ),
     ] = None,
     seeds: Annotated[int, typer.Option("--seeds", metavar="N", help="Number of seeds over which the scores are averaged.")] = 5,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 from typing import Annotated
 
@@ -49,7 +50,8 @@ def new(
     text = case_template(source, title, settings_of(changes))
     recover(path)
     write_text_file(path, text)
-    say(f"wrote {path}; explain it: vibroimpact check {path}; run it: vibroimpact run {path}")
+    quoted = shlex.quote(str(path))
+    say(f"wrote {path}; explain it: vibroimpact check {quoted}; run it: vibroimpact run {quoted}")
 
 
 @app.command(context_settings={"ignore_unknown_options": True})  # a number may be negative
@@ -95,7 +97,7 @@ def laws(
         return
     law = friction_laws().get(name) or find_contact_law(name)
     if output is not None and name in friction_laws():
-        raise InputError(f"{name} is a friction law, and curves are drawn of contact laws", "-o")
+        raise InputError(f"{name} is a friction law, and curves are drawn of contact laws only", "-o")
     if output is not None:
         from vibroimpact.laws.curves import check_picture
 

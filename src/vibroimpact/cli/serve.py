@@ -71,7 +71,7 @@ def _listen(host: str, port: int) -> Any:
     except OSError as error:
         listening.close()
         raise InputError(
-            f"port {port} can't be used: {error.strerror or error}; is a live page open already? Another one: --port 0"
+            f"port {port} can't be used: {error.strerror or error}; is a live page open already? --port 0 takes any free port"
         ) from None
     return listening
 

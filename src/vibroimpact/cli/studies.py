@@ -27,7 +27,10 @@ MOST_BYTES_UNCONFIRMED = 10e9
 Output = Annotated[Path | None, typer.Option("-o", "--output", metavar="DIR", help="The folder to make; by default STUDY-sweep.")]
 Resume = Annotated[bool, typer.Option("--resume", help="Continue the study in the folder, or start it if there is none.")]
 Force = Annotated[bool, typer.Option("--force", help="Replace the folder of an existing study.")]
-Yes = Annotated[bool, typer.Option("--yes", help=f"Confirm more than {MOST_DROPS_UNCONFIRMED:,} drops, or 10 GB of results.")]
+Yes = Annotated[
+    bool,
+    typer.Option("--yes", help=f"Confirm more than {MOST_DROPS_UNCONFIRMED:,} drops, or {MOST_BYTES_UNCONFIRMED / 1e9:g} GB of results."),
+]
 Processes = Annotated[int | None, typer.Option("--processes", metavar="N", min=1, help="Number of processes; by default one per core.")]
 Scheduler = Annotated[
     str | None,

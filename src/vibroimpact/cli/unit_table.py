@@ -40,7 +40,9 @@ def in_unit_systems(value: float, unit: str) -> list[tuple[str, float, str]]:
     dimension = dimension_of(unit)
     others = dimension.keys() - _SYSTEMS["SI"].keys()
     if others or not dimension:
-        raise InputError(f'"{unit}" holds {", ".join(sorted(others)) or "no dimension"}; only units of mass, length and time are shown')
+        raise InputError(
+            f'"{unit}" holds {", ".join(sorted(others)) or "no dimension"}; only units of force, mass, length and time are shown'
+        )
     found = []
     for name, units in _SYSTEMS.items():
         there = unit_text([(units[one], power) for one, power in dimension.items()])

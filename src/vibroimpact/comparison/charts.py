@@ -65,11 +65,12 @@ def _position_chart(results: Mapping[str, Result], roles: Mapping[str, str]) -> 
         if one.status.startswith("At rest") and time[-1] < end:  # it stays there until the longest run ends
             time, height = np.append(time, end), np.append(height, height[-1])
         lines.append(Line(time, height, name, roles[name]))
-    time_axis = Axis("Time", "s", views=_first_contact(results))
+    views = _first_contact(results)
+    time_axis = Axis("Time", "s", views=views)
     panel = Panel(time_axis, Axis("Height above the plate", HISTORY_COLUMNS["position_m"].unit), tuple(lines))
-    caption = (
-        "Height of the sphere's centre above the plate with each law; the first impact, which begins at the same time for all, enlarged."
-    )
+    caption = "Height of the sphere's centre above the plate with each law."
+    if views:
+        caption = f"{caption} The first impact, which begins at the same time for all, is shown enlarged."
     return Chart("position", "Height of the sphere's centre", ((panel,),), caption, _HEIGHT)
 
 
@@ -118,8 +119,10 @@ def _restitution_chart(comparison: Comparison, roles: Mapping[str, str]) -> Char
     panel = Panel(speed, Axis("Separation speed over approach speed", range=(0.0, _TOP)), tuple(marks))
     caption = (
         "Lines: each law with the parameters of its first impact, on undeformed surfaces and without gravity. Symbols: the impacts of the "
-        "run; with a law that leaves a dent, those after the first may lie above its line. Dotted: the restitution asked of a law."
+        "run; with a law that leaves a dent, those after the first may lie above its line."
     )
+    if asked:
+        caption = f"{caption} Dotted: the restitution asked of a law."
     return Chart("restitution", "Restitution achieved", ((panel,),), caption, _HEIGHT)
 
 

@@ -133,7 +133,7 @@ def _check_given(given: Mapping[str, Any], laws: Mapping[str, type[ContactLaw]])
         units = {name: _unit(item) for name, law in laws.items() for item in fields(law) if item.name == key}
         if len(set(units.values())) > 1 and not isinstance(value, str):
             of_each = ", ".join(f"{name} [{unit}]" for name, unit in units.items())
-            raise InputError(f'"{key}" is not the same in all laws: {of_each}; give LAW.{key} for each')
+            raise InputError(f'"{key}" does not have the same unit in all laws: {of_each}; give LAW.{key} for each')
 
 
 def _unit(item: Field[Any]) -> str:

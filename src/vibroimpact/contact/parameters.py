@@ -150,8 +150,11 @@ class Parameters:
             if key not in given and item.metadata["from_pair"]:
                 given[key] = getattr(pair, item.metadata["from_pair"])
                 if given[key] is None:
+                    words = f"{cls.name} needs {_with_unit(item)}, and"
+                    if item.metadata["from_pair"] not in ("yield_strength", "yield_pressure"):
+                        raise InputError(f"{words} the pair of bodies has none; give it here", key)
                     raise InputError(
-                        f"{cls.name} needs {_with_unit(item)}, and no yield_strength is known of the materials to take it from; "
+                        f"{words} neither material has a yield_strength to take it from; "
                         f"give it here, or give one of the materials a yield_strength",
                         key,
                     )

@@ -115,7 +115,9 @@ def acquired_of(sensors: Sequence[Sensor], records: Sequence[Record], force: Rec
         raise InputError(f"the record {shown(force.name)} is in {force.unit}; the force of a hammer is in N")
     whole, start = on_common_time(every)
     if whole.shape[1] < 2 * LEAD:
-        raise InputError(f"the records have {whole.shape[1]} samples in common; they do not overlap in time, or are too short")
+        raise InputError(
+            f"the records have {whole.shape[1]} samples in common, and {2 * LEAD} are needed; give longer records that overlap in time"
+        )
     for one, value in zip(every, whole, strict=True):
         if np.ptp(value) == 0.0:
             raise InputError(f"the record {shown(one.name)} is constant where it overlaps with the others; it has no onset")

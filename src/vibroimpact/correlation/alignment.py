@@ -9,7 +9,7 @@ from vibroimpact.arrays import Floats
 from vibroimpact.correlation.acquired import LEAD, Acquired
 from vibroimpact.signals.delay import Delay, band_limited, delay_between
 
-_ALIGNED = 5e-3
+ALIGNED = 5e-3
 """Time from the first touch on by which records are aligned [s]: later, small errors of frequencies have added up."""
 LEAST = 64
 """Least number of samples from the first touch on."""
@@ -28,7 +28,7 @@ def delay_of(acquired: Acquired, simulated: Floats, band: tuple[float, float], l
     as far as a force tells that, and otherwise of that which is most like its simulation.
     """
     rate = acquired.rate
-    reach = max(LEAST, round(min(_ALIGNED, length) * rate))
+    reach = max(LEAST, round(min(ALIGNED, length) * rate))
     first = max(0, acquired.onsets[0] - LEAD - reach)
     last = acquired.onsets[0] + reach
     fade = np.ones(last - first)

@@ -12,9 +12,11 @@ from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.made import made_charts
 from vibroimpact.charts.marks import Bars, Line, Mark, Points, Rug
+from vibroimpact.correlation.alignment import ALIGNED
 from vibroimpact.correlation.correlate import Correlation
 from vibroimpact.correlation.criteria import Criteria
 from vibroimpact.correlation.document import what_frac_is_of
+from vibroimpact.correlation.octaves import FEW
 from vibroimpact.shown import shortened, visible
 
 MOST = 8
@@ -54,6 +56,11 @@ def correlation_charts(found: Correlation) -> list[Chart]:
     return made_charts(makers)
 
 
+def those_drawn(number: int) -> str:
+    """Return, as the end of a caption, which of so many records are drawn; empty if all are."""
+    return f" The first {MOST} of {number} are drawn." if number > MOST else ""
+
+
 def _name(found: Criteria, number: int) -> str:
     return shortened(visible(found.sensors[number].name), 40)
 
@@ -72,8 +79,8 @@ def _overlay(found: Correlation) -> Chart:
             panels.append(Panel(axis, level, tuple(lines), f"{_name(found, number)}: {words}"))
         rows.append(tuple(panels))
     caption = (
-        f"Each record, aligned in time by its first 5 ms, the simulation, and the difference, within the band from {found.band[0]:.4g} to "
-        f"{found.band[1]:.4g} Hz."
+        f"Records, aligned in time by their first {1e3 * ALIGNED:g} ms, the simulation, and the difference, within the band from "
+        f"{found.band[0]:.4g} to {found.band[1]:.4g} Hz.{those_drawn(len(found.sensors))}"
     )
     return Chart("overlay", "Records and simulation", tuple(rows), caption, _HEIGHT)
 
@@ -95,7 +102,7 @@ def _responses(found: Correlation) -> Chart:
             )
         rows += [(panel,) for panel in panels]
     what = "Frequency responses to the force (estimator H1)" if found.hits else "Spectra of record and simulation"
-    caption = f"{what}, with the same window and spectral leakage. Ticks mark the modes of the case."
+    caption = f"{what}, with the same window and spectral leakage. Ticks mark the modes of the case.{those_drawn(len(found.sensors))}"
     return Chart("responses", "Frequency responses" if found.hits else "Spectra", tuple(rows), caption, _HEIGHT)
 
 
@@ -131,7 +138,7 @@ def frac_chart(found: Criteria, of: str) -> Chart:
     panel = Panel(Axis("Band", names=names), Axis("FRAC", range=(0.0, 1.0)), marks)
     caption = (
         f"Frequency response assurance criterion over each octave, of {of}. 1: equal except "
-        "for a factor; 0: uncorrelated. An octave with fewer than four frequencies has no bar."
+        f"for a factor; 0: uncorrelated. An octave with fewer than {FEW} frequencies has no bar.{those_drawn(len(found.sensors))}"
     )
     return Chart("frac", "Frequency response assurance criterion", ((panel,),), caption, _HEIGHT)
 

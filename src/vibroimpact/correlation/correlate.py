@@ -293,7 +293,7 @@ def _acting(problem: Problem, acquired: Acquired, hears: Listening, window: floa
         If the window is not above 0, or there are too few samples in it.
     """
     if window is not None and not window > 0.0:
-        raise InputError(f"a window of {window:g} s is not allowed; it is above 0")
+        raise InputError(f"a window of {window:g} s is not allowed; it must be longer than 0 s")
     rate = acquired.rate
     length = min(np.inf if window is None else window, _longest(acquired))
     if acquired.force is None:
@@ -310,8 +310,13 @@ def _acting(problem: Problem, acquired: Acquired, hears: Listening, window: floa
         over = max(end - onset for end, onset in zip(acquired.ends, acquired.onsets, strict=True)) / rate
         acting = _Acting(Pushes(time, acquired.force / rate, acquired.pulse_times), 0.0, length, over)
     if length * rate < LEAST:
-        words = f"there are {max(0, int(length * rate))} samples from the first touch to the next, or to the end of the records"
-        raise InputError(f"{words}; {LEAST} are needed, that is {1e3 * LEAST / rate:.3g} ms at {rate:g} Hz; state a window")
+        until, remedy = "to the next one, or to the end of the records", "give longer records, and of hits that are further apart"
+        if window is not None and length == window:
+            until, remedy = f"within the window of {window:g} s", "give a longer one"
+        elif acquired.force is None:
+            remedy = "give longer records" if length == _longest(acquired) else "state a window"
+        words = f"there are {max(0, int(length * rate))} samples from the first touch on {until}"
+        raise InputError(f"{words}; {LEAST} are needed, that is {1e3 * LEAST / rate:.3g} ms at {rate:g} Hz; {remedy}")
     return acting
 
 
@@ -337,12 +342,14 @@ def _band(problem: Problem, acquired: Acquired, band: tuple[float, float] | None
     assert modes is not None  # `plate_problem` has seen to it
     if band is not None:
         if not 0.0 < band[0] < band[1] <= acquired.passed:
-            words = f"a band from {band[0]:g} to {band[1]:g} Hz is not allowed; it lies between 0 and {acquired.passed:g} Hz"
+            words = f"a band from {band[0]:g} to {band[1]:g} Hz is not allowed; it must rise from above 0 to at most {acquired.passed:g} Hz"
             raise InputError(f"{words}, which the sensors pass at {acquired.rate:g} samples per second")
         return band
     lowest, highest = float(modes.frequencies[0]), float(modes.frequencies[-1])
     if lowest >= acquired.passed:
-        raise InputError(f"the lowest mode of the plate has {lowest:.5g} Hz, and the sensors pass {acquired.passed:g} Hz; sample faster")
+        held = any(sensor.corner == acquired.passed for sensor in acquired.sensors)
+        faster = "raise the corner of the anti-alias filter" if held else "sample faster"
+        raise InputError(f"the lowest mode of the plate has {lowest:.5g} Hz, and the sensors pass {acquired.passed:g} Hz; {faster}")
     return 0.5 * lowest, min(max(highest, 1.5 * lowest), acquired.passed)
 
 

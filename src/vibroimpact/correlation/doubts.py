@@ -8,6 +8,7 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.correlation.acquired import LEAD, Acquired
+from vibroimpact.correlation.alignment import ALIGNED
 from vibroimpact.correlation.excitation import Excited, is_excited
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.shown import shown
@@ -59,12 +60,14 @@ def doubts_about(
         if sign < 0.0:
             yield f"the record {name} has inverted polarity; its sign is changed"
         if alike < _ALIKE:
-            yield f"the first parts of {name} and of its simulation differ (correlation {alike:.2f}): the delay may be wrong by a period"
-        yield from _clipped(f"the record {name}", value, recorded, acquired.onsets[0])
+            words = f"the first {1e3 * ALIGNED:g} ms of {name} and of its simulation differ (correlation {alike:.2f})"
+            yield f"{words}: the delay may be wrong by a period"
+        suffers = "its FRAC and residual suffer, and its damping if it is clipped after the end of the force"
+        yield from _clipped(f"the record {name}", value, recorded, acquired.onsets[0], suffers)
     for sensor, late in zip(acquired.sensors, skew, strict=True):
         if late:
             words = f"{abs(late) * acquired.rate:.3g} samples {'later' if late > 0.0 else 'earlier'} than the others and its simulation"
-            yield f"the record {shown(sensor.name)} comes {words}: the channels were not sampled together; its FRAC and residual suffer"
+            yield f"the record {shown(sensor.name)} comes {words}: its channel was not sampled with theirs; its FRAC and residual suffer"
     yield from _of_gains(acquired, corrected)
     if acquired.force is not None:
         yield from _of_force(acquired, delay)
@@ -75,10 +78,10 @@ def doubts_about(
         yield f"the modes of the case end at {highest:.5g} Hz, and the band at {excited.sought[1]:.5g} Hz: ask for more modes"
 
 
-def _clipped(what: str, value: np.ndarray, recorded: np.ndarray, onset: int) -> Iterator[str]:
+def _clipped(what: str, value: np.ndarray, recorded: np.ndarray, onset: int, suffers: str) -> Iterator[str]:
     samples = clipped_count(value, recorded, value[: max(0, onset - LEAD)])
     if samples:
-        yield f"{what} is clipped: {samples} samples lie at its extremes; damping is estimated from what follows"
+        yield f"{what} is clipped: {samples} samples lie at its extremes; {suffers}"
 
 
 def _of_gains(acquired: Acquired, delay: Delay) -> Iterator[str]:
@@ -88,23 +91,25 @@ def _of_gains(acquired: Acquired, delay: Delay) -> Iterator[str]:
     off = like & (np.abs(np.log(np.maximum(gain, 1e-300))) > _GAIN)
     if off.all() and np.ptp(np.log(gain)) < _GAIN:
         every = f"{'all records are' if len(gain) > 1 else 'the record is'} {np.exp(np.mean(np.log(gain))):.3g} times the simulation"
-        yield f"{every} in the first 5 ms: check {others}, the sensitivities, and mass and damping of the plate"
+        yield f"{every} in the first {1e3 * ALIGNED:g} ms: check {others}, the sensitivities, and mass and damping of the plate"
         return
     for sensor, times, wrong in zip(acquired.sensors, gain, off, strict=True):
         if wrong:
             words = "check its sensitivity and place, and the damping of the case"
-            yield f"the record {shown(sensor.name)} is {times:.3g} times its simulation in the first 5 ms: {words}"
+            yield f"the record {shown(sensor.name)} is {times:.3g} times its simulation in the first {1e3 * ALIGNED:g} ms: {words}"
 
 
 def _of_force(acquired: Acquired, delay: Delay) -> Iterator[str]:
     """Yield the doubts about the force of a hammer."""
     assert acquired.force is not None
-    yield from _clipped("the force", acquired.force, acquired.recorded[-1], acquired.onsets[0])
+    yield from _clipped("the force", acquired.force, acquired.recorded[-1], acquired.onsets[0], "frequency responses and simulation suffer")
     if (delay.polarity < 0.0).all():
         yield "all records have inverted polarity: the sign of the force may be wrong"
     samples = delay.time * acquired.rate
     if abs(samples) > _TOGETHER:
-        yield f"the records come {samples:.3g} samples later than computed from the force: the channels were not sampled simultaneously"
+        way = "later" if samples > 0.0 else "earlier"
+        words = f"the records come {abs(samples):.3g} samples {way} than computed from the force"
+        yield f"{words}: the channels were not sampled simultaneously"
     if len(acquired.pulses) > len(acquired.onsets):
         yield f"double hit of the hammer: there are {len(acquired.pulses)} pulses of force in {len(acquired.onsets)} hits"
 

@@ -10,7 +10,7 @@ import numpy as np
 from vibroimpact.arrays import Complex, Floats
 from vibroimpact.signals.frac import frac
 
-_FEW = 4
+FEW = 4
 """Frequencies below which an octave has no criterion: of one it is 1 whatever the signals are, of n that are unrelated about 1/n."""
 
 
@@ -32,4 +32,4 @@ def frac_of_octaves(octaves: Sequence[tuple[float, float]], frequency: Floats, m
     """Return the criterion of responses, (S, frequencies), over each octave, (S, octaves); NaN with fewer than four frequencies in it."""
     untold = np.full(len(measured), np.nan)
     parts = [(frequency >= low) & (frequency <= high) for low, high in octaves]
-    return np.stack([frac(measured[:, part], simulated[:, part]) if part.sum() >= _FEW else untold for part in parts], axis=1)
+    return np.stack([frac(measured[:, part], simulated[:, part]) if part.sum() >= FEW else untold for part in parts], axis=1)

@@ -170,9 +170,9 @@ OBLIQUE_IMPACT_COLUMNS: dict[str, Column] = {
     ),
     "friction_lost_J": Column("J", "energy dissipated by friction", "Lost by friction", "friction"),
     "microslip_lost_J": Column(
-        "J", "the part of it that was lost during partial slip of the contact", "of that in microslip", "in\u00a0microslip"
+        "J", "the part of friction_lost_J that was lost during partial slip of the contact", "of that in microslip", "in\u00a0microslip"
     ),
-    "gross_slip_lost_J": Column("J", "the other part: in slip of the whole contact, and in twisting and rolling"),
+    "gross_slip_lost_J": Column("J", "the other part of friction_lost_J: in slip of the whole contact, and in twisting and rolling"),
 }
 """Further columns of the impact table, where motion is not along the normal alone."""
 
@@ -217,7 +217,9 @@ OBLIQUE_HISTORY_COLUMNS: dict[str, Column] = {
 
 FRICTION_PARTS: dict[str, Column] = {
     "microslip_J": _lost("the part of friction_J that was lost during partial slip of a contact", "Lost in microslip", "microslip"),
-    "gross_slip_J": _lost("the other part: in slip of whole contacts, and in twisting and rolling", "Lost in gross slip", "gross slip"),
+    "gross_slip_J": _lost(
+        "the other part of friction_J: in slip of whole contacts, and in twisting and rolling", "Lost in gross slip", "gross slip"
+    ),
 }
 """Two parts of `friction_J`, which are known at the end of a run."""
 

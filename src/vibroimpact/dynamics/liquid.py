@@ -106,7 +106,7 @@ def check_sinks(density: Array, of_sphere: Array, key: str = "") -> None:
     if np.any(np.asarray(density) >= np.asarray(of_sphere)):
         part = float(np.max(np.asarray(density) / np.asarray(of_sphere)))
         raise InputError(
-            f"it has {part:.4g} times the density of the sphere, which floats in it and doesn't fall; give a liquid of a smaller density, "
+            f"the liquid has {part:.4g} times the density of the sphere, which floats in it and doesn't fall; give one of less density, "
             "or drop.speed with drop.gravity = 0",
             key,
         )

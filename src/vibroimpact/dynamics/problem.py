@@ -249,11 +249,11 @@ class Problem:
         place, speed, _ = self.surface(0.0)
         if self.height is not None and not np.all(np.asarray(self.height) - self.sphere.contact_offset > place):
             raise InputError(
-                "the plate begins its motion above the lowest point of the sphere; let it fall from higher, or change the phase"
+                "the plate begins its motion at or above the lowest point of the sphere; let it fall from higher, or change the phase"
             )
         if self.speed is not None and not np.all(np.asarray(self.speed) > -speed):
             raise InputError(
-                "the plate recedes from the sphere as fast as it comes down; give a higher speed, or another phase of the motion"
+                "the plate recedes at least as fast as the sphere comes down; give a higher speed, or another phase of the motion"
             )
 
     def _check_air(self, air: Air) -> None:
@@ -271,7 +271,9 @@ class Problem:
         if not np.all(np.asarray(self.sphere.contact_offset) > 0.0):
             raise InputError("a sphere that touches in a liquid needs a radius: its contact_offset, greater than 0 m")
         if self.laws[0].free_parameter != "restitution":
-            raise InputError(f"{self.laws[0].name} takes no restitution, of which a liquid leaves a part; take another law")
+            optional = any(item.name == "restitution" for item in fields(self.laws[0]))
+            words, remedy = ("is given without a", "give it one, or take another law") if optional else ("takes no", "take another law")
+            raise InputError(f"{self.laws[0].name} {words} restitution, of which a liquid leaves a part; {remedy}")
         if self.air is not None:
             raise InputError("the sphere is either in a liquid or in air; leave one of them out")
         if np.any(np.asarray(self.gravity) > 0.0):

@@ -36,7 +36,7 @@ def status_of(run: Ended) -> str:
     number, end, outcome = len(run.impacts["impact"]), float(run.end_time[0]), run.outcomes[0]
     after = f"after {number} impact{'' if number == 1 else 's'}"
     if outcome is Outcome.IMPACTS:
-        return f"Stopped {after}, at the top of the last rebound, at {_time(run, end, 6)} s."
+        return f"Stopped {after}, {_top_or_touch(run)}, at {_time(run, end, 6)} s."
     if outcome is Outcome.RIDING and isinstance(run.problem.laws[0], InstantaneousLaw):
         words = "a law without a force does not determine its motion along the plate then"
         return f"Stopped {after}, at {_time(run, end, 6)} s: {_riding(run)}, and {words}."
@@ -79,6 +79,19 @@ def _ended_by(run: Ended, outcome: Outcome) -> str:
     return f"{counted} ({riding}at most {left.max():.3g} J left in vibration)"
 
 
+def _top_or_touch(run: Ended) -> str:
+    """Return where a run stops after its last impact: at the top of the rebound, or where a plate that is shaken touches sooner."""
+    top, sooner = "at the top of the last rebound", "at the next touch, before the top of the last rebound"
+    if not run.problem.shaken:
+        return top
+    if run.problem.fluid is not None:
+        return f"{top}, or at the next touch if that is sooner"
+    begin, lasting, speed = (float(run.impacts[name][-1]) for name in ("time_s", "duration_s", "separation_speed_m_s"))
+    gravity = float(run.problem.gravity)
+    rise = speed / gravity if gravity > 0.0 else np.inf
+    return sooner if float(run.end_time[0]) < begin + float(np.nan_to_num(lasting)) + (1.0 - 1e-6) * rise else top
+
+
 def _riding(run: Ended) -> str:
     """Return the sentence on a sphere that is still in contact and not at rest."""
     if run.problem.shaken:
@@ -88,7 +101,9 @@ def _riding(run: Ended) -> str:
 
 def _moves_on(run: Ended) -> str:
     """Return the sentence on a sphere that bounces no more and moves on along the plate; empty if it does not."""
-    speed = float(np.sqrt(2.0 * max(float(run.energy["kinetic_J"]), 0.0) / float(run.problem.sphere.mass)))
+    fluid, mass = run.problem.fluid, float(run.problem.sphere.mass)
+    moved = mass if fluid is None else mass * float(fluid.inertia(run.problem.sphere_density))  # a liquid moves along
+    speed = float(np.sqrt(2.0 * max(float(run.energy["kinetic_J"]), 0.0) / moved))
     if run.problem.oblique is None or speed < _STANDING * float(run.impacts["approach_speed_m_s"][0]):
         return ""
     return f" It moves on along the plate, at {speed:.4g} m/s when the run ends."

@@ -148,7 +148,8 @@ class PointContact:
         if abs(np.linalg.norm(self.normal) - 1.0) > _UNIT:
             raise InputError(f"normal must be a vector of length 1, not {np.asarray(self.normal).tolist()}")
         if not 0.0 <= _number("gap", self.gap) < np.inf:
-            raise InputError(f"gap must not be negative, and finite: at {self.gap:g} m the bodies overlap at the start")
+            words = "below 0 m the bodies overlap at the start"
+            raise InputError(f"gap must be a finite number that is not negative, not {self.gap:g} m; {words}")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -206,7 +207,7 @@ class System:
                 if modes is not None and name not in modes.points:
                     raise InputError(f'the modes of "{body}" have no shapes at its contact: add "{name}" to their points', key)
             if contact.above == contact.below:
-                raise InputError(f'a body can not touch itself, as "{contact.above}" does here', key)
+                raise InputError(f'a body cannot touch itself, as "{contact.above}" does here', key)
             if all(self.bodies[body].held for body in (contact.above, contact.below)):
                 raise InputError(f'neither "{contact.above}" nor "{contact.below}" can move: both are held', key)
 
@@ -275,7 +276,7 @@ def _vector(name: str, value: object) -> Floats:
     """Return a vector of three finite numbers."""
     found = _array(value)
     if found.shape != (3,):
-        raise InputError(f"{name} must be three finite numbers, along x, y and z, below {_LARGEST:g}; not {value!r}")
+        raise InputError(f"{name} must be three finite numbers, along x, y and z, below {_LARGEST:g} in magnitude; not {value!r}")
     return found
 
 

@@ -145,7 +145,7 @@ def adams_contact(drop: Drop) -> AdamsContact:
     elif by_speed:  # the stored speed is in mm/s
         damping, meaning = f"{adams_number(dampings[0] / (1000.0 * speeds[0]))} * speed", "the dissipation times the approach speed"
     elif varies:
-        damping, meaning = _by_steps(dampings, speeds)
+        damping, meaning = _by_steps(dampings, speeds, impact_law=isinstance(law, AdamsImpact))
     else:
         damping, meaning = adams_number(dampings[0]), "the same in every impact"
     for one in laws[1:]:
@@ -217,13 +217,14 @@ def _by_function(law: ContactLaw, name: str, function: SpeedFunction) -> tuple[s
     return f"MAX({polynomial}, 0.0)", f"a polynomial of the approach speed, fitted over {fitted}"
 
 
-def _by_steps(dampings: Sequence[float], speeds: Sequence[float]) -> tuple[str, str]:
+def _by_steps(dampings: Sequence[float], speeds: Sequence[float], *, impact_law: bool) -> tuple[str, str]:
     """Return the damping as a step function of the stored approach speed, with edges midway between the speeds of the impacts."""
+    by_function = ", or damping_max as a function of the speed" if impact_law else ""
     for impact, (fast, slow) in enumerate(pairwise(speeds[: len(dampings)]), 1):
         if not slow < fast:
             raise InputError(
                 f"impact {impact + 1} is not slower than impact {impact}, so that Adams can't select their dampings by the "
-                "approach speed; give one damping for all, or a function of the speed",
+                f"approach speed; give one damping for all{by_function}",
                 "laws",
             )
     steps = adams_number(dampings[-1])

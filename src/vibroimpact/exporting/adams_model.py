@@ -142,8 +142,8 @@ def remarks(model: AdamsModel) -> list[str]:
         "the plate is part of the ground; both bodies are rigid, and do not use the materials",
         f"stiffness in N/mm^n = that in N/m^n over 1000^n, n = {contact.exponent:g}",
         ("largest damping C [N s/mm]: " if contact.penetration is not None else "hysteretic damping factor D [-]: ") + contact.meaning,
-        "the longest step is 1/50 of the first contact, the output step 1/20: with coarser ones, such as 20000 outputs in 5 s, "
-        "a contact gets one output, and the largest force is missed",
+        f"the longest step is 1/{_STEPS} of the first contact, the output step 1/{_OUTPUTS}: with steps as long as the contact "
+        "it gets one output or none, and the largest force is missed",
     ]
     if contact.holds_speed:
         lines.append(

@@ -42,7 +42,7 @@ def load_drop(directory: str | PathLike[str]) -> Drop:
         return _of_calibration(folder)
     result = read_result(folder)
     if not result.case:
-        raise InputError(f"{folder}: this run has no case.toml, for its problem was made in Python; what is exported needs its case")
+        raise InputError(f"{folder}: this run has no case.toml, as its problem was defined in Python; an export needs a case")
     try:
         return drop_of_result(result, read_case(result.case))
     except InputError as error:
@@ -104,7 +104,7 @@ def drop_of_result(result: Result, case: Case, function: tuple[str, SpeedFunctio
 def _check_flat(case: Case) -> None:
     """Raise if the sphere falls on another sphere, which no export format supports."""
     if case.plate.radius is not None:
-        raise InputError("what is exported falls on a flat plate, and this sphere falls on another", "plate.radius")
+        raise InputError("only a drop on a flat plate can be exported, and this sphere falls on another sphere", "plate.radius")
 
 
 def _of_calibration(folder: Path) -> Drop:

@@ -31,7 +31,7 @@ def check_hdf5(path: Path, expected: str | None) -> None:
     """
     if expected is None:
         if not endures(path):
-            raise DamageError("the file is damaged: it can't be opened without risk; make or copy it anew")
+            raise DamageError("the file is damaged: HDF5 crashes or hangs on it; make or copy it anew")
         return
     try:
         check_file(path, expected)

@@ -88,19 +88,18 @@ def _differences(free: SphereFit, sensors: list[str]) -> Iterator[Cause]:
     along = np.append([1.0, 0.5], np.zeros(len(deviations) - 2))
     stretch = setup.thickness + 0.5 * setup.modulus
     if abs(stretch) > max(_LEAST["thickness"], _SURE * float(np.linalg.norm(along @ free.setting.errors))):
-        words = f"the thickness or the modulus of the plate makes frequencies {_percent(stretch)}"
+        words = f"the thickness or the modulus of the plate makes its frequencies {_percent(stretch)} than in the case"
         yield Cause(words, "thickness", abs(stretch))
     for number, name in enumerate(sensors):
         off = float(np.hypot(*setup.moved[number]))
         if off > max(_LEAST["sensor_place"], _SURE * math.hypot(x[number], y[number])):
             yield Cause(f"{shown(name)} lies {1e3 * off:.2g} mm from its place in the case", "sensor_place", off)
         if abs(more[number]) > max(_LEAST["gain"], _SURE * float(spread[number])):
-            yield Cause(
-                f"{shown(name)} reads {_percent(float(more[number]))} than it should beside the others", "gain", abs(float(more[number]))
-            )
+            beside = " beside the others" if len(sensors) > 1 else ""
+            yield Cause(f"{shown(name)} reads {_percent(float(more[number]))} than it should{beside}", "gain", abs(float(more[number])))
         off = float(setup.resonance[number])
         if abs(off) > max(_LEAST["resonance"], _SURE * resonance[number]):
-            yield Cause(f"{shown(name)} has a mounted resonance {_percent(off)}", "resonance", abs(off))
+            yield Cause(f"{shown(name)} has a mounted resonance {_percent(off)} than in the case", "resonance", abs(off))
 
 
 def _percent(part: float) -> str:

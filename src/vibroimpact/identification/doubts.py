@@ -43,7 +43,7 @@ def doubts_about(plate: Plate, measured: Measured, search: Search, sphere: Spher
         yield f"{words}: the errors of mesh and modes left out, which a plate has, are not in the intervals"
     highest, passed = float(plate.problem.models["plate"].frequencies[-1]), _PASSED * measured.band
     if plate.model_error and highest < passed:
-        words = f"the modes of the plate end at {highest:,.0f} Hz, and the sensors hear up to {passed:,.0f} Hz"
+        words = f"the modes of the plate end at {highest:,.0f} Hz, and the filters of the sensors pass frequencies up to {passed:,.0f} Hz"
         more = f'ask for plate.max_frequency = "{math.ceil(passed / 1e3):d} kHz" or so'
         yield f"{words}; the intervals do not contain what the modes above lack; {more}"
     others = ", ".join(f"({1e3 * one.place[0]:.1f}, {1e3 * one.place[1]:.1f}) mm" for one in search.candidates[1:])
@@ -51,9 +51,9 @@ def doubts_about(plate: Plate, measured: Measured, search: Search, sphere: Spher
         yield f"a force at {others} explains the records about as well; add a sensor off the axes of symmetry, or give the place"
     at_edge = np.abs(sphere.parameters[:2]) >= 0.999 * np.array(plate.half)
     if place is None and at_edge.any():
-        yield "the place lies at the edge of the plate, where none is sought"
+        yield "the place lies at the limit of the search, near the edge of the plate; the true one may lie beyond it"
     if not sphere.converged:
-        yield "the fit of the sphere did not come to an end; its numbers are those of its last step"
+        yield "the fit of the sphere did not converge; its numbers are those of its last step"
     left = rms_of(sphere.residual, measured.heard)
     ratio, part = float((left / measured.noise).max()), float((left / measured.rms).max())
     if measured.quiet and ratio > _LEFT:
@@ -63,7 +63,7 @@ def doubts_about(plate: Plate, measured: Measured, search: Search, sphere: Spher
         yield _of_misfit(plate, measured, search, sphere, place, words, part / _PART)
     for name, deviation in zip(("radius", "speed"), np.sqrt(np.diag(sphere.covariance))[2:4].tolist(), strict=True):
         if deviation > _WIDE:
-            yield f"the {name} is not told: its standard deviation is {100.0 * deviation:.2g} %"
+            yield f"the records do not determine the {name}: its standard deviation is {100.0 * deviation:.2g} %"
 
 
 def _of_records(measured: Measured) -> Iterator[str]:

@@ -175,9 +175,11 @@ def prepared_plate(
         If the plate is rigid, the case has no sensors, or a number is not allowed.
     """
     if not 0.0 < window <= 1.0:
-        raise InputError(f"a window of {window:g} s is not allowed; it is above 0 and at most 1 s")
+        raise InputError(f"a window of {window:g} s is not allowed; it must be greater than 0 and at most 1 s")
     if not 0.0 <= frequency_error < 0.5:
-        raise InputError(f"an error of frequencies of {frequency_error:g} is not allowed; 0.01 is 1 %, and it is below 0.5")
+        raise InputError(
+            f"an error of frequencies of {frequency_error:g} is not allowed; it must be at least 0 and less than 0.5 (0.01 is 1 %)"
+        )
     return plate_of(case, window, frequency_error, progress, errors=errors, model_error=model_error)
 
 
@@ -257,8 +259,9 @@ def _started(plate: Plate, records: Sequence[Record], place: Place | None) -> tu
     measured, search = upright(plate, measured_of(plate.problem.sensors, records, plate.window), place)
     pulse = search.candidates[0]
     if pulse.duration * measured.band < _TOLD or pulse.spread > _VAGUE:
-        words = f"the sensors hear up to {measured.band:.4g} Hz, which tells contacts of {1e6 * _TOLD / measured.band:.3g} us or longer"
-        raise InputError(f"the records do not tell how long the contact lasts: {words}; sample faster than at {measured.rate:g} Hz")
+        words = f"the sensors hear up to {measured.band:.4g} Hz, enough for contacts of {1e6 * _TOLD / measured.band:.3g} us or longer"
+        remedy = f"sample faster than at {measured.rate:g} Hz, or with less noise"
+        raise InputError(f"the records do not determine the duration of the contact: {words}; {remedy}")
     return measured, search
 
 

@@ -74,7 +74,7 @@ class SetupErrors:
             of_place = name == "sensor_place"
             most, given = _MOST_PLACE if of_place else _MOST_PART, getattr(self, name)
             if not 0.0 <= given <= most:
-                allowed = "5 mm is 0.005, and it is at most 0.1 m" if of_place else "2 % is 0.02, and it is at most 0.3"
+                allowed = f"it must be 0 to {most:g} m (5 mm is 0.005)" if of_place else f"it must be 0 to {most:g} (2 % is 0.02)"
                 raise InputError(f"an error of {given:g} of the {meaning} is not allowed; {allowed}")
 
     @property

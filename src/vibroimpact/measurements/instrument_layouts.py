@@ -93,7 +93,7 @@ def _labview(head: Head) -> Found | None:
             clocks[channel] = clock._replace(alone=has_times == "no" or (apart == 1 and not is_first))
         elif has_times == "no":
             raise InputError(
-                f'line {number}: the channel "{names[channel]}" has neither times (X_Columns is No) nor a Delta_X in the header'
+                f'line {number}: the channel "{names[channel]}" has neither times (X_Columns is No) nor X0 and a positive Delta_X'
             )
     return Found(number, cells, mark, below + 1, clocks, doubts)
 

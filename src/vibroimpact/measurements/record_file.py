@@ -101,7 +101,7 @@ def _in_si(path: str | Path, one: Function, unit: str, file: UniversalFile) -> f
     """Return the conversion factor to SI, from the unit label or from dataset 164; if both are given, they must agree."""
     by_label, by_file = _by_label(one.unit, unit), None if file.factors is None else 1.0 / file.factors[_DIMENSIONS[unit]]
     if by_label is None and by_file is None:
-        label = f'the label "{one.unit}" of its unit is not known' if one.unit else "it has no unit"
+        label = f'the label "{one.unit}" is no known unit of this quantity, such as {unit}' if one.unit else "it has no unit"
         raise InputError(f'{path}: "{one.identification}": {label}, and there is no dataset 164 with the units of the file', "target")
     if by_label is not None and by_file is not None and abs(by_label / by_file - 1.0) > _SAME:
         words = f'its unit is "{one.unit}", and by dataset 164 the values are in units of {by_file:g} {unit}'

@@ -135,7 +135,7 @@ def filled_in(channel: RecordedChannel) -> tuple[Floats, Floats, str]:
     new = np.array(CubicSpline(channel.time, channel.value)(time))
     part = 100.0 * float(np.abs(new - np.interp(time, channel.time, channel.value)).max()) / (float(np.ptp(channel.value)) or 1.0)
     words = f"{count} of its samples {'is' if count == 1 else 'are'} missing, the first in line {channel.missing[0]}"
-    return time, new, f"{words}: filled in by cubic splines, which adds an error of up to {part:.2g} % of its range there"
+    return time, new, f"{words}: filled in by cubic splines, which adds an error, by estimate, of up to {part:.2g} % of its range there"
 
 
 def rising(channel: RecordedChannel) -> Bools:
@@ -154,7 +154,7 @@ def rising(channel: RecordedChannel) -> Bools:
         words = f"time goes backwards, from {one:.9g} to {other:.9g}"
         raise InputError(f"line {channel.lines[at + 1]}: {words}; if the file has several records, keep one of them")
     if not (steps > 0.0).any():
-        raise InputError("time stands still; a record has more than one moment")
+        raise InputError("all samples have the same time; a record needs at least two times")
     return np.append(True, steps > 0.0)
 
 
@@ -165,7 +165,7 @@ def _channel(cells: Cells, place: int, time_at: int | None, name: str, unit: str
     is_there = ~np.isnan(value)
     where = f"column {shown(cell)}"
     if not is_there.any():
-        raise InputError(f"{where}: there is no number in it; leave the column out by -, {cells.layout.remedy}")
+        raise InputError(f"{where}: there is no number in it; delete the column, {cells.layout.remedy}")
     untimed = np.flatnonzero(is_there & ~np.isfinite(time))
     if untimed.size:
         raise InputError(f"line {cells.lines[int(untimed[0])]}, {where}: the sample has no time; fill it in, or leave out the line")
@@ -190,8 +190,8 @@ def _in_range(value: Floats, where: str) -> tuple[Floats, tuple[str, ...]]:
     if over.all():
         raise InputError(f"{where}: all samples are over the range; record it with a larger one")
     finite = value[~over]
-    words = f"{over.sum()} of its samples are over the range (infinite): the largest of the others stands for them"
-    return np.clip(value, finite.min(), finite.max()), (f"{words}, which is too small; record it with a larger range",)
+    words = f"{over.sum()} of its samples are over the range (infinite): they are set to the largest or smallest of the others"
+    return np.clip(value, finite.min(), finite.max()), (f"{words}, so that the peak is too small; record it with a larger range",)
 
 
 def _times(column: Floats | None, clock: Clock | None, rows: int) -> Floats:

@@ -100,5 +100,5 @@ def _rate(text: str) -> float:
     except InputError as error:
         raise InputError(f"{STATED}: rate: {error.message}") from None
     if not rate > 0.0:
-        raise InputError(f"{STATED}: rate: {text} is none; it must be greater than 0")
+        raise InputError(f"{STATED}: rate: {text} is not allowed; it must be greater than 0")
     return rate

@@ -209,7 +209,7 @@ class _DecimalPoint:
         if self.comma and self.either[0]:
             at, cell = self.either
             words = f"{shown(cell.strip())} has a point, and line {self.comma} a decimal comma: the point may group digits"
-            raise InputError(f"line {at}: {words}; write all numbers with one of both")
+            raise InputError(f"line {at}: {words}; write all numbers with the same decimal sign, and do not group digits")
 
 
 def _too_many(number: int, fields: int, layout: Layout) -> str:
@@ -249,7 +249,7 @@ def factor_to_si(layout: Layout, cell: str, unit: str | None, wanted: str) -> fl
     if not wanted:
         factor = plain_factor(unit or "")
         if factor is None:
-            raise InputError(f"{where}: it is a plain number, and has no unit")
+            raise InputError(f"{where}: it is a plain number, and must have no unit")
         return factor
     if unit is None or not unit:
         name = shortened(cell.split("[")[0].strip(), _LONG_NAME)
@@ -271,7 +271,7 @@ def _number(line: int, column: str, row: list[str], place: int, mark: str | None
         return value
     where = f"line {line}, column {shown(column)}"
     if place >= len(row):
-        return without(nan, f"{where}: the cell is missing; the line has {len(row)}")
+        return without(nan, f"{where}: the cell is missing; the line has {len(row)} field{'' if len(row) == 1 else 's'}")
     value = SCPI.get(value, value)
     if isnan(value) or isinf(value):
         text = text.strip()

@@ -192,7 +192,7 @@ def _first_line_is_row(head: Head, comment: tuple[int, str]) -> Found | None:
         cells = header_cells(comment[1], separator)
         if len(cells) == columns and all(cells):
             return Found(comment[0], cells, mark, 0)
-    seen = f"the comment before them does not have as many ({comment[1][:40]!r})" if comment[1] else "no header is above them"
+    seen = f"the comment before it does not have as many names ({comment[1][:40]!r})" if comment[1] else "no header is above it"
     columns_are = f"{columns} numbers" if columns > 1 else "a number"
     remedy = (
         remedy_for([]) if columns > 1 else 'or give --columns "rate=10 kHz,force=N" with the rate of the rows (in a case the key columns)'

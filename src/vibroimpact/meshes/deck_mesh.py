@@ -115,7 +115,8 @@ def _check_deck_material(material: Material) -> None:
         If its density or modulus is not finite.
     """
     if not np.isfinite([material.density, material.youngs_modulus]).all():
-        raise InputError(f'the material "{material.name}" is rigid or has no density; one that is written to a file must have both')
+        words = "one that is written to a file must have a finite density and Young's modulus"
+        raise InputError(f'the material "{material.name}" is rigid or has no density; {words}')
 
 
 def check_shell_thickness(thickness: float | None) -> None:

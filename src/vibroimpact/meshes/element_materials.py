@@ -124,7 +124,7 @@ def _with_stated(mesh: Mesh, stated: StatedMaterials, unit: float) -> Mesh:
             raise InputError(f"the file gives its elements {count} materials, of which {one.name} {fault}; {REMEDY}", "materials")
     without = int((stated.of_elements < 0).sum())
     if without:
-        raise InputError(f"the file gives {without} of its elements no material, and the others {count}; {REMEDY}", "materials")
+        raise InputError(f"the file gives {without} of its elements no material, and the others {count} materials; {REMEDY}", "materials")
     fitting = _fitting(stated.materials, unit)
     if len(fitting) != 1:
         one = max(stated.materials, key=lambda other: other.density)
@@ -196,7 +196,9 @@ def _with_named(mesh: Mesh, named: Mapping[str, Material]) -> Mesh:
         for one in stated:
             left = int((numbers[sets[one.name]] < 0).sum())
             if left:
-                raise InputError(f'the names leave out {left} elements of the material "{one.name}" of the file; name it too', "materials")
+                too = "it" if left == len(sets[one.name]) else "sets that contain them"
+                words = f'the names leave out {left} elements of the material "{one.name}" of the file; name {too} too'
+                raise InputError(words, "materials")
     return replace(mesh, materials=tuple(named.values()), element_materials=numbers, stated=None)
 
 

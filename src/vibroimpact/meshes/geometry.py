@@ -64,7 +64,7 @@ def mesh_geometry(path: str | PathLike[str], size: float | None = None, order: i
     if order not in (1, 2):
         raise InputError(f"{order} is not allowed; it must be 1 or 2", "order")
     if suffix in STEP and unit_in_metres != 1.0:
-        raise InputError(f"{path}: a STEP file names its own unit; leave unit_in_metres at 1")
+        raise InputError(f"{path}: a STEP file states its own unit; leave this out", "unit_in_metres")
     # STEP is read in millimetres, for which the tolerances of the geometry kernel are intended
     unit = 1e-3 if suffix in STEP else unit_in_metres
     try:

@@ -39,12 +39,15 @@ def make_mesh(geometry: str, mesh: str, size: float, order: int) -> None:
     gmsh.model.occ.synchronize()
     solids = gmsh.model.getEntities(3)
     if len(solids) != 1:
-        raise RuntimeError(f"it holds {len(solids)} solids; it must hold one: join them in the program that made it")
+        remedy = "join them" if solids else "make a solid of its surfaces"
+        raise RuntimeError(f"it holds {len(solids)} solids; it must hold one: {remedy} in the program that made it")
     box = gmsh.model.getBoundingBox(-1, -1)
     size = size or max(box[axis + 3] - box[axis] for axis in range(3)) / DEFAULT_FRACTION
     expected = _expected_elements(gmsh, size)
     if expected > MOST_ELEMENTS:
-        raise RuntimeError(f"elements of that size would be about {expected:.0e}; at most 3e+06 are made: choose a larger size")
+        raise RuntimeError(
+            f"elements of that size would be about {expected:.0e}; at most {MOST_ELEMENTS:.0e} are made: choose a larger size"
+        )
     gmsh.option.setNumber("Mesh.MeshSizeMax", size)
     for dimension, word in ((2, "face"), (3, "volume")):
         for _, tag in gmsh.model.getEntities(dimension):

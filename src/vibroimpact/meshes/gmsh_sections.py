@@ -89,7 +89,7 @@ def sections(lines: Iterable[TextLine], known: Collection[str], skipped: Counter
             if name not in known:
                 skipped[f"${name}"] += 1
             elif name in found:
-                raise section.line.wrong(f"this is a second ${name}; a file must have one")
+                raise section.line.wrong(f"this is a second ${name}; a file may have only one")
             else:
                 found[name] = section
             section = None

@@ -54,7 +54,7 @@ _EFFECTS = (
     _effect(r"DC\w+", "elements of heat conduction have no stiffness"),
     _effect(
         r"SPC\w*|PS of GRID|SUPORT\d?|ASET\d?|\*BOUNDARY",
-        "nodes that the file holds are not held by it: the body has the supports of the case",
+        "supports of the file are not used: the body has the supports of the case",
     ),
 )
 

@@ -142,9 +142,10 @@ class NastranGrids:
             return self._made[number]
         given = self._given.get(number)
         if given is None:
-            raise line.wrong(f"the coordinate system {number} is not in the file; its CORD2R, CORD2C or CORD2S must be")
+            cards = f"{', '.join((*_OF_POINTS, *_OF_NUMBERS[:-1]))} or {_OF_NUMBERS[-1]}"
+            raise line.wrong(f"the coordinate system {number} is not in the file; its {cards} must be")
         if depth > _DEEPEST:
-            raise given.line.wrong(f"the coordinate system {number} refers to itself, or to more than {_DEEPEST} others one by one")
+            raise given.line.wrong(f"the coordinate system {number} refers to itself, or to more than {_DEEPEST} others in a chain")
         if given.nodes:
             at = np.array([self._place(node, given.line, depth + 1) for node in given.nodes])
         else:

@@ -144,10 +144,11 @@ class _Reader:
         solid = _SOLID.fullmatch(given)
         if solid is None or solid[1] not in _KINDS or self.in_assembly:
             if _OTHER_SOLID.match(given):
-                where = " in the assembly" if self.in_assembly else ""
+                if solid is not None and solid[1] in _KINDS:
+                    raise block.line.wrong(f"{shown(given)} in the assembly is a solid element that is not read; it must be in a part")
                 raise block.line.wrong(
-                    f"{shown(given)}{where} is a solid element that is not read; "
-                    "the part must be of C3D4, C3D5, C3D6, C3D8, C3D10, C3D13, C3D15, C3D20 or C3D27"
+                    f"{shown(given)} is a solid element that is not read; "
+                    "solid elements must be C3D4, C3D5, C3D6, C3D8, C3D10, C3D13, C3D15, C3D20 or C3D27"
                 )
             if not given:
                 raise block.line.wrong("*ELEMENT has no TYPE; it must have one, such as TYPE=C3D10")
@@ -219,5 +220,5 @@ def _range(texts: list[str], line: TextLine) -> tuple[int, int, int]:
     numbers = [parse_integer(text, line, "the bound of a range") for text in texts]
     first, last, step = [*numbers, 1][:3] if len(numbers) in (2, 3) else (1, 0, 1)
     if last < first or step < 1:
-        raise line.wrong("GENERATE needs first, last and step; last must be at least first, and step at least 1")
+        raise line.wrong("GENERATE needs first and last, and may have a step; last must be at least first, and step at least 1")
     return first, last, step

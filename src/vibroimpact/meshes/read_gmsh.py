@@ -133,7 +133,7 @@ class _Reader:
             for line, entity in section.take(parse_integer(word, first, "the number of entities"), 2 + box):
                 count = parse_integer(entity[1 + box], line, "the number of groups")
                 if count > _MOST_GROUPS:
-                    raise line.wrong(f"the entity belongs to {count} groups; it may belong to {_MOST_GROUPS}")
+                    raise line.wrong(f"the entity belongs to {count} groups; it may belong to at most {_MOST_GROUPS}")
                 tags = [parse_integer(tag.lstrip("-"), line, "the number of a group") for tag in entity[2 + box : 2 + box + count]]
                 self.groups[dimension, parse_integer(entity[0], line, "the number of an entity")] = tags
 

@@ -108,7 +108,7 @@ def _read_card(card: Card, parts: Parts, grids: NastranGrids, held: Counter[str]
     elif name.startswith(_OTHER_SOLIDS):
         raise line.wrong(f"{shown(name)} is a solid element that is not read; the elements must be CTETRA, CPYRAM, CPENTA or CHEXA")
     elif name.startswith("INCLUDE"):
-        raise line.wrong("the file to include is not given; its name must stand in quotes on the line of INCLUDE")
+        raise line.wrong("the file to include is not given; its name must be on the line of INCLUDE, in quotes if it has blanks")
     elif name == "SPC1":
         chosen = _selection([field for field in fields[2:] if field])
         if chosen is None:

@@ -103,7 +103,7 @@ def parse_integer(text: str, line: TextLine, what: str) -> int:
     """
     text = text.strip()
     if not (text.isascii() and text.isdigit() and len(text) <= 18):
-        raise line.wrong(f"{shown(text)} is not {what}; it must be a whole number of at most 18 digits")
+        raise line.wrong(f"{shown(text)} is not {what}; it must be a whole number of at most 18 digits, without a sign")
     return int(text)
 
 

@@ -93,7 +93,10 @@ def tied_nodes(mesh: Mesh, ties: Sequence[Tie], numbers: Integers, elements: tup
         followers = np.union1d(_nodes_of(_faces(mesh, tie.follower, elements)), tie.follower.nodes.places(numbers)).astype(np.int64)
         followers = np.setdiff1d(followers[~tied[followers]], _nodes_of(leader))
         if not leader or not len(followers):
-            found.remarks.append(f"the tie {names} of the mesh file joins nothing: a surface of it has no faces or nodes of solid elements")
+            found.remarks.append(
+                f"the tie {names} of the mesh file joins nothing: a surface of it has no faces or nodes of solid elements, or the nodes of "
+                "the first are tied already"
+            )
             continue
         rounding = _MOVED * float(mesh.extent.max())
         reach = _REACH * _mean_edge(mesh, leader) if tie.reach is None else max(tie.reach, rounding)
@@ -121,11 +124,12 @@ def tied_nodes(mesh: Mesh, ties: Sequence[Tie], numbers: Integers, elements: tup
         if away:
             found.remarks.append(
                 f"of the {len(places)} nodes that the mesh file ties by {names}, {away} are further than {reach:.4g} (in the unit of the "
-                "file) from its faces, and are not tied; give the tie a larger POSITION TOLERANCE"
+                "file) from the faces of the second, and are not tied; give the tie a larger POSITION TOLERANCE"
             )
         if furthest > rounding:
             found.remarks.append(
-                f"nodes that the mesh file ties by {names} are moved onto its faces, by up to {furthest:.4g} (in the unit of the file)"
+                f"nodes that the mesh file ties by {names} are moved onto the faces of the second, by up to "
+                f"{furthest:.4g} (in the unit of the file)"
             )
     return found
 

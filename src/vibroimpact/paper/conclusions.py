@@ -21,8 +21,8 @@ def conclusions(runs: Runs) -> ReportSection:
     return ReportSection(
         "Section 6: the conclusions",
         (
-            "Each conclusion as far as it can be computed. The three treatments are those of section 5.1. Conclusion (5) is advice on "
-            "what to measure.",
+            "Each conclusion is tested as far as it can be computed. The three treatments are those of section 5.1. Conclusion (5) is "
+            "advice on what to measure.",
         ),
         tables=(TextTable(("Conclusion", "By", "Does it hold?", "Numbers"), tuple(cells)),),
     )
@@ -79,7 +79,8 @@ def _energy_of_the_plate(runs: Runs, treatment: str) -> tuple[str, ...]:
     history, both = history_of(response), plate_energy_part(response)
     at_once = 100.0 * float((history["plate_kinetic_J"] + history["plate_strain_J"]).max()) / energy_released(response)
     words = f"(6) The energy of the plate can't be neglected: more than {least.text} % of the energy released"
-    return words, treatment, holds_text(both > least.value), f"{both:.1f} % if the largest of each are added, {at_once:.1f} % at one time"
+    numbers = f"{both:.1f} % if the largest kinetic and strain energy are added, at most {at_once:.1f} % at one time"
+    return words, treatment, holds_text(both > least.value), numbers
 
 
 def _consumed(runs: Runs, treatment: str) -> tuple[str, ...]:
@@ -94,5 +95,5 @@ def _consumed(runs: Runs, treatment: str) -> tuple[str, ...]:
         words,
         treatment,
         holds_text(first > 50.0),
-        f"{first:.0f} % dissipated at the first separation, {second:.0f} % at the second touch",
+        f"{first:.0f} % dissipated by the first separation, {second:.0f} % by the second touch",
     )

@@ -49,13 +49,14 @@ def section_5_1(runs: Runs) -> ReportSection:
         "Section 5.1: force, acceleration and rebound in Types 1, 2 and 3",
         (
             "Types 2 and 3 are computed in three ways. Consistent: the contact law contains the quasi-static and the modes the dynamic "
-            "deformation, so that no compliance is counted twice. The sphere's "
+            "deformation of the sphere, so that no compliance is counted twice. The sphere's "
             f"modes have a damping ratio of {ratio:g} there, which is assumed, and the plate's the default of Adams. Superposed: law "
-            "and modes in series, as in a multibody program with flexible bodies. Identified: a spring and a dashpot in series with "
-            "the law represent the sphere, fitted to the force and the rebound that are printed for Type 2, and tested on Type 3.",
-            "No setting that was tried reproduces the printed Types 2 and 3: none of the three treatments, with the default damping of "
-            "Adams in the superposed one. Where a row refers to an unresolved run, that is a hypothesis, not a proof: the section on "
-            "inferences gives the evidence for and against it.",
+            "and modes in series, as in a multibody program with flexible bodies. Identified: a spring and a dashpot in parallel, in "
+            "series with the law, represent the sphere, fitted to the force and the rebound that are printed for Type 2, and tested on "
+            "Type 3.",
+            "No setting that was tried reproduces all that is printed of Types 2 and 3: none of the three treatments, with the default "
+            "damping of Adams in the superposed one. Where a row refers to an unresolved run, that is a hypothesis, not a proof: the "
+            "section on inferences gives the evidence for and against it.",
         ),
         tuple(rows),
         (_statements(runs),),
@@ -148,9 +149,9 @@ def section_5_2(runs: Runs) -> ReportSection:
         "Section 5.2: the energy of the sphere",
         (
             "The printed values are compared with the other printed numbers, which indicates how they were obtained, and with the three "
-            "treatments. The strain energy is that of the modes, as a multibody program reports it; in the consistent treatment the "
-            "contact law contains most of the sphere's strain energy, and in the identified one the spring that represents the sphere. "
-            "Without friction a sphere that strikes the centre of a plate along the normal does not rotate.",
+            "treatments. The strain energy is that of the modes, as a multibody program reports it, and in the identified treatment "
+            "that of the spring that represents the sphere; in the consistent one the contact law contains most of the sphere's strain "
+            "energy. Without friction a sphere that strikes the centre of a plate along the normal does not rotate.",
         ),
         tuple(rows),
         conclusion=(_force_and_fall(runs),),
@@ -185,8 +186,9 @@ def _at_touch(runs: Runs, kind: int) -> ComparedValue:
     sag = _sag(runs.problem(f"type{kind}-superposed"))
     least, most = (weight * gravity * fall for weight in mesh_mass(kind, gravity))
     most *= 1.0 + sag / fall
-    lower = f", and a static deflection of the plate by {1e6 * sag:.1f} µm," if sag else ""
-    explanation = Explanation(f"with the mass of the mesh, as above{lower} {least:.6f} to {most:.6f} J", least, most)
+    lower = f", and a static deflection of the plate by up to {1e6 * sag:.1f} µm" if sag else ""
+    words = f"with the mass of the mesh that the printed force and acceleration imply{lower}: {least:.6f} to {most:.6f} J"
+    explanation = Explanation(words, least, most)
     by = f"m g times the fall of {fall:g} m"
     return ComparedValue(printed(f"type{kind}.energy_at_touch"), mass * gravity * fall, by=by, explanations=(explanation,))
 
@@ -207,7 +209,7 @@ def _released(runs: Runs, kind: int) -> list[ComparedValue]:
     for treatment in TREATMENTS:
         released = energy_released(runs.treated(kind, treatment))
         beyond = 1e3 * (released / (mass * gravity) - fall)
-        why = f"the printed fall beyond first touch is {deep:.2f} mm, the computed one {beyond:.2f} mm"
+        why = f"the printed energies imply a fall of {deep:.2f} mm beyond first touch, the computed fall is {beyond:.2f} mm"
         rows.append(ComparedValue(value, released, by=treatment, otherwise=why, made_by=kind_of(treatment)))
     return rows
 
@@ -219,7 +221,7 @@ def _from_height(runs: Runs, kind: int) -> ComparedValue:
     response = runs.treated(kind, "identified")
     climbed = energy_at_separation(response) - mass * gravity * float(response.impacts["rebound_height_m"][0] - radius)
     low, high = mesh_mass(kind, gravity)[0] * gravity * (height - radius), mass * gravity * (height - radius) + climbed
-    reason = f"the sphere separates while it is still indented, with the mass of the mesh: {low:.5f} to {high:.5f} J"
+    reason = f"the mesh has lost a little mass, and the sphere separates while it is still indented: {low:.5f} to {high:.5f} J"
     value = printed(f"type{kind}.energy_at_separation")
     return ComparedValue(
         value,
@@ -278,7 +280,9 @@ def _impact_speed(runs: Runs) -> ComparedValue:
     assert problem.height is not None
     whole = float(np.sqrt(2.0 * problem.gravity * problem.height))
     explanation = Explanation(
-        f"a fall of the full {float(problem.height):g} m, to the centre instead of to first touch: {whole:.3f} m/s", whole, whole
+        f"a fall of the full {float(problem.height):g} m, of the centre down to the plate instead of to first touch: {whole:.3f} m/s",
+        whole,
+        whole,
     )
     speed = float(runs.response("type1-variable").impacts["approach_speed_m_s"][0])
     return ComparedValue(printed("impact_speed"), speed, by="the fall to first touch", explanations=(explanation,))
@@ -316,4 +320,4 @@ def _peak_decay(runs: Runs) -> tuple[TextTable, str]:
         "The paper states that from impact to impact the acceleration of the plate's centre of mass decreases more slowly than its "
         f"displacement and velocity: {where}."
     )
-    return TextTable(headers, tuple(cells), "Peaks after each impact, of those after the first"), words
+    return TextTable(headers, tuple(cells), "Peaks after each impact, relative to those after the first"), words

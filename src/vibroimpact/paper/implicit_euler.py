@@ -183,6 +183,6 @@ def _implicit_euler(problem: Problem, step: float) -> _ImplicitEuler:
     law = problem.law_of(0)
     more = problem.local_element or problem.quasi_static or (problem.sphere_inside and problem.sphere.modes is not None)
     if problem.shape != () or more or not isinstance(law, CompliantLaw) or law.memories():
-        raise InputError("the implicit Euler method is for one drop of the superposed model, under a law with a force and no memory")
+        raise InputError("the implicit Euler method is for one drop of the superposed model, under a compliant law without memory")
     mass, gravity = float(problem.sphere.mass), float(problem.gravity)
     return _ImplicitEuler(system_of(problem, mass, gravity), law, mass, gravity, first_approach_speed(problem), step)

@@ -26,7 +26,7 @@ def table1(runs: Runs) -> ReportSection:
     values |= {"gravity": drop["gravity"], "drop.height": drop["height"]}
     return ReportSection(
         "Table 1: the inputs",
-        ("The values of the shipped cases, compared with the printed ones.",),
+        ("The inputs of the shipped case of Type 3, compared with the printed ones.",),
         tuple(ComparedValue(printed(name), value, by="the shipped case") for name, value in values.items()),
     )
 
@@ -54,7 +54,8 @@ def section_3_1(runs: Runs) -> ReportSection:
                 thin,
                 float(law.full_damping_penetration),
                 by="the shipped case",
-                otherwise=f"with it the first rebound would be {rebound:.5f} m, and {printed('type1.rebound_height').text} m is printed",
+                otherwise=f"with the printed one the first rebound would be {rebound:.5f} m, and "
+                f"{printed('type1.rebound_height').text} m is printed",
             ),
         ),
     )
@@ -71,7 +72,7 @@ def section_4(runs: Runs) -> ReportSection:
     return ReportSection(
         "Section 4: the meshes",
         (
-            f"The meshes of the paper are not available; of the sphere it has {printed('mesh.sphere.nodes').text} and "
+            f"The meshes of the paper are not available; it gives the sphere {printed('mesh.sphere.nodes').text} and "
             f"{printed('mesh.sphere.elements').text} grids, which are taken for nodes and elements. Here the plate has plate elements of "
             "order four, and the sphere curved bricks of second order; the errors of their frequencies are estimated in each run, and "
             "stated where they exceed 0.5 %. The superposed treatment depends on the mesh in any case, as the section on inferences shows.",

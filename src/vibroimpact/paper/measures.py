@@ -147,8 +147,8 @@ def values_by_treatment(
     if unresolved is not None:
         low, high = unresolved
         explanation = Explanation("", low, high)
-        few = "agrees with these within its few digits" if explanation.holds(value) else "is not among these"
-        inside = "is among these" if explanation.contains(value) else few
+        few = "agrees with this range within its few digits" if explanation.holds(value) else "does not lie in this range"
+        inside = "lies in this range" if explanation.contains(value) else few
         steps = "in steps fitted to Type 2" if kind == 2 else "in steps found from Type 2"
         words["superposed"] += (
             f". A hypothesis: unresolved, on a coarse mesh and {steps}, it gives {low:.4g} to {high:.4g} {value.unit}, and the printed "

@@ -287,8 +287,8 @@ def _printed_words(found: RecoveredParameters) -> str:
     words = (
         f"The printed d_max, {given.text} m, is met by {sum(met) or 'none'} of the {len(met)} pieces of evidence that depend on it alone. "
         f"With it the first rebound would be {fixed(height, 4)} m (printed {printed('type1.rebound_height').text} m), "
-        f"with constant damping the fourth {fixed(fourth, 1)} % too low (printed {printed('constant.height_error.4').text} %) "
-        f"and the fifth compression {fixed(fifth, 1)} % too small (printed {printed('constant.compression_error.5').text} %)."
+        f"with constant damping the fourth {fixed(fourth, 1)} % below the theory's (printed {printed('constant.height_error.4').text} %) "
+        f"and the fifth compression {fixed(fifth, 1)} % below it (printed {printed('constant.compression_error.5').text} %)."
     )
     if any(met):
         return words
@@ -307,8 +307,9 @@ def _round_value_words(found: RecoveredParameters, runs: Runs) -> str:
     worst = max(abs(float(value) - printed(name).value) / printed(name).half for name, value in rounded.items())
     off = (found.restitution.value - restitution) / found.restitution.deviation
     return (
-        f"At the round values, e_h = {restitution:g} and d_max = {1e3 * penetration:g} mm, the rounded numbers are off by at most "
-        f"{fixed(worst, 2)} times half a unit of their last digit: {'all come' if worst <= 1.0 else 'not all come'} out as printed. The "
+        f"At the round values, e_h = {restitution:g} and d_max = {1e3 * penetration:g} mm, the {len(rounded)} numbers with an uncertainty "
+        f"from rounding are off by at most {fixed(worst, 2)} times half a unit of their last digit: "
+        f"{'all come' if worst <= 1.0 else 'not all come'} out as printed. The "
         f"round e_h lies {fixed(abs(off), 1)} standard deviations {'below' if off > 0.0 else 'above'} the joint estimate."
     )
 

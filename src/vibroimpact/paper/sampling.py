@@ -267,8 +267,8 @@ def _conclusion(runs: Runs, instants: tuple[ImpliedInstants, ...]) -> tuple[str,
         f"{theory.value:.3f} N. Where a printed force error is less than the exact one, the peak of the theory would have been "
         "missed.",
         f"Compression and force are largest at different times. In {len(distances)} of {len(instants)} contacts both printed errors are "
-        f"those of an instant, and the two lie {1e6 * min(distances):.1f} to {1e6 * max(distances):.1f} µs apart; with so few contacts, "
-        "and two instants to choose from for each error, that is no evidence that both were read at one time.",
+        f"those of an instant, and the nearest two lie {1e6 * min(distances):.1f} to {1e6 * max(distances):.1f} µs apart; with so few "
+        "contacts, and two instants to choose from for each error, that is no evidence that both were read at one time.",
         "Established: the printed errors of Table 2 are not those of exact peaks, as the errors in the text are; most are too large, "
         f"as missed peaks make them; and an output every {1e3 * step:.2f} ms alone would scatter them far more. A hypothesis: that the "
         "solver's own steps, or further outputs at the contact, were plotted, so that there was a sample near each peak.",

@@ -75,15 +75,14 @@ def unresolved_section(runs: Runs) -> ReportSection:
 
 def _compared_values(runs: Runs) -> tuple[ComparedValue, ...]:
     """Return the values of Type 2, to which the step was fitted, and of Type 3, predicted with the same step."""
-    reason = "a hypothesis: where in a step of an unresolved run the surfaces meet"
     rows = []
     for kind in (2, 3):
         step, found = _fitted_step(runs, kind)
         for name in [f"type{kind}.{name}" for name in SPHERE_COLUMNS] + (list(PLATE_COLUMNS) if kind == 3 else []):
             values = found[_COLUMNS[name]]
-            spread = f"{values.min():.4g} to {values.max():.4g}"
-            explanation = Explanation(f"{reason}, {spread}", float(values.min()), float(values.max()))
-            otherwise = f"an unresolved run gives {spread}, wherever in a step the surfaces meet"
+            gives = f"an unresolved run gives {values.min():.4g} to {values.max():.4g} {printed(name).unit}"
+            reason = f"a hypothesis: {gives}, depending on where in a step the surfaces meet"
+            explanation = Explanation(reason, float(values.min()), float(values.max()))
             by = f"implicit Euler, {_microseconds(step)} µs{', fitted' if kind == 2 else ', step from Type 2'}"
             rows.append(
                 ComparedValue(
@@ -91,7 +90,7 @@ def _compared_values(runs: Runs) -> tuple[ComparedValue, ...]:
                     float(np.median(values)),
                     by,
                     explanations=(explanation,),
-                    otherwise=otherwise,
+                    otherwise=f"{gives}, wherever in a step the surfaces meet",
                     fitted=kind == 2,
                     digits=MESH_DIGITS,
                     made_by=Kind.FITTED_MODEL,
@@ -201,9 +200,9 @@ def _counter_evidence(runs: Runs) -> str:
     return (
         "Evidence against the hypothesis: with the touch at the same place in a step, the largest force of Type 3 is between "
         f"{_more_text(float(ratio.min()))} and {_more_text(float(ratio.max()))} than that of Type 2; as printed, it is "
-        f"{_more_text(as_printed)}. The energies printed at first touch are those of the fall to touch, to some 1e-5 J, in both types: of "
-        f"a touch at the end of a step, unless they were calculated by hand. With the touch there, Type 3 has {off[0]} force, {off[1]} "
-        f"rebound height and {off[2]} strain energy "
+        f"{_more_text(as_printed)}. The energies printed at first touch are those of the fall to touch with the mass of the mesh, to some "
+        f"1e-5 J, in both types: of a touch at the end of a step, unless they were calculated by hand. With the touch there, Type 3 has "
+        f"{off[0]} force, {off[1]} rebound height and {off[2]} strain energy "
         f"than printed. And the printed energies imply a fall of {deep[0]:.2f} and {deep[1]:.2f} mm beyond touch in Types 2 and 3, where "
         f"unresolved runs give {ranges[0]} and {ranges[1]}, and the three treatments, which are resolved, more."
     )

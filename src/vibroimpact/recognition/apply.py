@@ -101,7 +101,7 @@ def apply_recogniser(model: Recogniser | str | PathLike[str], dataset: str | Pat
     guessed, names = found.argmax(axis=1), recogniser.class_names
     doubts = doubts_of_version(recogniser) + baseline_doubts(signals)
     if signals.check_sum and signals.check_sum == recogniser.card["data"]["sha256"]:
-        doubts.append("the model was trained on these signals, so it recognises them better than others")
+        doubts.append("the model was trained on signals of this data set, so it may recognise them better than others")
     return Recognised(
         signals.name,
         recogniser.card["classifier"],

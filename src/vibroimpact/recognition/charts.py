@@ -64,10 +64,10 @@ def _scores_chart(found: Recognition) -> Chart:
     bound = ""
     if found.bayes_error is not None:
         counted = f"for {found.bayes_error_sees} alone" if found.bayes_error_sees else "that the data set states"
-        bound = f" Line: the Bayes error {counted}; a lower error means that a classifier has used more, a leak, or chance."
+        bound = f" Line: the Bayes error {counted}; a lower error means further information, a leak, or chance."
     caption = (
         f"Error on test signals: with all signals of a {found.group} in either the training or the test data, and with signals split at "
-        f"random. The difference is the optimistic bias of the random split. Thin lines: 95 % intervals, which count {found.group}s."
+        f"random. The difference is the optimistic bias of the random split. Thin lines: 95 % intervals, by draws of {found.group}s."
         f"{bound}"
     )
     return Chart("scores", "Classification errors and optimism", ((panel,),), caption, 0.9 + 0.36 * len(names))
@@ -124,8 +124,8 @@ def _robustness_chart(found: Recognition) -> Chart:
     marks.append(Level(1.0 / len(found.class_names), "chance", "dotted"))
     panel = Panel(Axis("Signal-to-noise ratio", "dB"), Axis("Balanced accuracy", range=(0.0, 1.0)), tuple(marks))
     caption = (
-        "White noise of the same power is added to all signals before their features are computed; the ratio refers to the mean square of "
-        f"the median signal. Best classifier: {found.best}."
+        "White noise of the same power is added to all signals of a sensor before their features are computed; the ratio refers to the "
+        f"median of their mean squares. Best classifier: {found.best}."
     )
     return Chart("robustness", "Recognition in noise", ((panel,),), caption, _HEIGHT)
 
@@ -154,7 +154,7 @@ def _importance_chart(found: Recognition) -> Chart:
     panel = Panel(Axis("Loss of balanced accuracy"), Axis(names=_short(names)), (bars, Level(0.0, role="main", upright=True)))
     caption = (
         f"Permutation importance: loss of balanced accuracy on {found.group}s not used in training when a feature is exchanged between "
-        "their signals; thin lines: spread over the folds. Correlated features share their importance. Best classifier: "
+        "their signals; thin lines: standard deviation over the folds. Correlated features share their importance. Best classifier: "
         f"{found.best}."
     )
     return Chart("importance", "Importance of features", ((panel,),), caption, 0.9 + 0.26 * len(names))

@@ -57,7 +57,7 @@ def check_graph(data: bytes, features: int, classes: int) -> None:
     if model.functions or model.training_info or graph.sparse_initializer:
         raise InputError("the graph holds functions, training or sparse tensors, as no model of this program does; train it anew")
     if len(graph.node) > _MOST_NODES:
-        raise InputError(f"the graph has {len(graph.node)} nodes; {_MOST_NODES} are the most")
+        raise InputError(f"the graph has {len(graph.node)} nodes; {_MOST_NODES} are the most; train the model anew")
     constants = _constants(graph.initializer)
     known: dict[str, Shape] = {name: values.shape for name, values in constants.items()}
     known[_input_name(graph, features)] = (ROWS, features)
@@ -66,7 +66,7 @@ def check_graph(data: bytes, features: int, classes: int) -> None:
         shapes = _shapes_of(node, known, constants, features, classes)
         for name, shape in zip(node.output, shapes, strict=False):
             if name in known:
-                raise InputError(f"two nodes of the graph give {shown(name)}; train the model anew")
+                raise InputError(f"the graph gives {shown(name)} twice; train the model anew")
             known[name] = shape
             columns += -(-prod(shape) // ROWS)
         if columns > _MOST_COLUMNS:
@@ -94,18 +94,20 @@ def _constants(initializers: Sequence[Any]) -> dict[str, NDArray[Any]]:
         name = shown(tensor.name)
         if tensor.data_location == TensorProto.EXTERNAL or tensor.external_data:
             raise InputError(f"the constant {name} of the graph lies in another file; train the model anew")
-        if tensor.data_type not in _NUMBERS or len(tensor.dims) > 1 or tensor.name in found:
+        if tensor.name in found:
+            raise InputError(f"the graph gives {name} twice; train the model anew")
+        if tensor.data_type not in _NUMBERS or len(tensor.dims) > 1:
             raise InputError(f"the constant {name} of the graph is not a number or a list of numbers; train the model anew")
         try:
             found[tensor.name] = numpy_helper.to_array(tensor)
         except Exception:  # of many types, by what is damaged
-            raise InputError(f"the constant {name} of the graph has not as many values as it says; train the model anew") from None
+            raise InputError(f"the constant {name} of the graph does not have as many values as it states; train the model anew") from None
     return found
 
 
 def _input_name(graph: Any, features: int) -> str:
     if len(graph.input) != 1:
-        raise InputError(f"the graph takes {len(graph.input)} arrays; a model takes the features alone")
+        raise InputError(f"the graph takes {len(graph.input)} arrays; a model takes the features alone: train it anew")
     (given,) = graph.input
     kind = given.type.tensor_type
     dimensions = [dimension.dim_value for dimension in kind.shape.dim]
@@ -127,8 +129,11 @@ def _attributes(node: Any) -> Attributes:
     found: Attributes = {}
     for attribute in node.attribute:
         field = _KINDS.get(attribute.type)
-        if field is None or attribute.name in found or attribute.ref_attr_name:
-            raise InputError(f"{_name(node)} of the graph has an attribute {shown(attribute.name)} that is no number or text")
+        if attribute.name in found:
+            raise InputError(f"{_name(node)} of the graph has two attributes {shown(attribute.name)}; train the model anew")
+        if field is None or attribute.ref_attr_name:
+            words = f"{_name(node)} of the graph has an attribute {shown(attribute.name)} that is no number or text"
+            raise InputError(f"{words}; train the model anew")
         value = getattr(attribute, field)
         if field == "floats":
             value = np.fromiter(value, float, len(value))
@@ -157,8 +162,8 @@ def _shapes_of(node: Any, known: Mapping[str, Shape], constants: Mapping[str, ND
     except InputError as error:
         raise InputError(f"{name} of the graph {error}; train the model anew") from None
     except (ValueError, IndexError, KeyError, TypeError):
-        raise InputError(f"{name} of the graph does not fit what it takes; train the model anew") from None
-    raise InputError(f"the graph holds {name}, as no classifier of this program does; train the model anew")
+        raise InputError(f"{name} of the graph does not fit its inputs; train the model anew") from None
+    raise InputError(f"the graph uses {name} as no classifier of this program does; train the model anew")
 
 
 def _name(node: Any) -> str:

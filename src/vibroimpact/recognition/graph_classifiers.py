@@ -98,7 +98,7 @@ def _trees(attributes: Attributes, rows: int, features: int, classes: int) -> Sh
     count = len(modes)
     is_leaf = modes == _LEAF
     if not count or not (is_leaf | (modes == _BRANCH)).all():
-        raise InputError("has nodes that are no leaves and no branches of a tree")
+        raise InputError("has no nodes of trees, or nodes that are neither leaves nor branches")
     with_length(attributes, "nodes_values", count)
     for name in ("hitrates", "missing_value_tracks_true"):
         with_length(attributes, f"nodes_{name}", count, otherwise=0)
@@ -139,7 +139,7 @@ class _Places:
         order = np.lexsort((nodes, trees))
         self._order, self._keys = order, self._key(trees, nodes)[order]
         if (np.diff(self._keys) == 0).any():
-            raise InputError("has two nodes of one number in a tree")
+            raise InputError("has two nodes of the same number in a tree")
 
     def _key(self, trees: Indices, nodes: Indices) -> Indices:
         return np.asarray(np.clip(trees, -1, 2**31) * 2**31 + np.clip(nodes, -1, 2**31 - 1), dtype=np.int64)

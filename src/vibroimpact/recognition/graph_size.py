@@ -30,7 +30,7 @@ def check_size(data: bytes) -> None:
                 parts += 1
             parts += 1
             if parts > _MOST_PARTS:
-                raise InputError(f"the graph has more than {_MOST_PARTS:,} parts; no model of this program has so many")
+                raise InputError(f"the graph has more than {_MOST_PARTS:,} nodes and attributes; no model of this program has so many")
     if len(data) - lists > _MOST_OTHER_BYTES:
         raise InputError(
             f"the graph has more than {_MOST_OTHER_BYTES // 1_000_000} MB beside its numbers; no model of this program has so much"
@@ -58,7 +58,7 @@ def _fields(data: bytes, start: int, end: int, wanted: int) -> Iterator[tuple[in
             place += 8 if kind == 1 else 4
         else:
             raise _cut_short()
-    raise InputError(f"the graph has more than {_MOST_PARTS:,} parts; no model of this program has so many")
+    raise InputError(f"the graph has a table of more than {_MOST_PARTS:,} fields; no model of this program has so many")
 
 
 def _whole_number(data: bytes, place: int) -> tuple[int, int]:

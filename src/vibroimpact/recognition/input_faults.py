@@ -48,8 +48,8 @@ def check_signals(signals: LabelledSignals, group: str, folds: int | None = None
         doubts.append(f"each signal has a {group} of its own, so the grouped split is a random split")
     if signals.total is not None and signals.total > len(signals):
         doubts.append(
-            f"of {signals.total:,} signals {len(signals):,} are used: failed drops are left out, and of too many signals whole groups are "
-            "drawn at random"
+            f"of {signals.total:,} signals {len(signals):,} are used: failed drops are left out, and of more signals than asked for "
+            "(most) whole groups are drawn at random"
         )
     return doubts
 
@@ -63,7 +63,9 @@ def check_groups(signals: LabelledSignals, classes: Indices, group: str, folds: 
     groups = signals.groups[group]
     names = {int(one): np.unique(groups[classes == one]) for one in np.unique(classes)}
     if len(np.unique(groups)) == 1:
-        raise InputError(f"all {len(groups)} signals are of one {group}, so that no classifier can be tested on another {group}")
+        raise InputError(
+            f"all {len(groups)} signals are of one {group}, so that no classifier can be tested on another {group}; give several"
+        )
     if all(len(one) == 1 for one in names.values()):
         raise InputError(
             f"each class is in one {group} only: differences between {group}s would be confounded with differences between classes; "
@@ -113,7 +115,7 @@ def check_duplicates(signals: LabelledSignals, groups: Indices, group: str) -> N
             continue
         apart, size = (sum(float(np.sum(row**2)) for row in rows) for rows in _rows(parts, one, other))
         if apart <= _COPY**2 * size:
-            exact = "are the same" if not apart else f"are the same to {np.sqrt(apart / size):.1g} of them"
+            exact = "are the same" if not apart else f"differ by only {np.sqrt(apart / size):.1g} of their size"
             raise InputError(
                 f"signals {one} and {other} {exact} and lie in two {group}s ({groups[one]} and {groups[other]}): one would be "
                 "trained on and the other tested on; remove one"
@@ -147,7 +149,7 @@ def check_rates(signals: LabelledSignals, classes: Indices) -> list[str]:
         f"of a class, affect the spectrum from {_CORNER / median:.4g} Hz on, so contact times need {needed:.4g} Hz or more"
     )
     if FORCE in signals.truth and separation(signals.truth[FORCE], classes) < 0.5 * separation(duration, classes):
-        raise InputError(f"the sampling rate is too low: the classes differ in contact time and hardly in force; {words}")
+        raise InputError(f"the sampling rate is too low: the classes differ far more in contact time than in force; {words}")
     return [f"contact times can't be resolved: {words}"]
 
 

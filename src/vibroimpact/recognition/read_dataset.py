@@ -189,7 +189,7 @@ def _classes(file: h5py.File, columns: Mapping[str, NDArray[Any]]) -> tuple[Indi
         return None, ()
     flags, meanings = (attribute(file[_CLASS], name) for name in ("flag_values", "flag_meanings"))
     if flags is None or meanings is None:
-        raise InputError("the variable class has no flag_values and flag_meanings, which name the classes")
+        raise InputError("the variable class lacks flag_values or flag_meanings, which name the classes")
     flags = flags if isinstance(flags, list) else [flags]
     if not all(type(flag) in (int, float) and isfinite(flag) and flag == int(flag) for flag in flags) or len(set(flags)) < len(flags):
         raise InputError(f"flag_values of the variable class is {shown(flags)}; it must be a list of different whole numbers")
@@ -214,10 +214,10 @@ def _rate_and_unit(data: h5py.Dataset, sensor: str) -> tuple[float, str]:
         rate = _rate_of_scale(data)
     elif isinstance(rate, list) and len(rate) == 1:
         (rate,) = rate
-    if rate is None or (type(rate) in (int, float) and not 0.0 < rate < np.inf):
-        raise InputError(f"signal_{sensor} has neither an attribute rate_Hz that is greater than 0 nor times of its samples")
-    if type(rate) not in (int, float):
-        raise InputError(f"rate_Hz of signal_{sensor} is {shown(rate)}; it must be a number, in Hz")
+    if rate is None:
+        raise InputError(f"signal_{sensor} has neither an attribute rate_Hz nor increasing times of its samples")
+    if type(rate) not in (int, float) or not 0.0 < rate < np.inf:
+        raise InputError(f"rate_Hz of signal_{sensor} is {shown(rate)}; it must be a number greater than 0, in Hz")
     if not isinstance(unit, str):
         raise InputError(f"units of signal_{sensor} is {shown(unit)}; it must be a text")
     return float(rate), one_line(unit)

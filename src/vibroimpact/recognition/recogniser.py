@@ -237,5 +237,5 @@ def doubts_of_version(recogniser: Recogniser) -> list[str]:
     saved = recogniser.card["version"]
     if saved == __version__:
         return []
-    words = "the features may be computed otherwise; train it anew where that matters"
+    words = "the features may be computed differently; train it anew where that matters"
     return [f"the model was saved by vibroimpact {saved} and this is {__version__}: {words}"]

@@ -64,8 +64,8 @@ def recorder_leaks(signals: LabelledSignals, classes: Indices, groups: Indices, 
                 continue
             medians = [float(np.median(traces[name][classes == number])) for number in np.unique(classes)]
             told = ", ".join(f"{value:.4g} for {signals.class_names[place]}" for place, value in enumerate(medians))
-            often = f"apart in {50.0 + 50.0 * apart:.0f} % of pairs, by chance in less than {100.0 * _RATE:g} % of data sets"
-            words = f"{name} tells the classes (medians {told}; {often}); it does not come from what falls"
+            often = f"in {50.0 + 50.0 * apart:.0f} % of pairs, by chance in at most {100.0 * _RATE:g} % of data sets"
+            words = f"{name} tells the classes apart (medians {told}; {often}); it does not come from what falls"
             found.append(f"leak of the recorder at {shown(sensor)}: {words}: record all {group}s alike")
     return found + _too_few(classes, groups, group)
 
@@ -170,7 +170,7 @@ def _traces(one: SensorSignals, plates: Indices) -> dict[str, Floats]:
         found["the noise before the onset"] = np.array([row.std() for row in before])
         found["the drift before the onset"] = np.array([row[len(row) // 2 :].mean() - row[: len(row) // 2].mean() for row in before])
         for lag in (1, 2):
-            found[f"the likeness of samples {lag} apart before the onset"] = np.array([_likeness(row, lag) for row in before])
+            found[f"the correlation of samples {lag} apart before the onset"] = np.array([_likeness(row, lag) for row in before])
     found["the step between sample values"] = np.array([_step(row[:end]) for row, end in zip(value, length.tolist(), strict=True)])
     found[CLOCK] = _clock(value, onset, length, plates)
     return found

@@ -76,8 +76,10 @@ def baseline_doubts(signals: LabelledSignals) -> list[str]:
         large = is_large(np.abs(found.offset) + found.drift, found[_PEAK])
         if large.any():
             most = float(np.abs(found.offset[large]).max())
-            words = f"from {large.sum():,} of {len(large):,} signals of {shown(sensor)} offsets of up to {most:.4g} {one.unit} were removed"
-            doubts.append(f"{words}, more than a tenth of their peaks: check that it rests at zero, and alike in all classes")
+            words = (
+                f"from {large.sum():,} of {len(large):,} signals of {shown(sensor)} baselines with offsets of up to {most:.4g} {one.unit}"
+            )
+            doubts.append(f"{words} were removed, more than a tenth of their peaks: check that it rests at zero, and alike in all classes")
     return doubts
 
 

@@ -217,8 +217,8 @@ def sentences(found: Recognition) -> Iterator[str]:
             f"The lower bound on the error that the data set states is {least}."
             if found.bayes_error_sees is None
             else f"The lower bound on the error of a classifier that sees only {found.bayes_error_sees}, measured up to 50 kHz and 80 dB "
-            f"above the noise, is {least}. A classifier that sees more can be better. For a band, a noise and a scatter of a sensor "
-            "vibroimpact bound computes such bounds."
+            f"above the noise with a sensitivity known to 0.1 %, is {least}. A classifier that sees more can be better. For a "
+            "band, a noise and a scatter of a sensor vibroimpact bound computes such bounds."
         )
         yield f"{bound} The error of the best classifier is {_percent(best.error.value, digits)} % ({_percents(best.error, digits)} %)."
         most = largest_error_of_none(found.groups, found.folds)
@@ -243,7 +243,7 @@ def _few(found: Recognition) -> Iterator[str]:
     if not coarse(best.error):
         return
     yield (
-        f"With {found.groups} {found.group}s an error between {_percent(best.error.low, 0)} and {_percent(best.error.high, 0)} % can't be "
+        f"With {found.groups} {found.group}s errors between {_percent(best.error.low, 0)} and {_percent(best.error.high, 0)} % can't be "
         f"told apart; for +-5 % some {groups_for_error(best.error, found.groups):,} {found.group}s are needed. More signals of the same "
         f"{found.group}s do not replace them."
     )

@@ -96,12 +96,12 @@ def check_free(directory: str | PathLike[str], *, force: bool = False) -> None:
     if "\0" in str(target):
         raise InputError(f"{target}: a path can't have the character NUL")
     if len(os.fsencode(target.name)) > LONGEST_FOLDER_NAME:
-        raise InputError(f"{target}: the name of a folder may have {LONGEST_FOLDER_NAME} letters at most")
+        raise InputError(f"{target}: the name of a folder may have {LONGEST_FOLDER_NAME} bytes at most; letters beyond ASCII take several")
     if target.absolute() == Path(target.absolute().anchor):
-        raise InputError(f"{target}: this is where all files are; name a folder inside it")
+        raise InputError(f"{target}: this is the root of the file system; name a folder inside it")
     recover(target)
     if target.resolve() == Path.cwd():
-        raise InputError(f"{target}: this is the folder you stand in; name one inside it")
+        raise InputError(f"{target}: this is the current folder; name one inside it")
     above = next(folder for folder in target.absolute().parents if folder.exists())
     if not os.access(above, os.W_OK):
         raise InputError(f"{target}: {above} can't be written to; name another place for the result")
@@ -109,9 +109,10 @@ def check_free(directory: str | PathLike[str], *, force: bool = False) -> None:
         return
     if not target.is_dir():
         raise InputError(f"{target}: this is not a folder; name another place for the result")
-    if (force and (target / SUMMARY).is_file()) or not any(target.iterdir()):
+    is_result = (target / SUMMARY).is_file()
+    if (force and is_result) or not any(target.iterdir()):
         return
-    if force:
+    if not is_result:
         raise InputError(f"{target}: the folder is there and is not a result folder, so --force does not replace it; name another one")
     raise InputError(f"{target}: the folder is there already; name another one, or replace it with --force")
 
@@ -209,7 +210,7 @@ def _result_from(case: ResolvedCase, summary: Mapping[str, Any], groups: Mapping
     _check_history(history)
     for group, columns in (("impacts", impacts), ("history", history)):
         if len({column.shape for column in columns.values()}) != 1 or next(iter(columns.values())).ndim != 1:
-            raise ValueError(f"the columns of {group} are not of one length")
+            raise ValueError(f"the columns of {group} differ in length")
     return Result(
         case,
         impacts,

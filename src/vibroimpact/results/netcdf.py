@@ -163,7 +163,7 @@ def read_deflection(file: h5py.File) -> Deflection | None:
     variables = members(group)
     time, x, y, height, position, contact = (_numbers(variables[name]) for name in names)
     if height.shape != (len(time), len(y), len(x)) or position.shape != time.shape or contact.shape != time.shape:
-        raise DamageError("the variables of deflection are not of one size")
+        raise DamageError("the sizes of the variables of deflection do not agree")
     return Deflection(time, x, y, height, position, contact, (float(group.attrs["contact_x_m"]), float(group.attrs["contact_y_m"])))
 
 

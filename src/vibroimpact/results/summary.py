@@ -108,4 +108,4 @@ def _is_positive(value: Any) -> bool:
 
 def _check(key: str, right: bool) -> None:
     if not right:
-        raise ValueError(f"{key} is not of the kind that it should be")
+        raise ValueError(f"{key} has the wrong type")

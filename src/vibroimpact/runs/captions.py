@@ -32,8 +32,8 @@ def left_out(result: Result) -> str:
             "The sphere does not reach the plate in this run, so that there are no charts of contact force, acceleration and indentation."
         )
     return (
-        "The contact law is instantaneous: the contact has no duration, and no force, acceleration and indentation, "
-        "so that there are no charts of them."
+        "The contact law is instantaneous: the contact has no duration, force, acceleration or indentation, so that there are no charts "
+        "of them."
     )
 
 
@@ -68,6 +68,7 @@ def _velocity(result: Result) -> str:
     approach, separation = float(impacts["approach_speed_m_s"][0]), float(impacts["separation_speed_m_s"][0])
     return (
         f"In impact 1 the sphere arrives at {text(approach, 'm/s')} and leaves at {text(separation, 'm/s')}"
+        f"{', along the normal' if 'tangential_restitution' in impacts else ''}"
         f"{', relative to the plate' if 'plate_velocity_m_s' in impacts else ''}: "
         f"a restitution of {fixed(separation / approach, 4)}."
     )
@@ -132,7 +133,7 @@ def _in_whole_run(result: Result) -> str:
 def sphere_energy_caption(result: Result) -> str:
     """Return the caption of the figure of the sphere's energies."""
     history, put_in = result.history, result.energy["input_J"]
-    words = f"The largest kinetic energy of the centre is {text(float(history['kinetic_J'].max()), 'J')}."
+    words = f"The largest kinetic energy of the sphere's centre is {text(float(history['kinetic_J'].max()), 'J')}."
     if "sphere" not in result.peaks:
         return f"{words} The sphere has no modes in this run."
     strain, left = float(history["sphere_strain_J"].max()), _after_first(result, "sphere_strain_J", "sphere_vibration_J")
@@ -150,7 +151,7 @@ def plate_motion_caption(result: Result) -> str:
     names = (("max_displacement_m", "m"), ("max_velocity_m_s", "m/s"), ("max_acceleration_m_s2", "m/s2"))
     most = [text(float(np.max(peaks[name])), unit) for name, unit in names]
     there = text(float(np.abs(result.history["plate_deflection_m"]).max()), "m")
-    words = f"The centre of mass moves by up to {most[0]}, at up to {most[1]} and {most[2]}; the contact point by up to {there}."
+    words = f"The plate's centre of mass moves by up to {most[0]}, with up to {most[1]} and {most[2]}; the contact point by up to {there}."
     lowest = result.frequencies("plate")[0]
     periods = lowest * float(result.impacts["duration_s"][0])
     return f"{words} The first contact lasts {digits(periods, 2)} periods of the lowest mode, of {digits(lowest)}\u00a0Hz."
@@ -162,7 +163,9 @@ def plate_energy_caption(result: Result) -> str:
     kinetic, strain = (_part(float(np.max(peaks[name])), put_in) for name in ("max_kinetic_energy_J", "max_strain_energy_J"))
     change = text(float(np.abs(result.history["plate_potential_J"]).max()), "J")
     words = f"At most {kinetic} of the energy put in is kinetic energy of the plate, and {strain} strain energy."
-    return f"{words} Its potential energy changes by up to {change}, which the strain energy of its own weight balances."
+    if not result.history["plate_potential_J"].any():  # without gravity
+        return words
+    return f"{words} Its potential energy changes by up to {change}, which the strain energy due to its own weight balances."
 
 
 def deflection_caption(result: Result) -> str:
@@ -198,7 +201,8 @@ def sensor_caption(result: Result, name: str) -> str:
         f"\u00a0Hz, {_FILTERS[sensor.filter]}."
     )
     if signal.overload_time > 0.0:
-        words += " Its accelerometer is overloaded: values beyond its range are clipped before the filter, which may overshoot the range."
+        words += " Its accelerometer is overloaded: values beyond its range are clipped"
+        words += "." if sensor.filter == "none" else " before the filter, which may overshoot the range."
     values = signal.value[part]
     if len(values) < 4 or not np.any(values):
         return words

@@ -104,7 +104,7 @@ def case_explained(case: Case, aside: Container[str] = ()) -> RenderableType:
         tuned = ", ".join(named) if isinstance(named, tuple) else named or "loss parameter of the law"
         rows.append(("to calibrate", f"{tuned}; a run ignores [calibrate]"))
     if isinstance(laws[0], CompliantLaw) and laws[0].lasting:
-        where = "on the same spot: the dent of the last one lasts" if case.drop.same_spot else "on fresh surfaces"
+        where = "on the same spot: the dents of earlier ones remain" if case.drop.same_spot else "on fresh surfaces"
         rows.append(("each impact", f"{where} (drop.same_spot = {str(case.drop.same_spot).lower()})"))
     # restitution and expected contact are those of rigid bodies, and labelled so where the bodies deform
     rigid = not deforms(case) or is_free_sphere(case)
@@ -124,10 +124,10 @@ def _ball_rows(case: Case) -> list[tuple[str, str]]:
     sphere, ball, lines = case.sphere, ball_of(case.sphere), []
     if sphere.mass is not None:
         ratio = sphere_density(sphere) / sphere.material.density
-        lines.append(f"of a mean density of {sphere_density(sphere):.4g} kg/m3, {ratio:.3g} of its material's" + _inside(ratio))
+        lines.append(f"of a mean density of {sphere_density(sphere):.4g} kg/m3, {ratio:.3g} times its material's" + _inside(ratio))
     if sphere.inertia is not None or (sphere.mass is not None and is_oblique(case)):
         problem = rigid_problem(case)
-        turns = f"moment of inertia {problem.sphere_inertia:.4g} kg m2, {problem.inertia_ratio:.4g} of mass and squared radius"
+        turns = f"moment of inertia {problem.sphere_inertia:.4g} kg m2, {problem.inertia_ratio:.4g} times mass and squared radius"
         lines.append(turns if ball.inertia is not None else f'{turns}, as of a solid ball; of a shell: sphere.inertia = "hollow"')
     return [("", line) for line in lines]
 

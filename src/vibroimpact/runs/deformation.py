@@ -11,12 +11,13 @@ from vibroimpact.units.display import digits, fixed, text
 
 _SENTENCES = {
     "consistent": (
-        "Consistent: the contact law includes the local and the quasi-static indentation, and the modes add only the dynamic part; "
-        "no compliance is counted twice."
+        "Consistent: the contact law contains the local and the quasi-static deformation of the sphere, and modes of the sphere add "
+        "only the dynamic part; the static compliance that the modes of the plate lack is in series with the law. No compliance is "
+        "counted twice."
     ),
     "superposed": (
-        "Superposed: the contact law and the modes of the bodies are in series, as in a multibody program with flexible bodies. The "
-        "quasi-static compliance of the modes is added to that of the law, so that the local indentation is counted twice."
+        "Superposed: the contact law and the modes of the bodies are in series, as in a multibody program with flexible bodies. The local "
+        "indentation that modes of solid meshes contain, as those of the sphere do, is counted twice."
     ),
     "identified": (
         "Identified: a spring and a dashpot in parallel, in series with the contact law, represent the deformation of the sphere; they "
@@ -45,13 +46,16 @@ def deformation_rows(result: Result) -> list[tuple[str, str]]:
     """Return the rows of a table on deformation: description, and value with unit."""
     facts, rows = result.deformation, []
     for name, words in (
-        ("plate_static_compliance_m_N", "Static compliance of the plate at the contact point"),
+        (
+            "plate_static_compliance_m_N",
+            "Static compliance of the plate at the contact point, without rigid-body motion and local indentation",
+        ),
         (
             "plate_modal_compliance_m_N",
             "Part of it in the modes kept" if "plate_static_compliance_m_N" in facts else "Compliance of the plate's modes",
         ),
         ("sphere_modal_compliance_m_N", "Quasi-static compliance of the sphere's modes"),
-        ("series_compliance_m_N", "Compliance put in series with the law, so that it is counted once"),
+        ("series_compliance_m_N", "Compliance in series with the law, so that each part is counted once; negative if subtracted"),
     ):
         if name in facts:
             rows.append((words, f"{digits(float(facts[name]) / 1e-9)}\u00a0nm/N"))

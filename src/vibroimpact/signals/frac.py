@@ -45,7 +45,9 @@ def frac(measured: object, simulated: object) -> Floats:
     """
     one, other = np.asarray(measured), np.asarray(simulated)
     if one.shape != other.shape or one.ndim == 0:
-        raise InputError(f"responses of the shapes {one.shape} and {other.shape} can't be compared; give both at the same frequencies")
+        raise InputError(
+            f"responses of the shapes {one.shape} and {other.shape} can't be compared; give arrays of one shape, at the same frequencies"
+        )
     # sizes do not count: scaled, so that no square overflows or vanishes
     sizes = [np.max(np.abs(each), axis=-1, keepdims=True, initial=0.0) for each in (one, other)]
     with np.errstate(invalid="ignore", divide="ignore"):

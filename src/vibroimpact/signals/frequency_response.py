@@ -43,10 +43,10 @@ class DegreeOfFreedom:
 
     def __post_init__(self) -> None:
         if not self.names:
-            raise InputError("a place has a name or more; give one")
+            raise InputError("a place needs a name or more; give one")
         if self.direction not in _DIRECTIONS:
             raise InputError(
-                f"there is no direction {self.direction}; give 1, 2 or 3 for x, y or z, negative against it, or 0 if it is not known"
+                f"there is no direction {self.direction}; give 1, 2 or 3 for x, y or z, negative against the axis, or 0 if it is not known"
             )
 
     @property
@@ -106,18 +106,21 @@ class FrequencyResponse:
         name = shown(self.name)
         if frequency.ndim != 1 or frequency.shape != value.shape or len(frequency) < 2:
             raise InputError(
-                f"the frequency response {name} has {frequency.shape} frequencies and {value.shape} values; give as many, and two at least"
+                f"the frequency response {name} has frequencies of the shape {frequency.shape} and values of the shape {value.shape}; "
+                "give two rows of the same length, of two numbers or more"
             )
         if not (frequency > 0.0).all() or not (np.diff(frequency) > 0.0).all() or not np.isfinite(frequency).all():
             raise InputError(f"the frequencies of the response {name} do not rise from above 0; sort them, and leave 0 Hz out")
         if not np.isfinite(value).all():
             raise InputError(f"the frequency response {name} has values that are not finite; leave those frequencies out")
         if self.unit not in ("", *RESPONSE_UNITS):
-            raise InputError(f"{shown(self.unit)} is no unit of a frequency response; there are {', '.join(RESPONSE_UNITS)}")
+            raise InputError(
+                f'{shown(self.unit)} is no unit of a frequency response; there are {", ".join(RESPONSE_UNITS)}, and "" for one not known'
+            )
         if self.coherence is not None:
             coherence = np.asarray(self.coherence, dtype=float)
             if coherence.shape != frequency.shape or not ((coherence >= 0.0) & (coherence <= 1.0)).all():
-                raise InputError(f"the coherence of the response {name} is no row of as many numbers from 0 to 1")
+                raise InputError(f"the coherence of the response {name} must have one number from 0 to 1 for each frequency")
             object.__setattr__(self, "coherence", coherence)
         object.__setattr__(self, "frequency", frequency)
         object.__setattr__(self, "value", value)

@@ -57,7 +57,7 @@ def one_record(path: str | PathLike[str], channel: str | None = None, columns: s
     if len(found) > 1:
         alike = (record.name for record in islice(read_records(path, columns), _TOLD + 1) if channel is None or is_named(record, channel))
         every = list(dict.fromkeys(alike))
-        several = f"it has several channels, {_listed(every)}; name one by channel"
+        several = f"it has several channels, {_listed(every)}; name one by --channel (in a case the key channel)"
         one = f"several signals have the name {shown(every[0])}; take a file with one of them"
         raise with_path(path, InputError(several if len(every) > 1 else one))
     return found[0]

@@ -131,9 +131,9 @@ def packet_records(record: Record, threshold: float | None = None, dead_time: fl
 def check_settings(threshold: float | None, dead_time: float) -> None:
     """Raise InputError unless a threshold is above 0 (or None), and a dead time 0 or more."""
     if threshold is not None and not 0.0 < threshold < np.inf:
-        raise InputError(f"the threshold is {threshold:g}; it must be above 0, in the unit of the signal")
+        raise InputError(f"the threshold is {threshold:g}; it must be finite and above 0, in the unit of the signal")
     if not 0.0 <= dead_time < np.inf:
-        raise InputError(f"the dead time is {dead_time:g} s; it must be 0 or more")
+        raise InputError(f"the dead time is {dead_time:g} s; it must be finite, and 0 or more")
 
 
 def packets_in(value: Floats, envelope: Floats, threshold: Floats, rate: float, dead_time: float) -> Packets:

@@ -71,7 +71,7 @@ def read_records(path: str | PathLike[str], columns: str | None = None) -> Itera
     """
     files = record_files(path)
     if columns is not None and not any(_is_table(file) for file in files):
-        raise with_path(path, InputError(f"it is no table ({', '.join(TABLES)}), whose columns --columns states; leave it out"))
+        raise with_path(path, InputError(f"--columns states the columns of tables ({', '.join(TABLES)}), and this is none; leave it out"))
     for file in files:
         if columns is not None and _is_table(file):
             found = table_records(file, columns)

@@ -118,5 +118,5 @@ def checked_rate(rate: float) -> float:
         If it is not a finite number above 0.
     """
     if not isinstance(rate, (int, float, np.integer, np.floating)) or not 0.0 < rate < np.inf:
-        raise InputError(f"the rate is {shown(rate)}; it must be a number of Hz above 0")
+        raise InputError(f"the rate is {shown(rate)}; it must be a finite number of Hz above 0")
     return float(rate)

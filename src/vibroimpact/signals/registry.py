@@ -67,5 +67,5 @@ def _loaded(point: EntryPoint) -> Family:
             f'the features "{point.name}" of the entry point {point.value} can\'t be loaded: {error}; mend or uninstall its package'
         ) from error
     if not isinstance(family, Family):
-        raise InputError(f'the entry point "{point.name}", {point.value}, is not a Family of features')
+        raise InputError(f'the entry point "{point.name}", {point.value}, is not a Family of features; mend or uninstall its package')
     return family

@@ -62,7 +62,8 @@ class RatioTable:
     def __post_init__(self) -> None:
         if len(self.frequencies) != len(self.damping_ratios) or not self.frequencies:
             raise InputError(
-                f"{len(self.frequencies)} frequencies and {len(self.damping_ratios)} ratios do not make a table; give one ratio a frequency"
+                f"{len(self.frequencies)} frequencies and {len(self.damping_ratios)} ratios do not make a table; "
+                "give one ratio for each frequency"
             )
         if np.any(np.diff(self.frequencies) <= 0.0):
             raise InputError("the frequencies of the table must ascend", "frequencies")
@@ -87,7 +88,7 @@ class RatioOfEach:
     def description(self) -> str:
         """Short description for users."""
         shown = ", ".join(f"{ratio:g}" for ratio in self.damping_ratios[:4]) + (", ..." if len(self.damping_ratios) > 4 else "")
-        return f"damping ratios of the modes one by one: {shown}; the last goes on"
+        return f"damping ratios of the modes one by one: {shown}; the last holds for all further modes"
 
     def ratios(self, frequencies: Floats) -> Floats:
         """Return the damping ratio of each mode, in their order."""
@@ -110,7 +111,7 @@ class Rayleigh:
     @property
     def description(self) -> str:
         """Short description for users."""
-        return f"Rayleigh's, {self.mass_coefficient:g} 1/s times mass and {self.stiffness_coefficient:g} s times stiffness"
+        return f"Rayleigh damping, {self.mass_coefficient:g} 1/s times mass plus {self.stiffness_coefficient:g} s times stiffness"
 
     def ratios(self, frequencies: Floats) -> Floats:
         """Return the damping ratio of each mode."""

@@ -44,7 +44,9 @@ class Factors:
         self._order = order
         permuted = _without_rounding(matrix)[order][:, order].tocsc()
         if permuted.nnz > _MAX_ENTRIES:
-            raise InputError(f"{len(order)} degrees of freedom are more than the solver can number; use larger elements")
+            raise InputError(
+                f"the matrix of {len(order)} degrees of freedom has more entries than the solver can number; use larger elements"
+            )
         try:
             self._factors = splu(permuted, permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
         except RuntimeError:

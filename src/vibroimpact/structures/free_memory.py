@@ -21,7 +21,10 @@ def check_memory(need: float, what: str, remedy: str = "ask for fewer, or use la
     """
     free = free_memory()
     if need > _PART_OF_MEMORY * free:
-        raise InputError(f"{what} about {need / 1e9:.2g} GB of memory, and {free / 1e9:.2g} GB are free; {remedy}")
+        raise InputError(
+            f"{what} about {need / 1e9:.2g} GB of memory, and {free / 1e9:.2g} GB are free, "
+            f"of which {100.0 * _PART_OF_MEMORY:g} % may be used; {remedy}"
+        )
 
 
 def free_memory() -> float:

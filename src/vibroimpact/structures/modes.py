@@ -132,8 +132,8 @@ class ElasticSystem:
         size, most = self.stiffness.shape[0], max_modes(self.mass, self.rigid.shape[1])
         if not 1 <= number <= most:
             raise InputError(
-                f"{number} modes are not to be had from {size} degrees of freedom; it must be from 1 to {most}"
-                + ("" if number < 1 else ", or the elements smaller")
+                f"{number} modes are not to be had from {size} degrees of freedom; ask for 1 to {most}"
+                + ("" if number < 1 else ", or use smaller elements")
             )
         if size <= _DENSE:
             return self._dense(number)
@@ -160,8 +160,8 @@ class ElasticSystem:
         if not shape @ (self.stiffness @ shape) > _ROUNDING * highest:
             raise ComputationError(
                 "the stiffness matrix is singular: part of the body can move without resistance, as a hinge does; "
-                "look for elements that share only an edge or a node, or for equations between nodes that lie apart, "
-                "in place of which *TIE, or one RBE2 of all of them, turns with the body"
+                "look for elements that share only an edge or a node, or for equations between nodes that lie apart: "
+                "replace these by *TIE, or by one RBE2 of all the nodes, which turn with the body"
             )
 
     def _dense(self, number: int) -> Eigenmodes:

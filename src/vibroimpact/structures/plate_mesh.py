@@ -53,7 +53,8 @@ def solid_plate_mesh(
     """
     most = MOST_NODES // _NODES
     if (size[0] / element_size) * (size[1] / element_size) * layers > most:
-        raise InputError(f"elements of {element_size:g} m in {layers} layers would be more than {most}; make them larger")
+        remedy = "make them larger, or take fewer layers" if layers > 1 else "make them larger"
+        raise InputError(f"elements of {element_size:g} m in {layers} layer{'s' if layers > 1 else ''} would be more than {most}; {remedy}")
     below = splits if lower_splits is None else lower_splits
     height = with_midpoints(split_at(np.linspace(-0.5 * size[2], 0.5 * size[2], layers + 1), below), 2)
     margins = [0.5 * size[2] * 0.25**split for split in range(splits)]

@@ -112,9 +112,10 @@ def _box(disc: Disc, size: Sequence[float], discs: Sequence[Disc]) -> tuple[tupl
         for edge in (-0.5 * length, 0.5 * length):
             room = (edge - at) * (1.0 if edge > 0.0 else -1.0)
             if room < CLOSEST * disc.radius:
+                fault = "does not lie wholly on the plate" if room < disc.radius else "is too near to the edge of the plate"
                 raise InputError(
-                    f"{said} does not lie wholly on the plate, which reaches from {-0.5 * length:g} to {0.5 * length:g} m along {axis}; "
-                    "between it and the edge must be at least 0.15 radii",
+                    f"{said} {fault}, which reaches from {-0.5 * length:g} to {0.5 * length:g} m along {axis}; "
+                    f"between it and the edge must be at least {CLOSEST - 1.0:.2g} radii",
                     "supports",
                 )
             ends.append(edge)
@@ -125,7 +126,8 @@ def _box(disc: Disc, size: Sequence[float], discs: Sequence[Disc]) -> tuple[tupl
         if other is not disc:
             reach = min(reach, apart * disc.radius / (disc.radius + other.radius))
     if reach < CLOSEST * disc.radius:
-        raise InputError(f"{said} is too near to another one; between them must be at least 0.3 radii", "supports")
+        words = f"{said} is too near to another one; along x or y their centres must be {CLOSEST:g} times the sum of their radii apart"
+        raise InputError(words, "supports")
     for index, at in enumerate((disc.x, disc.y)):
         low, high = sides[index]
         near = reach + 0.5 * disc.radius  # no sliver along the edge

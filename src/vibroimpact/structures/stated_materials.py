@@ -67,5 +67,5 @@ def contradictions(stated: StatedMaterials | None, material: Material) -> Iterat
     if differing:
         yield (
             f"the mesh file gives its material {said.name} {' and '.join(differing)}, and its elements are computed with the material of "
-            f"the case, of {material.density:.4g} kg/m3 and {material.youngs_modulus:.4g} Pa; give the material that it is"
+            f"the case, of {material.density:.4g} kg/m3 and {material.youngs_modulus:.4g} Pa; give the material that the body is made of"
         )

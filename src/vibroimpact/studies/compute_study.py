@@ -86,7 +86,7 @@ def compute_study(
     if not isinstance(workers, int) or workers < 1:
         raise InputError(f"{workers!r} is not allowed; it must be a whole number from 1", "workers")
     if isinstance(memory, str) or not memory >= LEAST_MEMORY:
-        raise InputError(f"{memory!r} is not allowed; it must be a number of bytes, 1e6 or more", "memory")
+        raise InputError(f"{memory!r} is not allowed; it must be a number of bytes, {LEAST_MEMORY:g} or more", "memory")
     if not resume:
         _check_memory(sweep, memory)
     folder = Path(directory)
@@ -162,7 +162,7 @@ def _invalidate_damaged(ledger: Ledger, folder: Path, tell: Tell | None) -> None
         if checksum(folder, number) != expected:
             ledger.undone(number)
             if tell is not None:
-                tell(f"chunk {number} on disk is damaged; it is computed again")
+                tell(f"chunk {number} on disk is damaged or missing; it is computed again")
 
 
 def _run(ledger: Ledger, folder: Path, sweep: Sweep, workers: Workers, progress: Progress | None) -> None:
@@ -189,7 +189,7 @@ def _assemble(folder: Path, ledger: Ledger, sweep: Sweep) -> None:
     """Write table and dataset from the chunks; the dataset comes last, as its presence marks a complete study."""
     chunks, left = ledger.chunks("done"), ledger.chunks("waiting")
     if left:
-        raise ComputationError(f"{folder}: {len(left)} chunks are not done; go on with --resume")
+        raise ComputationError(f"{folder}: {len(left)} of the chunks {'is' if len(left) == 1 else 'are'} not done; go on with --resume")
     rates = {sensor.name: sensor.rate for sensor in sweep.case.sensors}
     try:
         if sweep.size <= MOST_ROWS:
@@ -238,7 +238,7 @@ def _check_memory(sweep: Sweep, memory: float) -> None:
     if memory < least:
         size = chunk_size(sweep, memory)
         raise InputError(
-            f"{memory / 1e6:.3g} MB is too little for {sweep.size:,} drops: computed {size:,} at a time they take several times as long; "
+            f"{memory / 1e6:.3g} MB is too little for {sweep.size:,} drops: computed {size:,} at a time they take over a third longer; "
             f"give {math.ceil(least / 1e6)} MB or more",
             "memory",
         )

@@ -82,7 +82,9 @@ def _client(address: str) -> Any:
     for worker, version in found.items():
         if version != __version__:
             client.close()
-            raise InputError(f"the worker {worker} has vibroimpact {version}, and this is {__version__}; install the same", "--scheduler")
+            raise InputError(
+                f"the worker {worker} has vibroimpact {version}, and this is {__version__}; install the same version", "--scheduler"
+            )
     return client
 
 

@@ -58,7 +58,7 @@ PEAK_TABLE: dict[str, PeakVariable] = {
     "largest_indentation_m": _largest("max_indentation_m", "of all impacts"),
     "first_restitution_achieved": _first("restitution_achieved", "restitution achieved at the first impact"),
     "first_tangential_restitution": _first(
-        "tangential_restitution", "velocity of the centre along the plate after over before impact, at the first impact"
+        "tangential_restitution", "ratio of the velocities of the centre along the plate after and before the first impact"
     ),
     "first_rebound_angle_deg": _first(
         "rebound_angle_deg", "angle of the first rebound from the normal, positive in the direction of motion"
@@ -68,7 +68,7 @@ PEAK_TABLE: dict[str, PeakVariable] = {
         "energy_lost_J", "energy dissipated in all contacts, without the energy of vibration", "Energy lost in all contacts"
     ),
     "first_rebound_height_m": _first(
-        "rebound_height_m", "height of the sphere's centre at the top of the first rebound", "Height of the first rebound"
+        "rebound_height_m", "height of the sphere's centre above the plate at the top of the first rebound", "Height of the first rebound"
     ),
     "largest_acceleration_m_s2": _largest("max_acceleration_m_s2", "in all impacts"),
     "first_time_s": _first("time_s", "time of the first touch", "Time of the first touch", is_drawn=False),

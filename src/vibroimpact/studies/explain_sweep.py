@@ -105,7 +105,7 @@ def _words(axis: Axis, unit: str, *, is_drawn: bool) -> str:
         power = f" to the power of {axis.exponent:g}" if axis.exponent != 1.0 else ""
         per = f" for each {axis.each}" if axis.each else ""
         factor = f"times {_words(axis.factor, '', is_drawn=is_drawn)}{per}"
-        return f"{axis.value:g} {unit} at {axis.of} = {axis.at:g}, with that{power}, {factor}"
+        return f"{axis.value:g} {unit} at {axis.of} = {axis.at:g}, proportional to it{power}, {factor}"
     assert isinstance(axis, Normal)
     name = "lognormal" if axis.lognormal else "normal"
     ends = [f"{word} {end:g}" for word, end in (("at least", axis.at_least), ("at most", axis.at_most)) if abs(end) < float("inf")]

@@ -67,10 +67,10 @@ class SweepSection(Section):
     window: WindowTable | None = Field(None, description="the part of the signals that is kept; by default all, from the start")
     classes: dict[Name, ClassTable] | None = Field(None, description="classes of a population, by name, with the distributions of each")
     falls_per_rock: Annotated[int, Field(ge=1, le=MOST_DROPS, strict=True)] = Field(
-        1, description="number of falls of each rock of a population, with all keys in common but those of [plate] and [drop]"
+        1, description="number of falls of each rock of a population, with all keys in common but those of [drop]"
     )
     rocks_per_plate: Annotated[int, Field(ge=1, le=MOST_DROPS, strict=True)] | None = Field(
-        None, description="number of rocks of a population on each plate, with the keys of [plate] in common; by default all"
+        None, description="number of rocks of a population on each plate, with the keys of [plate] and of sensors in common; by default all"
     )
 
 
@@ -150,10 +150,10 @@ def read_axis(value: Any, quantity: Quantity | None) -> Axis:
         if not value:
             raise InputError("the list is empty; it must have one value or more")
         return Listed(tuple(value if quantity is None else [_read_item(item, quantity) for item in value]))
-    if not isinstance(value, Mapping):
-        raise InputError(f"{shown(value)} is not allowed; it must be {_ASKED}")
     if quantity is None:
         raise InputError("this key holds no quantity, so that it takes a list of values alone")
+    if not isinstance(value, Mapping):
+        raise InputError(f"{shown(value)} is not allowed; it must be {_ASKED}")
     if "file" in value:
         return _columns(read_table(ColumnTable, value), quantity)
     if "distribution" in value:
@@ -184,7 +184,7 @@ def read_scaled(value: Mapping[str, Any], quantity: Quantity | None, followed: Q
         If the entry is invalid, or a key is not a quantity.
     """
     if quantity is None or followed is None:
-        raise InputError("one key follows another where both are quantities; take a list of values")
+        raise InputError("a key can follow another only if both are quantities; take a list of values")
     table = read_table(ScaledTable, value)
     one, at = _number(table.value, quantity, quantity.allowed, "value"), _number(table.at, followed, Range(above=0), "at")
     try:
@@ -220,7 +220,7 @@ def _spaced(table: Section, quantity: Quantity, *, is_random: bool) -> Spaced:
     assert isinstance(table, RangeTable)
     start, end = (_number(value, quantity, quantity.allowed, key) for key, value in (("from", table.start), ("to", table.end)))
     if not end > start:
-        raise InputError(f"{end:g} is not more than where it begins, {start:g}", "to")
+        raise InputError(f"{end:g} is not greater than from, {start:g}", "to")
     if table.scale == "log" and start <= 0.0:
         raise InputError(f"{start:g} has no logarithm; it must be greater than 0", "from")
     return Spaced(start, end, table.number, table.scale, is_random)

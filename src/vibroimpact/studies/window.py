@@ -54,9 +54,10 @@ class Window:
             raise ComputationError("there was no impact, so that its signal can't be cut around the first touch")
         begin, length = math.floor((float(touches[0]) - self.before) * rate + 1e-6), round(self.length * rate)
         if begin < 0:
-            words = f"the sphere touches {float(touches[0]):.3g} s after the start, less than the {self.before:g} s kept by sweep.window"
+            early = f"the sphere touches {float(touches[0]):.3g} s after the start"
+            words = f"{early}, less than the {self.before:g} s before the touch that sweep.window keeps"
             raise ComputationError(f"{words}; let it fall from higher up (drop.height), or keep less before the touch")
         if begin + length > count:
-            words = f"the signal ends at {count / rate:.4g} s, before the window at {(begin + length) / rate:.4g} s"
+            words = f"the signal ends at {count / rate:.4g} s, before the window does, at {(begin + length) / rate:.4g} s"
             raise ComputationError(f"{words}; give a longer run.duration")
         return begin, begin + length

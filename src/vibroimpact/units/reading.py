@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 _QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*((?:1/)?[^\d\s.+-].*)?")
 
 _COMMA = re.compile(r"\s*[+-]?\d+,\d")
+_THOUSANDS = re.compile(r"\s*[+-]?[1-9]\d{0,2}(,\d{3})+(?!\d)")
 _LONGEST = 80  # characters of a quantity
 
 _KIND = {
@@ -321,7 +322,8 @@ def _split(text: str, *, plain: bool = False) -> tuple[float, str] | None:
         pointed = text.replace(",", ".", 1).strip()
         with_point = number_and_unit(pointed)
         remedy = f"{with_point[0]:.15g}" if plain and with_point is not None else f'"{pointed}"'
-        raise InputError(f"{shown(text, 80)} has a comma in its number; write a point: {remedy}")
+        thousands = ", or leave the comma out if it separates thousands" if _THOUSANDS.match(text) else ""
+        raise InputError(f"{shown(text, 80)} has a comma in its number; write a point: {remedy}{thousands}")
     return parts
 
 

@@ -38,7 +38,7 @@ def bounce_charts(found: Rebounds) -> list[Chart]:
     >>> [chart.name for chart in vi.bounce_charts(vi.rebounds_of(heard))]
     ['record', 'restitution']
     """
-    of_impacts = partial(restitution_chart, found, each="Each impact between two flights of the record", one="impact")
+    of_impacts = partial(restitution_chart, found, each="Each impact whose restitution is known", one="impact")
     return made_charts({"record": partial(_record_chart, found), "restitution": of_impacts})
 
 
@@ -54,7 +54,8 @@ def _record_chart(found: Rebounds) -> Chart:
         marks.append(Points(bounces.others, level, "other sounds", "muted", bounces.reasons))
     label = f"{record.name[:1].upper()}{record.name[1:]}"
     panel = Panel(Axis("Time", "s"), Axis(label, "" if record.unit == "1" else record.unit), tuple(marks))
-    caption = "The record, with the bounces of the ball marked at their largest magnitude, and other sounds marked by crosses."
+    others = ", and other sounds marked by crosses" if len(bounces.others) else ""
+    caption = f"The record, with the bounces of the ball marked at their largest magnitude{others}."
     return Chart("record", "Bounces in the record", ((panel,),), caption, height=2.6)
 
 

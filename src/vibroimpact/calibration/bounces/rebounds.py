@@ -123,7 +123,7 @@ def rebounds_of(
     lasting = as_input("contact time", bounces.contact, "s")
     for name, value, unit in (("gravity", pull.value, "m/s^2"), ("height", None if fall is None else fall.value, "m")):
         if value is not None and not 0.0 < value < np.inf:
-            raise InputError(f"the {name} is {value:g} {unit}; it must be above 0")
+            raise InputError(f"the {name} is {value:g} {unit}; it must be above 0 and finite")
     g = float(pull.value)
     flown = 0.5 * g * bounces.flight
     approach, separation = np.append(np.nan, flown), np.append(flown, np.nan)
@@ -147,7 +147,7 @@ def rebounds_of(
         if restitution[0] > 1.0 + 3.0 * deviation[0]:
             risen = 0.5 * flown[0] ** 2 / g
             words = f"after the first touch the ball rises by {risen:.4g} m, more than the height of {fall.value:g} m from which it fell"
-            raise InputError(f"{words}; look at its unit, and whether the first touch is that of the fall")
+            raise InputError(f"{words}; look at the unit of the height, and whether the first touch is that of the fall")
         if abs(np.log(restitution[0] / restitution[1])) > np.log(_UNLIKE):
             words = f"the height gives the first touch a restitution of {restitution[0]:.3g}, and the next one has {restitution[1]:.3g}"
             doubts.append(f"{words}: it may not be the first impact of the fall, and is left out of the fits")

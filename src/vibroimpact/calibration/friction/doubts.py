@@ -47,8 +47,8 @@ def rebound_doubts(impacts: ObliqueImpacts, separation_speed: Floats, law: str) 
         worst = int(np.argmax(np.where(missed, off / impacts.seen.speeds, -1.0)))
         label = impacts.seen.labels[worst] if impacts.seen.labels else f"impact {worst + 1}"
         yield (
-            f"{law} does not reach the normal rebound of {int(missed.sum())} of {len(off)} impacts, by most that of {label}: "
-            f"{text(float(separation_speed[worst]), 'm/s')} for "
+            f"{law} does not reach the normal rebound of {int(missed.sum())} of {len(off)} impacts, least that of {label}: its "
+            f"separation speed is {text(float(separation_speed[worst]), 'm/s')} instead of "
             f"{text(float(impacts.separation_speed[worst]), 'm/s')}; take another contact law, as friction is fitted with this impulse"
         )
 
@@ -80,7 +80,7 @@ def friction_doubts(
             stick = " (they stick with more friction)" if name == "coefficient" else ""
             yield f"these impacts give only a lower bound of {full}, {low} {at}{stick}{more}"
         elif below and wide:
-            yield f"these impacts give only an upper bound of {full}, {high} {at}{more}"
+            yield f"these impacts give only an upper bound of {full}, {high} {at}{more if name != 'coefficient' else ''}"
         elif wide:
             yield f"these impacts do not determine {full}: {shown}, but {low} to {high} {at}"
     if seen.deviations_known and freedom > 0 and not known:

@@ -102,7 +102,7 @@ def oblique_impacts_in_file(case: Case, target: FileTarget, match: Iterable[str]
     speeds, velocity = _approach(table)
     measured = {name: table.columns[name] for name in ALONG_PLATE if name in table.columns}
     if not measured:
-        raise InputError(f"{table.path}: what was measured after the impacts is missing: {', '.join(ALONG_PLATE)}", "target")
+        raise InputError(f"{table.path}: what was measured after the impacts is missing; give one of {', '.join(ALONG_PLATE)}", "target")
     if "tangential_restitution" in measured and not velocity.all():
         words = "a sphere that does not move along the plate has no tangential restitution"
         raise InputError(f"{table.path}, line {table.lines[int(np.argmin(np.abs(velocity)))]}: {words}", "target")

@@ -28,7 +28,7 @@ def friction_words(found: FrictionCalibration) -> str:
 def together_words(found: FrictionCalibration) -> str:
     """Return in words what was matched."""
     every = " and the ".join(ALONG_PLATE[name].phrase for name in found.weights)
-    return f"the {every} of all impacts are fitted jointly to the measurement"
+    return f"the {every} of all impacts {'is' if len(found.weights) == 1 else 'are'} fitted jointly to the measurement"
 
 
 def friction_sentences(found: FrictionCalibration) -> list[str]:
@@ -52,7 +52,8 @@ def friction_sentences(found: FrictionCalibration) -> list[str]:
     if found.impacts.seen.deviations_known and math.isfinite(found.scatter):
         told.append(f"Residuals are {digits(found.scatter, 3)} times as large as their standard deviations.")
     slip, number = int(found.slips.sum()), len(found.slips)
-    told.append(f"Of {number} impacts {slip} slip throughout; these depend on the coefficient alone.")
+    alone = "; of friction, these depend on the coefficient alone" if slip else ""
+    told.append(f"Of {number} impacts {slip or 'none'} slip{'s' if slip == 1 else ''} throughout{alone}.")
     if found.impacts.separation_speed is not None:
         told.append("The normal rebound was measured too: the contact law is matched to it at each impact.")
     return told
@@ -66,7 +67,7 @@ def given_values_sentences(found: FrictionCalibration) -> list[str]:
         if not math.isfinite(value) or math.isclose(value, found.values[place], rel_tol=1e-3):
             continue
         inside = found.intervals is not None and found.intervals[place, 0] <= value <= found.intervals[place, 1]
-        verdict = "which the measurement leaves open" if inside else "which the measurement contradicts"
+        verdict = "inside the interval" if inside else "outside the interval"
         told.append(f"The case gives {name} = {text(value, unit)}{f', {verdict}' if found.intervals is not None else ''}.")
     return told
 

@@ -262,7 +262,7 @@ def _check_well_posed(case: CaseTable, series: QuasiStatic, facts: Mapping[str, 
     taken = cast(float, facts.get("sphere_modal_compliance_m_N", 0.0))
     raise InputError(
         f"the modes of the sphere carry {taken:.3g} m/N of its quasi-static compliance, and taking that out of the contact leaves less "
-        f"than {_LEAST_SLOPE:g} of the law's own from an indentation of {place:.2g} m on, so that the force would not be definite; "
+        f"than {_LEAST_SLOPE:g} of the law's own from an indentation of {place:.2g} m on, so that the force would not be unique; "
         "keep fewer modes, such as 10, or leave out attachment_mode or craig-bampton",
         "sphere.modes",
     )

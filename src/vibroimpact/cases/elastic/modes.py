@@ -128,7 +128,7 @@ def _doubts(case: CaseTable, name: str, body: ElasticBody, model: ModalModel, ba
     yield from _doubts_of_materials(case, name, body, model)
     yield from _doubts_of_frequencies(name, body, model)
     if any(block.element.order == 1 for block in model.mesh.blocks):
-        yield f"the mesh of the {name} has elements of first order, which are far too stiff in bending; take second order"
+        yield f"the mesh of the {name} has elements of first order, which are far too stiff in bending; take elements of second order"
     if isinstance(body.damping, (ConstantRatio, RatioOfEach, RatioTable)) and basis.damping_ratios.max() >= 1.0:
         yield f"the damping of the {name} is critical or more; a ratio of 0.01 is 1 %"
 
@@ -178,7 +178,7 @@ def _doubts_of_materials(case: CaseTable, name: str, body: ElasticBody, model: M
             "give there the material that is touched"
         )
     if getattr(case, name).damping == "loss-factor":
-        yield f"half the loss factor of {name}.material damps all modes of the {name}, whose elements are of several materials; give ratios"
+        yield f"half the loss factor of {name}.material damps all modes of the {name}, whose mesh has its own materials; give ratios"
 
 
 def _alike(one: Material, other: Material) -> bool:

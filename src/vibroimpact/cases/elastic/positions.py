@@ -78,7 +78,8 @@ def _check_support(table: Any, half: tuple[float, float]) -> None:
     least = CLOSEST * radius if is_rigid else radius - 1e-9 * max(half)  # with the tolerance of supports on meshes
     if least > min(room):
         margin = f"; between it and the edge must be at least {CLOSEST - 1.0:.2g} radii" if is_rigid else ""
-        words = f"{radius:g} m around {_shown(centre)} m reaches beyond the plate, {_reaches(half)}{margin}"
+        beyond = "is too near the edge of" if is_rigid and radius <= min(room) else "reaches beyond"
+        words = f"{radius:g} m around {_shown(centre)} m {beyond} the plate, {_reaches(half)}{margin}"
         raise InputError(f"{words}{likely_lengths([radius], [min(half)])}", "radius")
 
 

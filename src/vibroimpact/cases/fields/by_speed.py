@@ -45,7 +45,7 @@ def _table(given: Mapping[str, Any], unit: str, allowed: Range) -> SpeedTable:
     speeds = _numbers(given["speed"], "speed", "m/s", Range(above=0), _MOST_SPEEDS)
     values = _numbers(given["value"], "value", unit, allowed, _MOST_SPEEDS)
     if len(speeds) != len(values):
-        raise InputError(f"speed has {len(speeds)} numbers and value {len(values)}; each speed has its value")
+        raise InputError(f"speed has {len(speeds)} numbers and value {len(values)}; give a value for each speed")
     for slow, fast in pairwise(speeds):
         if not slow < fast:
             raise InputError(f"in speed {fast:g} m/s comes after {slow:g} m/s; the speeds must rise")
@@ -56,7 +56,7 @@ def _polynomial(given: Mapping[str, Any], unit: str, allowed: Range) -> SpeedFun
     coefficients = _numbers(given["polynomial"], "polynomial", "", Range(), _MOST_COEFFICIENTS)
     ends = [read_quantity(given[name], "m/s", Range(at_least=0)) for name in ("from", "to")]
     if not ends[0] < ends[1]:
-        raise InputError(f"it is from {ends[0]:g} to {ends[1]:g} m/s; the second must be higher")
+        raise InputError(f"it is from {ends[0]:g} to {ends[1]:g} m/s; to must be greater than from")
     found = SpeedFunction(coefficients, *ends)
     for value in found.extremes:
         allowed.check(value, unit, f"between {ends[0]:g} and {ends[1]:g} m/s it comes to {value:.4g}, which")

@@ -60,7 +60,7 @@ def read_contact(value: Any) -> ContactSection:
         try:
             if isinstance(given, list):
                 if not given:
-                    raise InputError("the list is empty; it must have one value an impact, the last one goes on")
+                    raise InputError("the list is empty; it must have one value per impact, the last of which holds for all later ones")
                 check_count(len(given), MOST_OF_A_LIST, "values")
                 parameters[key] = tuple(read_quantity(item, unit, allowed) for item in given)
             elif isinstance(given, dict):

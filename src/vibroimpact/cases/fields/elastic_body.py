@@ -49,7 +49,7 @@ class BroughtMeshTable(Section):
     """A mesh, or a geometry, from a file."""
 
     file: FileName = Field(
-        description="Nastran (.bdf, .dat), Abaqus (.inp), Gmsh (.msh), or with the extra mesh STEP (.step) and BREP (.brep)"
+        description="Nastran (.bdf, .dat, .nas, .fem), Abaqus (.inp), Gmsh (.msh), or with the extra mesh STEP (.step, .stp), BREP (.brep)"
     )
     unit: Annotated[float, Quantity("m", "unit of its coordinates", Range(above=0)), BeforeValidator(_one_unit)] = 1.0
     element_size: _Size | None = None
@@ -212,15 +212,17 @@ def check_elastic(section: Any) -> None:
             value = getattr(section, key, None)
             if value in (None, False):
                 continue
-            if key == "supports" and section.radius is not None:
+            if hasattr(section, "supports") and section.radius is not None:  # a sphere in the place of the plate
+                if key != "supports":
+                    raise InputError(f"a sphere in the place of the plate is rigid but for its contact; leave out {key}", key)
                 if value == "free":
                     continue  # a sphere below that moves freely
-                raise InputError('a sphere in place of the plate is held fixed, or "free"', key)
+                raise InputError('a sphere in the place of the plate is held fixed, or "free"', key)
             raise InputError(f'a rigid body does not take it; add model = "elastic", or leave out {key}', key)
         return
     check_alternatives(section, "modes", "max_frequency", needed=False, key="modes")
     if section.reduction == "craig-bampton" and section.attachment_mode:
-        raise InputError("the constraint modes of craig-bampton hold it already; leave it out", "attachment_mode")
+        raise InputError("the constraint modes of craig-bampton contain it already; leave it out", "attachment_mode")
     if section.material.name == "rigid":
         raise InputError('"rigid" does not deform; an elastic body needs a material with a modulus', "material")
 
@@ -268,11 +270,11 @@ def check_plate(section: Any) -> None:
     mesh = section.mesh
     brought = isinstance(mesh, BroughtMeshTable)
     if section.size is None and not brought:
-        raise InputError("an elastic plate needs its length, width and thickness, or a mesh", "size")
+        raise InputError("an elastic plate needs its length, width and thickness, or a mesh file", "size")
     if section.supports is None:
         raise InputError('how is the elastic plate held? Give "free", "clamped", "simply-supported", or tables such as patches', "supports")
     if brought and section.element == "plate":
-        raise InputError("a mesh that is brought is of solid elements; leave out element, or the mesh", "element")
+        raise InputError("a mesh file has solid elements; leave out element, or the mesh file", "element")
     if isinstance(mesh, PlateMeshTable):
         solid = section.element == "solid"
         for key in ("theory", "margin") if solid else ("elements", "layers", "kind", "splits", "lower_splits"):

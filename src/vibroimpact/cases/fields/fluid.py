@@ -28,7 +28,7 @@ def read_fluid(kind: type[Table], value: Any) -> Table | None:
         return read_table(kind, {}) if value else None
     if isinstance(value, dict):
         return read_table(kind, value)
-    raise InputError(f"{shown(value)} is not allowed; it must be true, false, or a table with {', '.join(kind.model_fields)}")
+    raise InputError(f"{shown(value)} is not allowed; it must be true, false, or a table with any of {', '.join(kind.model_fields)}")
 
 
 def fluid_words(table: Mapping[str, Any]) -> str:

@@ -118,7 +118,7 @@ class _OfSignal:
         return core_schema.any_schema()
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
-        words = f"{self.meaning} [the unit of what the sensor puts out]; a string carries its own unit"
+        words = f"{self.meaning} [the unit of the sensor's output]; a string carries its own unit"
         return {"type": ["number", "string"], "description": words}
 
 

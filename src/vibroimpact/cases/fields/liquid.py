@@ -29,7 +29,8 @@ LiquidField = Annotated[
     LiquidTable | None,
     BeforeValidator(lambda value: read_fluid(LiquidTable, value)),
     JsonSchema(
-        "liquid around sphere and plate, slows the fall and reduces the rebound: true for water at 20 C, or its numbers; none by default",
+        "liquid around sphere and plate, which slows the fall and reduces the rebound: true for water at 20 C, or its numbers; "
+        "none by default",
         lambda: {"anyOf": [{"type": "boolean"}, LiquidTable.model_json_schema()]},
     ),
 ]

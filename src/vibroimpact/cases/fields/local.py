@@ -17,10 +17,14 @@ class MeasuredImpact(Section):
     """The largest force and the rebound of one impact, from the drop of the case."""
 
     max_force: Annotated[float, Quantity("N", "largest contact force", Range(above=0))]
-    rebound_height: Annotated[float, Quantity("m", "height of the sphere's centre at the top of the rebound", Range(above=0))] | None = None
+    rebound_height: (
+        Annotated[float, Quantity("m", "height of the sphere's centre above the plate at the top of the rebound", Range(above=0))] | None
+    ) = None
     separation_speed: Annotated[float, Quantity("m/s", "speed after the impact", Range(above=0))] | None = None
     restitution: Annotated[float, Quantity("", "speed after over speed before", Range(above=0, below=1))] | None = None
-    relative_deviation: Annotated[float, Quantity("", "standard deviation of each, as a part of it", Range(above=0, below=1))] | None = None
+    relative_deviation: (
+        Annotated[float, Quantity("", "relative standard deviation of the force, and of the rebound", Range(above=0, below=1))] | None
+    ) = None
     plate: Literal["as here", "rigid"] = Field("as here", description="plate of the measurement: the plate of the case, or a rigid one")
 
     @model_validator(mode="after")
@@ -53,7 +57,8 @@ class LocalSection(Section):
             raise InputError('only local_compliance = "identified" takes it', given[0])
         if self.local_compliance == "identified" and given not in (["local_stiffness", "local_damping"], ["measured"]):
             raise InputError(
-                '"identified" needs local_stiffness and local_damping, or measured = { max_force, rebound_height } to find them from',
+                '"identified" needs either local_stiffness and local_damping, or measured = { max_force, rebound_height }, from which '
+                "they follow",
                 "local_compliance",
             )
         if self.local_compliance == "identified" and self.finite_sphere:

@@ -18,7 +18,7 @@ class MotionTable(Section):
 
     amplitude: Annotated[float, Quantity("m", "amplitude of the motion", Range(at_least=0))] | None = None
     frequency: Annotated[float, Quantity("Hz", "frequency of the motion", Range(above=0))] | None = None
-    phase: Annotated[float, Quantity("rad", "phase at the start; at 0 the plate passes its mean position, upwards")] = 0.0
+    phase: Annotated[float, Quantity("rad", "phase at the start; at 0 the plate passes its mean position along `direction`")] = 0.0
     file: FileName | None = Field(
         None, description="CSV file of the motion over time: time, and displacement or acceleration, with their units"
     )
@@ -34,10 +34,12 @@ class MotionTable(Section):
     @model_validator(mode="after")
     def _one_of_two(self) -> MotionTable:
         given = [name for name in ("amplitude", "frequency") if getattr(self, name) is not None]
-        if self.file is not None and (given or "phase" in self.model_fields_set):
-            raise InputError("give either a file or amplitude and frequency; both are given", "file")
+        harmonic = [*given, *(["phase"] if "phase" in self.model_fields_set else [])]
+        if self.file is not None and harmonic:
+            words = f"give either a file or a harmonic motion; leave out {' and '.join(harmonic)}, or leave out this"
+            raise InputError(words, "file")
         if self.file is None and self.repeat:
-            raise InputError("only the motion of a file is repeated, and a harmonic one repeats by itself; leave this out", "repeat")
+            raise InputError("only the motion of a file is repeated, and a harmonic motion repeats by itself; leave this out", "repeat")
         if self.file is None and len(given) < 2:
             missing = "amplitude" if given == ["frequency"] else "frequency" if given else "amplitude and frequency"
             raise InputError(f"this key needs {missing}, or file in place of both")

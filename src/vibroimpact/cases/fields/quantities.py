@@ -111,7 +111,7 @@ class UncertainQuantity(Quantity):
         return core_schema.no_info_plain_validator_function(lambda value: read_uncertain(value, self.unit, self.allowed))
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
-        return quantity_schema(self.unit, f'{self.meaning}; for calibrations with a standard deviation, as in "... +- 1 %"')
+        return quantity_schema(self.unit, f'{self.meaning}; for a calibration its standard deviation may be added, as in "... +- 1 %"')
 
 
 def read_uncertain(value: Any, unit: str, allowed: Range) -> Written:

@@ -50,10 +50,11 @@ def _number(drops: Conditions) -> Array:
 def _sentence(drop: Conditions, lost: float) -> str:
     radius = drop.effective_radius
     speed, pull = float(sticking_speed(radius, drop.modulus, drop.effective_mass)), 1.5 * np.pi * WORK_OF_ADHESION * radius
-    told = "the sphere would stick" if lost >= 1.0 else f"the first restitution would fall by {percent_less(lost).removeprefix('-')}"
+    fall = f"the first restitution would fall by {percent_less(lost).removeprefix('-')} or more"
+    told = "the sphere would stick" if lost >= 1.0 else fall
     return (
-        f"with a work of adhesion of {WORK_OF_ADHESION:g} J/m^2, of clean and dry bodies, {told}: they stick below {speed:.2g} m/s, and "
-        f'hold by {pull:.2g} N; law = "jkr" or "krijt" has adhesion'
+        f"with a work of adhesion of {WORK_OF_ADHESION:g} J/m^2, the largest of clean and dry bodies, {told}: such spheres stick below "
+        f'{speed:.2g} m/s, and their pull-off force is {pull:.2g} N; law = "jkr" or "krijt" has adhesion'
     )
 
 
@@ -61,7 +62,7 @@ LIMITS = (
     Limit(
         name="adhesion",
         title="adhesion",
-        meaning=f"part of the first restitution that a work of adhesion of {WORK_OF_ADHESION:g} J/m^2 would take",
+        meaning=f"part of the first restitution that a work of adhesion of {WORK_OF_ADHESION:g} J/m^2 would take from an elastic contact",
         threshold=0.01,
         number=_number,
         sentence=_sentence,

@@ -39,7 +39,7 @@ def _sentence(drop: Conditions, ratio: float) -> str:
     return (
         f"the plate deflects by {ratio:.2g} of its thickness: it also stretches, which is not computed, and is stiffer by about "
         f"{percent_more(sliding).removeprefix('+')} if its edges may slide in its plane, {percent_more(held).removeprefix('+')} if they "
-        "are held; take a lower speed, a thicker plate, or a program of large deflections"
+        "are held; take a lower speed, a thicker plate, or a program for large deflections"
     )
 
 

@@ -73,7 +73,7 @@ def _sentence(drop: Conditions, _: float) -> str:
         reach = f"{distance / float(drop.contact_radius):.2g} contact radii"
     return (
         f"the contact is {distance:.3g} m from the edge of the plate, {reach}: a half space is too stiff there, by about "
-        f"{100.0 * soft:.2g} % where the edge is free; move drop.position {float(_least_distance(drop)):.2g} m or more away from the edge"
+        f"{100.0 * soft:.2g} % where the edge is free; move drop.position to {float(_least_distance(drop)):.3g} m or more from it"
     )
 
 

@@ -93,7 +93,7 @@ LIMITS = (
     Limit(
         name="finite_sphere",
         title="half space for a finite sphere",
-        meaning="part of the largest force that Hertz's half space lacks of that of a sphere of finite size",
+        meaning="part by which the largest force of Hertz's half space is below that of a sphere of finite size",
         threshold=0.02,
         number=_number,
         sentence=_sentence,

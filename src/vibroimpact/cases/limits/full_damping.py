@@ -16,8 +16,8 @@ def _number(drops: Conditions) -> Array:
 def _sentence(drop: Conditions, ratio: float) -> str:
     fade = float(drop.law_parameter("full_damping_penetration"))
     return (
-        f"the indentation, {drop.summary.depth:.2g} m, stays below the full-damping penetration, {fade:.2g} m: the damping never acts in "
-        f"full, and less is lost than with damping_max; take a penetration of {0.1 * drop.summary.depth:.1g} m or so, or calibrate"
+        f"the largest indentation, {drop.summary.depth:.2g} m, stays below the full-damping penetration, {fade:.2g} m: the damping never "
+        f"acts in full, and less energy is lost; take a full_damping_penetration of {0.1 * drop.summary.depth:.1g} m or so, or calibrate"
     )
 
 

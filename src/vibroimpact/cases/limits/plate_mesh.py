@@ -51,10 +51,11 @@ def plate_mesh_error(facts: Mapping[str, Any], impacts: Mapping[str, Any]) -> fl
 
 def _sentence(drop: Conditions, error: float) -> str:
     # what elements lack grows a little less than with the square of their size, and faster where they are small
+    large = percent_more(error).removeprefix("+")
     finer = float(drop.case["plate"]["mesh"]["element_size"]) * math.sqrt(_ALLOWED / (_SPARE * error))
     return (
-        "the elements of the plate are large for its thickness and do not follow its deflection next to the contact, which makes the "
-        f'first largest force about {percent_more(error)} too large; give plate.mesh.element_size = "{1e3 * finer:.2g} mm"'
+        "the elements of the plate are large for its thickness and do not follow its deflection next to the contact, which makes "
+        f'the first largest force about {large} too large; give plate.mesh.element_size = "{1e3 * finer:.2g} mm"'
     )
 
 

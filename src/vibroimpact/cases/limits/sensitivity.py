@@ -27,8 +27,9 @@ def _sentence(drop: Conditions, _: float) -> str:
     grown += [f"to all of impact {lost[0] + 1}"] if lost.size else []
     undamped = _undamped(drop)
     remedy = f"give {undamped} damping, or judge" if undamped else "judge"
+    small = max(RELATIVE_CHANGE, drop.case["run"]["tolerance"]) if drop.case else RELATIVE_CHANGE
     return (
-        f"the drop is sensitive from impact {first + 1} on: a relative change of {RELATIVE_CHANGE:g} in it grows {' and '.join(grown)}, "
+        f"the drop is sensitive from impact {first + 1} on: a relative change of {small:g} in it grows {' and '.join(grown)}, "
         f"so that these impacts are not predictable; {remedy} them by their distribution in a study over drop.height"
     )
 

@@ -62,7 +62,7 @@ def _strength_sentence(body: str, drop: Conditions, ratio: float) -> str:
     remedy = (
         "take a law that yields, such as meyer"
         if name == "yield_strength"
-        else "take the force for an upper bound, or a measured restitution"
+        else "take the force for an upper bound, and the restitution from a measurement"
     )
     beginning = f"{_named(body, material)} {verb} under Hertz's peak pressure of {_stress(pressure)}{how}"
     return f"{beginning}; {drop.law.name} leaves this out: {remedy}"

@@ -107,7 +107,7 @@ def element_size(estimate: HertzEstimate, table: Mapping[str, Any]) -> Plausible
 def margin(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
     """Return the range of the width of the elements along edges; by default it follows the thickness, also of a block."""
     high = max(0.5 * estimate.across, 2.0 * estimate.size[2])
-    return PlausibleRange(high=high, above="is more than half the plate and twice its thickness")
+    return PlausibleRange(high=high, above="is more than half the length of the plate, and than twice its thickness")
 
 
 def support_stiffness(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
@@ -211,7 +211,7 @@ def _rounded_up(value: float) -> str:
 
 def rest_speed(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
     """Return the range of the rest speed, less than the approach speed of the first impact."""
-    return PlausibleRange(high=0.9 * estimate.speed, above=f"is no less than the speed of the first touch, {estimate.speed:.3g} m/s")
+    return PlausibleRange(high=0.9 * estimate.speed, above=f"is not well below the speed of the first touch, {estimate.speed:.3g} m/s")
 
 
 def modal_frequency(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
@@ -222,7 +222,7 @@ def modal_frequency(estimate: HertzEstimate, table: Mapping[str, Any]) -> Plausi
         low=0.05 / lasts,
         high=1e5 / lasts,
         below=lambda value: (
-            f"has a period of {number_text(1.0 / value, 2)} s, and the contact lasts {contact}: it excites much higher ones"
+            f"has a period of {number_text(1.0 / value, 2)} s, and the contact lasts {contact}: it excites much higher frequencies"
         ),
         above=lambda value: f"is far higher than a contact of {contact} excites",
     )

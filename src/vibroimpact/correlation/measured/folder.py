@@ -14,7 +14,7 @@ from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.figures_folder import write_figures
 from vibroimpact.charts.made import made_charts
 from vibroimpact.charts.marks import Mark, Rug
-from vibroimpact.correlation.charts import MOST, magnitude_lines
+from vibroimpact.correlation.charts import MOST, magnitude_lines, those_drawn
 from vibroimpact.correlation.document import TEXTS
 from vibroimpact.correlation.measured.document import MEASURED_COLUMNS, measured_records, measured_table, summary_of_measured
 from vibroimpact.correlation.measured.modes_of_file import MeasuredModes
@@ -77,4 +77,5 @@ def _chart(found: MeasuredModes) -> Chart:
         scale = Axis("Magnitude", one.unit, log=True, range=shown)
         marks: tuple[Mark, ...] = (*lines, Rug(places, "measured modes"))
         rows.append((Panel(axis, scale, marks, shortened(visible(one.name), 40)),))
-    return Chart("responses", "Frequency responses", tuple(rows), "Measured frequency responses. Ticks mark the modes that were found.")
+    caption = f"Measured frequency responses. Ticks mark the modes that were found.{those_drawn(len(found.responses))}"
+    return Chart("responses", "Frequency responses", tuple(rows), caption)

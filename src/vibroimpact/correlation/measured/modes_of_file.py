@@ -99,4 +99,4 @@ def _of_records(responses: Sequence[FrequencyResponse]) -> Iterator[str]:
         number = len(contents_of(source).records)
         if number:
             records = f"{number} record{'s' if number > 1 else ''} over time"
-            yield f"{source} has {records} too, of which these modes are not; correlate compares them with a case"
+            yield f"{source} also has {records}, which these modes are not from; correlate --compare records compares them with a case"

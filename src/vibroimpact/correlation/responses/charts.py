@@ -11,7 +11,7 @@ from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.made import made_charts
 from vibroimpact.charts.marks import Line, Rug
-from vibroimpact.correlation.charts import MOST, damping_chart, frac_chart, magnitude_lines
+from vibroimpact.correlation.charts import MOST, damping_chart, frac_chart, magnitude_lines, those_drawn
 from vibroimpact.correlation.responses.document import WHAT_FRAC_IS_OF
 from vibroimpact.correlation.responses.result import ResponseCorrelation
 from vibroimpact.shown import shortened, visible
@@ -60,6 +60,7 @@ def _responses(found: ResponseCorrelation) -> Chart:
             rows.append((Panel(axis, level, (Line(found.frequency, found.coherence[number], role="detail"),), "Coherence"),))
     caption = (
         f"Measured frequency responses to a force at {visible(found.reference)}, and those of the case. Ticks mark the modes of the case."
+        f"{those_drawn(len(found.sensors))}"
     )
     return Chart("responses", "Frequency responses", tuple(rows), caption)
 

@@ -173,12 +173,14 @@ def _band(problem: Problem, frequency: Floats, band: tuple[float, float] | None)
     if band is not None:
         if not (first <= band[0] < band[1] <= last):
             raise InputError(
-                f"a band from {band[0]:g} to {band[1]:g} Hz is not allowed; it lies between {first:g} and {last:g} Hz, as measured"
+                f"a band from {band[0]:g} to {band[1]:g} Hz is not allowed; it must rise, within the {first:g} to {last:g} Hz measured"
             )
         return band
     lowest, highest = float(modes.frequencies[0]), float(modes.frequencies[-1])
     if lowest >= last:
-        raise InputError(f"the lowest mode of the plate has {lowest:.5g} Hz, and the responses end at {last:.5g} Hz; measure up to more")
+        raise InputError(
+            f"the lowest mode of the plate has {lowest:.5g} Hz, and the responses end at {last:.5g} Hz; measure up to higher frequencies"
+        )
     return max(0.5 * lowest, first), min(max(highest, 1.5 * lowest), last)
 
 

@@ -48,7 +48,8 @@ def doubts_about(
     """
     yield from doubts_of_files(match.responses)
     if match.left_out:
-        yield f"{match.left_out} responses have no sensor of their name in the case, and are not compared"
+        number, have = match.left_out, "responses have" if match.left_out > 1 else "response has"
+        yield f"{number} {have} no sensor of that name and direction in the case, and {'are' if number > 1 else 'is'} not compared"
     if match.reciprocal:
         yield f"the hammer was at the sensors, and the motion was measured at {shown(match.reference)}: taken as equal, by reciprocity"
     for name, sign in zip((sensor.name for sensor in found.sensors), found.polarity, strict=True):
@@ -57,7 +58,8 @@ def doubts_about(
     yield from doubts_of_differences(differences, found.frac, found.scaled_frac, found.damped_frac)
     for name, size, of in zip((sensor.name for sensor in found.sensors), scale, found.damped_frac, strict=True):
         if abs(size - 1.0) > (_GAIN if of > _ALIKE else _LARGE_GAIN):
-            yield f"the response {shown(name)} has {size:.3g} times the size that is simulated: a wrong sensitivity, mass or damping"
+            words = f"the response {shown(name)} has {size:.3g} times the simulated magnitude"
+            yield f"{words}: check the sensitivity, and mass and damping of the plate"
     yield from _of_coherence(found)
     yield from doubts_of_resolution([pair.measured for pair in found.modes if pair.measured is not None], found.frequency)
     assert problem.plate.modes is not None
@@ -93,7 +95,7 @@ def _of_coherence(found: ResponseCorrelation) -> Iterator[str]:
         many = f"at {100.0 * part:.2g} % of the frequencies" if part > _MANY else ""
         if at or many:
             words = f"the coherence of {shown(sensor.name)} is below {COHERENT} {' and '.join(filter(None, (at, many)))}"
-            yield f"{words}: noise, a second hit, or what is not linear; size and damping are not sure there"
+            yield f"{words}: noise, a second hit, or a nonlinearity; magnitude and damping are uncertain there"
 
 
 def doubts_of_resolution(modes: Sequence[DecayMode], frequency: Floats) -> Iterator[str]:

@@ -73,7 +73,8 @@ def matched(sensors: Sequence[Sensor], responses: Sequence[FrequencyResponse], r
     across = [(one, there) for one, here, there in pairs if abs(here.direction) in (0, UP)]
     if not across:
         raise InputError(
-            f"the forces at {shown(name)} are along the plate, and the case's is normal to it; give responses to those along z"
+            f"the {'motions' if reciprocal else 'forces'} at {shown(name)} are along the plate, and the case's force is normal to it; "
+            "give responses with those along z"
         )
     chosen: dict[str, tuple[Sensor, FrequencyResponse, DegreeOfFreedom]] = {}
     for sensor in sensors:
@@ -83,13 +84,15 @@ def matched(sensors: Sequence[Sensor], responses: Sequence[FrequencyResponse], r
             words = f"the response {shown(sensor.name)} is along {_AXES[abs(fitting[0][1].direction) - 1]}, and the case's sensor along"
             raise InputError(f"{words} {list(sensor.direction)}; write its direction as it was measured", "sensors.direction")
         if len(along) > 1:
-            words = f"there are {len(along)} frequency responses {shown(sensor.name)} to a force at {shown(name)}"
+            motion, force = (name, sensor.name) if reciprocal else (sensor.name, name)
+            words = f"there are {len(along)} frequency responses of the motion at {shown(motion)} to a force at {shown(force)}"
             raise InputError(f"{words}; leave one of them in the file")
         if along:
             chosen[sensor.name] = (sensor, *along[0])
     if not chosen:
         named = listed(dict.fromkeys(there.name for _, there in across), sensors[0].name)
-        words = f"no sensor of the case ({listed(one.name for one in sensors)}) is named after a response to the force at {shown(name)}"
+        what = f"a force with a response at {shown(name)}" if reciprocal else f"a response to the force at {shown(name)}"
+        words = f"no sensor of the case ({listed(one.name for one in sensors)}) is named after {what}"
         remedy = f'write the name of the sensor as the file has it, such as name = "{across[0][1].name}"'
         raise InputError(f"{words}: {named}; {remedy}", "sensors.name")
     for sensor, one, _ in chosen.values():

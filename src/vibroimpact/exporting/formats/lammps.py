@@ -181,18 +181,17 @@ def _notes(drop: Drop) -> list[str]:
     notes = [*shared_notes(drop), *friction_notes(drop, "LAMMPS", _friction(drop))]
     if not drop.is_solid:
         notes.append("LAMMPS has the moment of inertia of a solid sphere, which does not matter without friction.")
+    where = f"{speeds[0]:.6g} m/s, the speed of the first impact" if len(normals) == 1 else "the speed of each impact of this drop"
     if not normals[0].exact:
         spring = "hooke" if linear_or_hertzian(drop, "LAMMPS")[1] == 1.0 else "hertz"
         notes.append(
             f"LAMMPS has no {law.name}; its {spring} with damping {normals[0].damping} stands for it, so forces within the contact differ."
         )
         if normals[0].damping == "velocity":
-            where = f"{speeds[0]:.6g} m/s, the speed of the first impact" if len(normals) == 1 else "the speed of each impact of this drop"
             notes.append(f"Its restitution is the law's at {where}; at others it differs somewhat.")
     if isinstance(law, HuntCrossley) and law.dissipation is not None:
         notes.append(
-            f"Its restitution is the law's at {speeds[0]:.6g} m/s, the speed of the first impact, and does not depend on the speed; "
-            "that of the law rises to 1 where it slows down."
+            f"Its restitution is the law's at {where}, and at others stays the same; that of the law rises to 1 where it slows down."
         )
     if _friction(drop) is not None and normals[0].coefficient and not normals[0].clipped:
         notes.append("Where LAMMPS' normal force pulls, at the end of a contact, friction follows its magnitude.")

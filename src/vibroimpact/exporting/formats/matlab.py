@@ -161,7 +161,7 @@ FORMAT = ExportFormat(
     tested="read back with scipy.io.loadmat of SciPy 1.17, values, names and units the same; not with MATLAB itself",
     write=write,
     notes=lambda drop: [
-        f'The sensor "{one_line(name)}" is called signals.{legal} in it, a name that MATLAB takes.'
+        f'The sensor "{one_line(name)}" is signals.{legal} in the file, a valid name in MATLAB.'
         for name, legal in legal_names(list(drop.signals)).items()
         if name != legal
     ],

@@ -65,12 +65,12 @@ def _motion(drop: Drop) -> _Motion:
     height, rising = float(drop.height), -float(drop.speed)
     if drop.oblique is None:
         joint = f'<joint name="height" type="slide" axis="0 0 1" ref="{height!r}"/>'
-        meaning = "The sphere's height above the plate is qpos[0], its velocity qvel[0]."
+        meaning = "The height of the sphere's centre above the plate is qpos[0], its velocity qvel[0]."
         return _Motion(joint, repr(height), repr(rising), "0 0", meaning)
     if drop.oblique.friction is not None:
         raise InputError(
             f"{drop.oblique.friction.name} can't be written for MuJoCo, whose friction is viscous up to its cone, and changes the "
-            "restitution of what slides; a drop without friction can",
+            "restitution of what slides; a drop without friction can be",
             "contact.friction",
         )
     return _Motion(
@@ -78,7 +78,7 @@ def _motion(drop: Drop) -> _Motion:
         _numbers(*drop.position, height, 1.0, 0.0, 0.0, 0.0),
         _numbers(*drop.oblique.velocity, rising, *drop.oblique.spin),
         _numbers(*drop.oblique.gravity),
-        "The sphere's place is qpos[0:3], its velocity qvel[0:3], its angular velocity in its own axes qvel[3:6].",
+        "The position of the sphere's centre is qpos[0:3], its velocity qvel[0:3], its angular velocity in its own axes qvel[3:6].",
     )
 
 
@@ -137,7 +137,7 @@ def _notes(drop: Drop) -> list[str]:
     )
     if exponent != 1.0:
         notes.append(f"The exponent {exponent:g} of the spring can't be represented, so durations at other speeds differ.")
-    changing = "; damping that changes from impact to impact can't be represented." if len(laws) > 1 else "."
+    changing = "; parameters that change from impact to impact can't be represented." if len(laws) > 1 else "."
     notes.append("Its restitution is the same at every speed" + changing)
     return notes
 

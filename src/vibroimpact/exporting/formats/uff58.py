@@ -60,7 +60,8 @@ def write(drop: Drop) -> dict[str, bytes]:
     functions = [*_of_signals(drop), *_of_history(drop)]
     if not functions:
         raise InputError(
-            f'"{one_line(drop.name)}" has no sensors, and {_why_no_history(drop)}; there is nothing to write as functions of time'
+            f'"{one_line(drop.name)}" has no sensor with two samples or more, and {_why_no_history(drop)}; there is nothing to write as '
+            "functions of time"
         )
     try:
         import pyuff
@@ -190,7 +191,7 @@ FORMAT = ExportFormat(
     name="uff58",
     program="programs of vibration testing (Simcenter Testlab, ME'scope, pyuff, ...)",
     files="one universal file (.uff), datasets 151, 164 and binary 58",
-    tested="read back with pyuff 2.5, which also writes it, and by a reader of the test's own; not with the programs of its makers",
+    tested="read back with pyuff 2.5, which also writes it, and by a reader in the tests; not with Simcenter Testlab or ME'scope",
     write=write,
     notes=_notes,
 )

@@ -138,7 +138,7 @@ def _box(size: tuple[float, float, float], moved: Floats) -> bytes:
 
 def _notes(drop: Drop) -> list[str]:
     place = "at rest" if drop.motion is None else "in its mean position"
-    notes = [f"The sphere is drawn round, wherever it deforms, at its true height above the plate {place} (z = 0)."]
+    notes = [f"The sphere is drawn round, even where it deforms, at its true height above the plate {place} (z = 0)."]
     if drop.oblique is not None:
         notes.append("It moves along the plate, and does not turn; its spin is in the history.")
     if drop.surface:
@@ -147,14 +147,14 @@ def _notes(drop: Drop) -> list[str]:
     elif drop.plate_size is None:
         notes.append("The case gives no size of the plate, so the sphere is written alone.")
     elif "plate" in drop.elastic:
-        notes.append("The plate is written flat: its deflection is not known.")
+        notes.append("The plate is written flat: the result does not contain its deflection.")
     return notes
 
 
 FORMAT = ExportFormat(
     name="vtu",
     program="ParaView, VTK, PyVista",
-    files="sphere.pvd and plate.pvd with a .vtu file each frame; a rigid plate at rest is plate.vtu",
+    files="sphere.pvd and plate.pvd with a .vtu file for each frame; a plate at rest without its deflection is plate.vtu",
     tested="read back with meshio 5.3: points, cells and displacements the same",
     write=write,
     notes=_notes,

@@ -70,9 +70,9 @@ def _notes(drop: Drop) -> list[str]:
         sensor = drop.signals[name].sensor
         notes.append(f"1.0 in {plain}.wav is {full_scale(drop.signals[name]):.9g} {sensor.unit}; the comment in the file says so too.")
         if sensor.rate != round(sensor.rate):
-            notes.append(f"{plain}.wav is said to have {round(sensor.rate)} samples a second; it has {sensor.rate!r}.")
+            notes.append(f"The header of {plain}.wav states {round(sensor.rate)} samples a second; the signal has {sensor.rate!r}.")
         if sensor.rate > 192e3:
-            notes.append(f"Players may not take the {sensor.rate:g} Hz of {plain}.wav.")
+            notes.append(f"Players may not play the {sensor.rate:g} Hz of {plain}.wav.")
     return notes
 
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from vibroimpact.arrays import Array
 from vibroimpact.bodies.ball import mean_density
 from vibroimpact.contact.friction.law import CompliantFriction, FrictionLaw
-from vibroimpact.contact.kelvin_voigt import damping_ratio_from_restitution
+from vibroimpact.contact.kelvin_voigt import KelvinVoigtLaw, damping_ratio_from_restitution
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.tsuji import Tsuji
@@ -190,7 +190,7 @@ def _notes(drop: Drop) -> list[str]:
     if isinstance(law, Hertz):
         return notes
     name = "Law2_ScGeom_ViscElPhys_Basic" if _linear(drop) else "Law2_ScGeom_MindlinPhys_Mindlin"
-    own = isinstance(law, Tsuji) or _linear(drop)
+    own = isinstance(law, (Tsuji, KelvinVoigtLaw))
     notes.append(
         f"YADE's {name} stands for {law.name}; it {'differs in that it never pulls' if own else 'has another damping'}, so forces within "
         "the contact differ. Its restitution is the law's at the first impact's speed, and does not depend on the speed."

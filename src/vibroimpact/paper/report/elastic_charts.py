@@ -34,11 +34,11 @@ _ROLES = ("under", "series 1", "series 2")
 
 
 def _fitted_note(runs: Runs) -> str:
-    return "The local element of the identified treatment is fitted to the force and rebound height printed of Type 2."
+    return "The local element of the identified treatment is fitted to the force and rebound height printed for Type 2."
 
 
 def _figure_14_note(runs: Runs) -> str:
-    return "Figure 14 has the energy that it prints instead."
+    return "Figure 14 shows the energy that it prints instead."
 
 
 def _first_touch_note(runs: Runs) -> str:
@@ -53,7 +53,7 @@ def _strain_energy_note(runs: Runs) -> str:
     whole = text(float(np.max(history["sphere_strain_J"] + history["contact_elastic_J"])), "J", 3)
     return (
         "Shown is what the modes hold, and in the identified treatment the local spring; the contact law holds the rest: "
-        f"with it there are up to {whole} in Type 2, consistent."
+        f"with it the strain energy of Type 2 is up to {whole} in the consistent treatment."
     )
 
 

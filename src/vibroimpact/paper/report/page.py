@@ -63,7 +63,7 @@ _OPENING = (
     "inferred from printed numbers of this kind and then rounded. That these agree shows that two values are compatible with all of them; "
     "none of them by itself is evidence.\n"
     "- fitted model: computed by a model with parameters that were fitted to printed results of Type 2, the fitted ones and the others.\n"
-    "- arithmetic: calculated from other printed results; it compares the paper with itself, and no simulation is involved.\n"
+    "- arithmetic: calculated from other printed results, without a simulation; it compares the paper with itself.\n"
     "- input: what the paper assumes, compared with the shipped case.",
 )
 

@@ -57,8 +57,8 @@ def recovery_chart(runs: Runs) -> Chart:
         _panel(found, close, estimate, "Where they cross, enlarged"),
     )
     caption = (
-        "Each printed number is a line in the plane of the two, with a band as wide as rounding or its own scatter allows, where "
-        f"it is not wider than the picture. {_caption(found)}"
+        "Each piece of evidence but Table 2 is a line in the plane of e_h and d_max, with a band as wide as rounding or its own scatter "
+        f"allows, where it is not wider than the picture. {_caption(found)}"
     )
     return Chart("recovery", "What the printed numbers imply: restitution and full-damping penetration", (panels,), caption, 3.4)
 

@@ -152,7 +152,7 @@ def find_bounces(record: Record, contact: float = 0.0) -> Bounces:
     time = found.sample / record.rate
     chain = heard[longest_chain(time[heard], np.minimum(found.rise[heard] / found.threshold, _CLEAR), _JITTER)]
     if not len(chain):
-        words = f"the times between {len(heard)} touches do not decrease as those of bounces do, by {LOWEST:g} to {HIGHEST:g} each"
+        words = f"the times between {len(heard)} touches do not decrease as those of bounces do, by factors of {LOWEST:g} to {HIGHEST:g}"
         raise InputError(f"it holds no bounces: {words}")
     others = np.setdiff1d(np.arange(len(time)), chain)
     reasons = _reasons(found, time, chain, others)
@@ -214,7 +214,7 @@ def _chance_doubts(chain: Floats, strange: Floats, duration: float) -> tuple[str
         scatter = float(np.hypot(np.sqrt(np.mean(change**2)), _TIGHT))
         hit = -np.expm1(-heard / duration * 4.0 * scatter * interval[2:])
         if comb(heard, 3) * float(np.prod(hit)) > _CHANCE:
-            why = "as some would of as many at random times"
+            why = "as some of as many touches at random times would"
         elif _BETWEEN * np.count_nonzero((strange > chain[0]) & (strange < chain[-1])) > len(chain):
             why = "and too many lie between them"
     if why:

@@ -168,10 +168,13 @@ def _checked(records: Sequence[Record], band: tuple[float, float]) -> tuple[Floa
             raise InputError(f"the record {shown(one.name)} is constant; nothing decays in it")
     low, high = band
     if not 0.0 < low < high <= 0.5 * rate:
-        raise InputError(f"a band from {low:g} to {high:g} Hz is not allowed; it lies between 0 and {0.5 * rate:g} Hz, half the rate")
+        raise InputError(
+            f"a band from {low:g} to {high:g} Hz is not allowed; its ends must rise, from above 0 to {0.5 * rate:g} Hz, half the rate"
+        )
     if (high - low) * samples < _BINS * rate:
-        words = f"a band of {high - low:g} Hz and a decay of {samples / rate:.3g} s have {(high - low) * samples / rate:.3g} values"
-        raise InputError(f"{words}; take a longer decay or a wider band, of at least {_BINS}")
+        values = (high - low) * samples / rate
+        words = f"the spectrum has {values:.3g} values in a band of {high - low:g} Hz by a decay of {samples / rate:.3g} s"
+        raise InputError(f"{words}, and {_BINS} at least are needed; take a longer decay or a wider band")
     return np.stack([one.value for one in records]), rate
 
 

@@ -47,7 +47,7 @@ FAMILY = Family(
             name="peak_ratio",
             meaning="peak of the second packet over that of the first",
             equation="max|x2| / max|x1|",
-            source="of this program; in packets of an impact each",
+            source="of this program; where each packet holds one impact",
             lacking=Reason.ONE_PACKET,
         ),
         Feature(

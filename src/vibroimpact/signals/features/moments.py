@@ -36,7 +36,7 @@ FAMILY = Family(
         ),
         Feature(
             name="kurtosis",
-            meaning="fourth standardized moment: 3 of normal noise, more of impulses",
+            meaning="fourth standardized moment: 3 for normal noise, more for impulses",
             equation="mean((x - mean(x))^4) / mean((x - mean(x))^2)^2",
             source=f"{_SOURCE}, g2 + 3",
             offset_free=True,

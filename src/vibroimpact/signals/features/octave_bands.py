@@ -28,7 +28,7 @@ FAMILY = Family(
             name=f"octave_band_{number}",
             meaning=f"part of the energy in octave {number} below half the rate",
             equation=f"sum(P, rate/{2 ** (number + 1)} < f <= rate/{2**number}) / sum(P)",
-            source="of this program: octaves as ratios of 2, whose bands are those of the rate",
+            source="of this program: ratios of 2 down from half the rate, not standard octave bands",
             least=_LEAST,
         )
         for number in range(1, _BANDS + 1)

@@ -62,12 +62,14 @@ FAMILY = Family(
         ),
         Feature(
             name="spectral_roll_off",
-            meaning="frequency below which 85 % of the energy lie",
-            equation="least f with sum(P up to f) >= 0.85 sum(P)",
-            source="Tzanetakis & Cook 2002, IEEE Trans. Speech Audio Process. 10:293",
+            meaning=f"frequency below which {_ROLL_OFF:.0%} of the energy lies".replace("%", " %"),
+            equation=f"least f with sum(P up to f) >= {_ROLL_OFF:g} sum(P)",
+            source="Tzanetakis & Cook 2002, IEEE Trans. Speech Audio Process. 10:293, by the energy",
             unit="Hz",
         ),
-        Feature(name="peak_frequency", meaning="frequency of the largest amplitude", equation="argmax |X|", source=_PEETERS, unit="Hz"),
+        Feature(
+            name="peak_frequency", meaning="frequency of the largest amplitude", equation="argmax |X|", source="of this program", unit="Hz"
+        ),
         Feature(
             name="cut_off_10_dB",
             meaning="highest frequency at which the amplitude is 10 dB below its maximum: 1.16 over the contact time, of Hertz's force",
@@ -85,7 +87,7 @@ FAMILY = Family(
         Feature(
             name="spectral_entropy",
             meaning="entropy of the energy over the frequencies, of 1 at most",
-            equation="-sum(p ln p) / ln(number), p = P / sum(P)",
+            equation="-sum(p ln p) / ln(number of p), p = P / sum(P)",
             source="Misra et al. 2004, Proc. ICASSP 1:193",
             least=2,
         ),

@@ -66,7 +66,7 @@ def rate_of(time: Floats, lines: Sequence[int] | None = None) -> float:
     1000.0
     """
     if len(time) < 2:
-        raise InputError("a record has two samples or more; the rate follows from their times")
+        raise InputError("a record needs two samples or more, as the rate follows from their times")
     step = (time[-1] - time[0]) / (len(time) - 1)
     back = np.flatnonzero(np.diff(time) < 0.0)
     if back.size:
@@ -153,7 +153,7 @@ def at_equal_steps(time: Floats, values: Sequence[Floats], lines: Sequence[int] 
             return Sampled(1.0 / slope, begin, list(values), (f"{words}, which are known to {unsure:.2g} %",) * len(values))
         if (rounded := _to_significant_digits(time, begin + slope * place)) is not None:
             digits, last_digit = rounded
-            words = f"its times are rounded to {digits} digits, up to {last_digit:.3g} s, {last_digit / slope:.3g} steps"
+            words = f"its times are rounded to {digits} significant digits, up to {last_digit:.3g} s, {last_digit / slope:.3g} steps"
             unsure = 100.0 * last_digit / (time[-1] - time[0])
             words += f"; the equal steps behind them are taken, which are known to {unsure:.2g} %"
             return Sampled(1.0 / slope, begin, list(values), (words,) * len(values))
@@ -234,6 +234,6 @@ def _resampled(time: Floats, values: Sequence[Floats]) -> Sampled:
         size = float(np.std(one))
         part = float(np.sqrt(np.mean((value - np.interp(new, time, one)) ** 2))) / size if size else 0.0
         jitter = 100.0 * float(np.std(np.diff(time))) * (count - 1) / (time[-1] - time[0])
-        words = f"its times jitter by {jitter:.2g} % of a step; it is resampled to equal steps, which adds an error of up to"
-        doubts.append(f"{words} {100.0 * part:.2g} % of its standard deviation (rms)")
+        words = f"its times jitter by {jitter:.2g} % of a step; it is resampled to equal steps, which adds an rms error of up to"
+        doubts.append(f"{words} {100.0 * part:.2g} % of its standard deviation, where its frequencies are below a third of the rate")
     return Sampled((count - 1) / float(time[-1] - time[0]), float(time[0]), found, tuple(doubts))

@@ -48,7 +48,7 @@ def netcdf_records(path: Path) -> Iterator[Record]:
         with h5py.File(path, "r") as file:
             found = list(_signals(file))
             if not found:
-                raise InputError("there is no variable whose last dimension is a time at equal steps, with the units s")
+                raise InputError("there is no variable whose last dimension is a time at equal steps, with a unit of time such as s")
             for data, rate, start in found:
                 yield from _records(data, rate, start)
     except InputError as error:

@@ -26,7 +26,9 @@ def universal_records(path: Path) -> Iterator[Record]:
     """
     file = read_universal_file(path)
     if not file.functions:
-        others = f"; its {len(file.of_frequency)} functions of frequency are for correlate and modes" if file.of_frequency else ""
+        number = len(file.of_frequency)
+        its = "function of frequency is" if number == 1 else f"{number} functions of frequency are"
+        others = f"; its {its} for correlate and modes" if number else ""
         raise InputError(f"{path}: there is no real function of time in it{others}")
     for one in file.functions:
         try:

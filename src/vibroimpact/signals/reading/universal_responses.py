@@ -94,13 +94,14 @@ def read_responses(path: str | PathLike[str]) -> tuple[FrequencyResponse, ...]:
         try:
             found.append(_response(one, coherences, file.factors, str(path)))
         except InputError as error:
-            faults.append(f"{path}, function {one.number} {shown(one.identification)}: {error.message}")
+            faults.append(f"function {one.number} {shown(one.identification)}: {error.message}")
     if faults and not found:
-        raise InputError.of_several(faults)
+        raise InputError.of_several(f"{path}, {fault}" for fault in faults)
     if not found:
         raise InputError(f"{path}: there is no frequency response in it, a complex function of type 4 of the frequency in a dataset 58")
     if faults:
-        left_out = f"{len(faults)} of its frequency responses {'is' if len(faults) == 1 else 'are'} left out: {faults[0].split(', ', 1)[1]}"
+        number = "1 of its frequency responses is" if len(faults) == 1 else f"{len(faults)} of its frequency responses are"
+        left_out = f"{number} left out{'' if len(faults) == 1 else ', such as'}: {faults[0]}"
         found[0] = replace(found[0], doubts=(*found[0].doubts, left_out))
     return tuple(found)
 
@@ -144,10 +145,14 @@ def _unit(one: FunctionOfFrequency, factors: dict[str, float] | None) -> tuple[f
             raise InputError(f"its data type {motion} is in {_MOTIONS[motion]}, and its unit is {shown(above)}; correct one of them")
         return factor, unit, ""
     if motion not in _MOTIONS:
-        return 1.0, "", "it states neither a unit nor what was measured: its values are taken in the unit that the case has"
+        return (
+            1.0,
+            "",
+            "it states neither a unit nor a data type of motion: beside a case, its values are taken to be in the unit of the sensor there",
+        )
     unit = f"{_MOTIONS[motion]}/N"
     if factors is None:
-        return 1.0, unit, f"it states no unit, and there is no dataset 164: its values are taken in {unit}"
+        return 1.0, unit, f"it states no unit, and there is no dataset 164: its values are taken to be in {unit}"
     return factors["N"] / factors["m"], unit, ""
 
 

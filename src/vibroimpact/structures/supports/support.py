@@ -102,6 +102,7 @@ def nodes_within(structure: Structure, x: float, y: float, reach: Floats | float
     if inside.sum() < 3:
         count = "no nodes" if not inside.any() else f"only {inside.sum()} of the nodes"
         raise InputError(
-            f"{what} at ({x:g}, {y:g}) m holds {count} on the lower side of the mesh; move it, make it larger, or refine the mesh"
+            f"{what} at ({x:g}, {y:g}) m holds {count} on the lower side of the mesh, and needs three or more; "
+            "move it, make it larger, or refine the mesh"
         )
     return lower[inside]

@@ -39,7 +39,7 @@ def data_card(study: Study) -> str:
     """
     parts = [
         f"# {study.name[:1].upper() + study.name[1:]}",
-        f"{drops_text(study.size)} of {_number(study, ROCK)} rocks on {_number(study, PLATE)} plates, computed by vibroimpact "
+        f"{drops_text(study.size)} of {_counted(study, ROCK)} on {_counted(study, PLATE)}, computed by vibroimpact "
         f"{study.version}. Signals, values and labels are in `study.nc`; `study.toml` computes it again.",
         "## Classes",
         _table(["class", "falls", "rocks", "share of the rocks"], _classes(study)),
@@ -61,6 +61,12 @@ def data_card(study: Study) -> str:
 def _number(study: Study, label: str) -> int:
     """Return how many rocks or plates there are."""
     return len(np.unique(study.labels[label]))
+
+
+def _counted(study: Study, label: str) -> str:
+    """Return a number of rocks or plates in words."""
+    number = _number(study, label)
+    return f"{number} {label}{'' if number == 1 else 's'}"
 
 
 def _names(study: Study) -> list[str]:
@@ -102,7 +108,7 @@ def _signals(study: Study) -> Iterator[Sequence[str]]:
 def _doubts(study: Study) -> Iterator[str]:
     """Yield what failed, and the limits of the theory that falls exceed."""
     for number, words in reasons(study):
-        yield f"* {drops_text(number)} failed and have no signal, such as: {words}."
+        yield f"* {drops_text(number)} failed and {'has no signal' if number == 1 else 'have no signal, such as'}: {words}."
     known: Mapping[str, Any] = limits()
     for limit, drops, *_ in study.doubts:
         title = known[limit].title if limit in known else limit

@@ -80,7 +80,11 @@ def level_curves(study: Study, axes: list[StudyAxis], outputs: list[Output], ove
         found = zip(levels, names, texts, strict=True)
         marks = [_curve(over, order, values[order, level], line, name, words) for line, (level, name, words) in enumerate(found)]
         panels.append(Panel(across, result_axis(output, ""), tuple(marks), shortened(visible(output.title), 60)))
-    words = "" if len(axes) == 2 else " The two keys with the largest effect on the first result; lines are medians over the others."
+    words = (
+        ""
+        if len(axes) == 2
+        else " Two of the keys, those with the largest effect on the first result where it is known; lines are medians over the others."
+    )
     caption = f"A line for each {each.words}.{words} {keys_told([over, each])}"
     return Chart("curves", f"Over the {over.words}, for each {each.words}", in_rows(panels), caption, HEIGHT)
 

@@ -48,6 +48,10 @@ def maps_chart(study: Study, axes: list[StudyAxis], outputs: list[Output], acros
         scale = result_axis(output, output.short)
         cells = Map(places(across, across.values[columns]), places(up, up.values[rows]), values, scale, texts=texts)
         panels.append(Panel(x, y, (cells,), shortened(visible(output.title), 60)))
-    words = "" if len(axes) == 2 else "The two keys with the largest effect on the first result; colours are medians over the others. "
+    words = (
+        ""
+        if len(axes) == 2
+        else "Two of the keys, those with the largest effect on the first result where it is known; colours are medians over the others. "
+    )
     caption = f"{words}Levels are at the middle of their cells; a cell without a colour has no value. {keys_told([across, up])}"
     return Chart("maps", f"Over the {across.words} and the {up.words}", in_rows(panels), caption, HEIGHT)

@@ -108,7 +108,9 @@ def restitution_chart(study: Study) -> Chart | None:
         ]
     else:
         panels = [Panel(fast, achieved, (Level(most, "as asked", "reference"), *_points(groups, found.speed, found.achieved)))]
-    words = "Each impact a mark" if several else "The first impact of each drop a mark"
+    words = (
+        f"Each mark is an impact, of the first {_MOST_IMPACTS} of a drop at most" if several else "Each mark is the first impact of a drop"
+    )
     caption = f"{words}; dashed: the restitution asked of the law. The restitution achieved may depend on the speed of the impact."
     return Chart("restitution", "Restitution asked and achieved", in_rows(panels), caption, 3.0)
 

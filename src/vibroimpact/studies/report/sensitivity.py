@@ -95,7 +95,8 @@ def _indices(study: Study, axes: list[StudyAxis], outputs: list[Output]) -> Sens
     notes = [f"Indices are those of the first {points} points of each block."] if points < block else []
     if refused:
         part = f"{100 * MOST_LEFT_OUT:g} % of the points"
-        notes.append(f"No indices of {', '.join(refused)}: more than {part} have a drop without a value, since it failed or has none.")
+        words = f"more than {part} have a drop without a value, since it failed or has none; or the others are fewer than two, or equal"
+        notes.append(f"No indices of {', '.join(refused)}: {words}.")
     if partly:
         told = ", ".join(f"{number} of {title}" for title, number in partly.items())
         notes.append(f"Points left out, since one of their drops has no value: {told}. The indices are computed from the others.")

@@ -169,7 +169,7 @@ def sensitivity_words(found: Sensitivity) -> str:
     if found.way == SOBOL:
         return (
             "Sobol's indices, in percent of the variance: of a key alone (first order), and with its interactions "
-            "(total), with half of their 95 % bootstrap intervals. An index that is smaller than its interval is not significantly "
+            "(total), with half of their 95 % bootstrap intervals. An index that is smaller than this half is not significantly "
             "different from zero; an estimate may even be negative."
         )
     if found.way == RANKS:
