@@ -237,7 +237,7 @@ def test_chosen_features_are_those_of_all() -> None:
         (np.zeros((1, 5)), {"rate": np.nan}, "the rate is nan"),
         (np.zeros((1, 5)), {"rate": "10 kHz"}, "the rate is"),
         (np.zeros((1, 5)), {"names": ["kurtossis"]}, 'Did you mean "kurtosis"'),
-        (np.zeros((1, 5)), {"threshold": 0.0}, "the threshold is 0; it must be above 0"),
+        (np.zeros((1, 5)), {"threshold": 0.0}, "the threshold is 0; it must be finite and above 0"),
         (np.zeros((1, 5)), {"threshold": np.nan}, "the threshold is nan"),
         (np.zeros((1, 5)), {"dead_time": -1.0}, "the dead time is -1 s"),
     ],

@@ -59,7 +59,7 @@ FAULTS = [
     ({"contact": {"law": "thornton", "restitution": 0.5}}, 'contact.restitution: unknown key "restitution"; thornton takes'),
     (
         {"contact": {"law": "thornton"}},
-        "contact.yield_pressure: thornton needs limiting contact pressure p_y [Pa], and no yield",
+        "contact.yield_pressure: thornton needs limiting contact pressure p_y [Pa], and neither material has a yield_strength",
     ),
     ({"contact": {"law": "jkr"}}, "contact.work_of_adhesion: this key is missing; jkr needs work of adhesion w [J/m^2]"),
     ({"contact": {"law": "walton-braun", "stiffness": 1e6}}, "walton-braun needs either restitution or stiffening [1/m], and not both"),

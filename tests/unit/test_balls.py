@@ -208,9 +208,9 @@ def test_a_table_tennis_ball_in_air(changes: dict[str, Any], medium: Medium) -> 
 
 def test_a_ball_that_floats_or_is_too_light_for_drag_alone() -> None:
     """The mean density counts in what is refused, not that of the material."""
-    with pytest.raises(vi.InputError, match=r"contact.liquid.density: it has 12.* times the density of the sphere, which floats"):
+    with pytest.raises(vi.InputError, match=r"contact.liquid.density: the liquid has 12.* times the density of the sphere, which floats"):
         vi.read_case(table(drop={"height": 0.3}, contact={"law": "tsuji", "restitution": 0.8, "liquid": True})).to_problem()
-    with pytest.raises(vi.InputError, match=r"drop.air.density: the medium of the fall has 4.02 % of its density"):
+    with pytest.raises(vi.InputError, match=r"drop.air.density: the medium of the fall has 4.02 % of the density of the sphere"):
         vi.read_case(table(sphere__mass="1 g", drop={"height": 0.3, "air": True})).to_problem()
 
 

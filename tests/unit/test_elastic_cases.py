@@ -211,7 +211,9 @@ def modules_of_a_drop(case: str, folder: Path) -> set[str]:
 def test_a_rigid_case_loads_nothing_that_vibrates(tmp_path: Path) -> None:
     loaded = modules_of_a_drop("paper:type1-theory", tmp_path / "drop")
     assert "vibroimpact.runs.paraview" in loaded
-    assert not {"scipy", "pint"} & loaded
+    assert "pint" not in loaded
+    # numba loads SciPy's first module alone, to see its version
+    assert not {name for name in loaded if name.startswith("scipy.") and not name.startswith(("scipy._", "scipy.version"))}
     assert not [name for name in loaded if name.startswith("vibroimpact.dynamics.vibrating")]
 
 

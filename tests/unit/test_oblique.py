@@ -13,9 +13,9 @@ import pytest
 import vibroimpact as vi
 from vibroimpact.arrays import Floats
 from vibroimpact.cases.keys import with_values
+from vibroimpact.dynamics import run
 from vibroimpact.dynamics.columns import LEDGER, OBLIQUE_LEDGER, VIBRATION_LEDGER
 from vibroimpact.dynamics.oblique import compliant
-from vibroimpact.dynamics.rigid import bodies
 from vibroimpact.runs.tables import ledger_table
 
 RADIUS, MASS = 0.01, 0.02
@@ -116,8 +116,9 @@ def test_the_ledger_shows_both_parts_of_friction_where_a_result_has_them() -> No
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("friction", FRICTION)
 def test_the_normal_motion_does_not_feel_the_friction(law: str, friction: str) -> None:
-    plain = vi.tabulate(problem(law, same_spot=False))
-    oblique = vi.tabulate(problem(law, same_spot=False, oblique=spinning(friction)))
+    speeds = np.array([2.0, 2.5])  # of several drops, whose contacts are solved together with friction and without it
+    plain = vi.tabulate(problem(law, speed=speeds, same_spot=False))
+    oblique = vi.tabulate(problem(law, speed=speeds, same_spot=False, oblique=spinning(friction)))
     for name, values in plain.impacts.items():
         np.testing.assert_array_equal(oblique.impacts[name], values)
     assert oblique.status == plain.status
@@ -280,8 +281,8 @@ def test_the_softest_touch_of_a_slope_closes_its_ledger(law: str, gravity: float
     response = vi.simulate(problem(law, speed=1e-9, gravity=gravity, impacts=5, oblique=oblique))
     energy = response.energy
     assert -energy["potential_J"] > 1e10 * energy["input_J"]
-    assert energy["closure_relative"] < 1e-12
-    assert abs(energy["closure_J"]) < 1e-12 * -energy["potential_J"]
+    assert energy["closure_relative"] < 1e-11  # a hundredth of the tolerance
+    assert abs(energy["closure_J"]) < 1e-11 * -energy["potential_J"]
 
 
 @pytest.mark.parametrize("restitution", [0.0, 0.4])
@@ -458,7 +459,7 @@ def test_more_steps_change_little(law: str, friction: str, monkeypatch: pytest.M
     ball, plate = vi.Body(mass=MASS, contact_offset=RADIUS), vi.rigid_plate()
     drops = vi.Problem(sphere=ball, plate=plate, laws=(laws[law],), speed=2.0, gravity=0.0, impacts=1, oblique=oblique)
     found = vi.tabulate(drops).impacts["separation_velocity_x_m_s"][:, 0]
-    monkeypatch.setattr(bodies, "OBLIQUE_STEPS", 48)
+    monkeypatch.setattr(run, "friction_steps", lambda tolerance: 48)
     more = vi.tabulate(drops).impacts["separation_velocity_x_m_s"][:, 0]
     assert (np.abs(found - more) < 1e-4 * slip).all()
 

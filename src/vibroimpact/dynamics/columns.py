@@ -37,8 +37,12 @@ IMPACT_COLUMNS: dict[str, Column] = {
     "impact": Column("1", "number of the impact, from 1", "Impact", "#", "count"),
     "time_s": Column("s", "time of first touch", "First touch", "time", "time"),
     "duration_s": Column("s", "duration of contact", "Contact duration", "contact"),
-    "approach_speed_m_s": Column("m/s", "speed at first touch, downwards", "Approach speed", "approach"),
-    "separation_speed_m_s": Column("m/s", "speed at release, upwards", "Separation speed", "separation"),
+    "approach_speed_m_s": Column(
+        "m/s", "speed at first touch, downwards; relative to a plate that is free or shaken", "Approach speed", "approach"
+    ),
+    "separation_speed_m_s": Column(
+        "m/s", "speed at release, upwards; relative to a plate that is free or shaken", "Separation speed", "separation"
+    ),
     "restitution_achieved": Column("1", "separation speed over approach speed", "Restitution achieved", "e achieved", "ratio"),
     "max_indentation_m": Column("m", "largest indentation", "Largest indentation", "indentation"),
     "max_force_N": Column("N", "largest contact force", "Largest force", "force"),

@@ -84,12 +84,10 @@ def _top_or_touch(run: Ended) -> str:
     top, sooner = "at the top of the last rebound", "at the next touch, before the top of the last rebound"
     if not run.problem.shaken:
         return top
-    if run.problem.fluid is not None:
+    if run.problem.oblique is not None:
         return f"{top}, or at the next touch if that is sooner"
-    begin, lasting, speed = (float(run.impacts[name][-1]) for name in ("time_s", "duration_s", "separation_speed_m_s"))
-    gravity = float(run.problem.gravity)
-    rise = speed / gravity if gravity > 0.0 else np.inf
-    return sooner if float(run.end_time[0]) < begin + float(np.nan_to_num(lasting)) + (1.0 - 1e-6) * rise else top
+    still = _STANDING**2 * 0.5 * float(run.problem.sphere.mass) * float(run.impacts["approach_speed_m_s"][0]) ** 2
+    return top if float(run.energy["kinetic_J"]) <= still else sooner
 
 
 def _riding(run: Ended) -> str:

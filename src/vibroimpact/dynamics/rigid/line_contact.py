@@ -114,8 +114,10 @@ class LineMotion:
         return 0.0 if self.phase == "compression" else self.recorded.contact.time_of_deepest
 
     def grid(self) -> Floats:
-        """Return times since the start at which the motion of one drop is well resolved [s]."""
+        """Return times since the start at which the motion of one drop is well resolved [s]; that of the largest force is one of them."""
         times = self.recorded.times(self.phase == "restitution") - self.begins
+        if self.phase == "compression":
+            times = np.unique(np.append(times, self.recorded.contact.time_of_peak_force))
         return np.append(times[times < self.duration[0]], self.duration[0])
 
     def corners(self) -> Floats:
