@@ -53,7 +53,7 @@ def test_thresholds() -> None:
     says(PAGE, "below a Stokes number of about {} (Joseph", CRITICAL_STOKES)
     says(PAGE, "over its thickness | above {} |", threshold("plate_deflection"))
     says(PAGE, "| {} contact radii (rigid plate) or {} thicknesses (elastic)", edge._RADII, edge._THICKNESSES)
-    says(PAGE, "over the duration of the first contact | above {} |", threshold("relaxation"))
+    says(PAGE, "a Hertzian contact as deep if that is shorter | above {} |", threshold("relaxation"))
     says(
         PAGE,
         "by a work of adhesion of {} J/m^2, for laws without adhesion (Thornton and Ning 1998) | above {} %",

@@ -91,7 +91,7 @@ def test_faces_without_area_are_told_without_a_warning(tmp_path: Path) -> None:
     plate = {"material": "steel", "model": "elastic", "mesh": str(file), "supports": "free", "modes": 2}
     case = vi.read_case(plain_case(plate=plate, drop={"speed": 1.0, "position": [0.2, 0.2]}))
     for use in (case_explained, vi.compute_modes):
-        with pytest.raises(vi.InputError, match="1 of 2 elements are inverted or folded"):
+        with pytest.raises(vi.InputError, match=r"1 of \d \w+ elements are inverted or folded"):
             use(case)
 
 
@@ -160,5 +160,7 @@ def test_a_brought_mesh_without_volume_is_refused_at_check(tmp_path: Path) -> No
     mesh.write_text("*NODE\n1, 0., 0., 0.\n2, 1., 0., 0.\n3, 0., 1., 0.\n4, 1., 1., 0.\n*ELEMENT, TYPE=C3D4\n1, 1, 2, 3, 4\n")
     plate = {"material": "steel", "model": "elastic", "mesh": str(mesh), "supports": "free", "modes": 2}
     case = vi.read_case(plain_case(plate=plate, drop={"speed": 1.0, "position": [0.2, 0.2]}))
-    with pytest.raises(vi.InputError, match=r"plate: 1 of 1 elements are inverted or folded \(their volume is not positive everywhere\)"):
+    with pytest.raises(
+        vi.InputError, match=r"plate: 1 of 1 \w+ elements are inverted or folded \(their volume is not positive everywhere\)"
+    ):
         meshes_of(case)

@@ -428,7 +428,7 @@ FAULTS: list[tuple[str, str | bytes, str]] = [
     ("mesh.inp", "*NODE\n1 0 0\n", ":2: a node must have a number and up to three coordinates"),
     ("mesh.inp", "*NODE, SYSTEM=C\n1,0,0,0\n", ":1: the nodes are in cylindrical or spherical coordinates"),
     ("mesh.inp", "*NODE\n1,0,0,inf\n", ":2: node 1 has the coordinate inf"),
-    ("mesh.inp", DECK + "*ELEMENT,TYPE=C3D7\n2,1,2,3,4,1\n", ':9: "C3D7" is a solid element that is not read; solid elements must be C3D4'),
+    ("mesh.inp", DECK + "*ELEMENT,TYPE=C3D7\n2,1,2,3,4,1\n", ':9: "C3D7" is an element that is not read; solid elements must be C3D4'),
     ("mesh.inp", DECK + "*ELEMENT,TYPE=C3D15V\n2,1\n", ":10: element 2 has 1 nodes; C3D15V must have 15"),
     ("mesh.inp", DECK + "*ELEMENT\n", ":9: *ELEMENT has no TYPE"),
     ("mesh.inp", NODES + "*ELEMENT,TYPE=C3D4\n1,1,2,3\n", ":8: element 1 has 3 nodes; C3D4 must have 4"),

@@ -209,7 +209,8 @@ class CalibrateSection(Section):
     )
     match: Annotated[Any, BeforeValidator(_read_match), JsonSchema("matched quantity of an impact", _match_schema)] = Field(
         None,
-        description="the matched quantity: one, or a table of several with weights; by default the rebound, if it was measured",
+        description="the matched quantity: one, or a table of several with weights; by default the rebound, "
+        "or all that was measured if that was not, and of friction the motion along the plate and the spin",
     )
     degree: Annotated[int, Field(ge=0, le=12, strict=True)] | None = Field(
         None, description="degree of the polynomial of the approach speed; by default 2, or less where there are fewer speeds"

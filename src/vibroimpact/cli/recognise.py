@@ -60,7 +60,7 @@ def recognise(
     target = Path(f"{name}-recognised") if output is None else output
     check_free(target, force=force)
     for given in (Path(dataset), *([] if model is None else [model])):
-        if target.resolve() in (given.resolve(), *given.resolve().parents):
+        if given.exists() and target.resolve() in (given.resolve(), *given.resolve().parents):
             raise InputError(f"{target}: {given} lies there, and would be replaced; name another place for the result")
     if model is not None:
         with exit_on_interrupt():

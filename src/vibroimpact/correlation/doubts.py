@@ -81,7 +81,7 @@ def doubts_about(
 def _clipped(what: str, value: np.ndarray, recorded: np.ndarray, onset: int, suffers: str) -> Iterator[str]:
     samples = clipped_count(value, recorded, value[: max(0, onset - LEAD)])
     if samples:
-        yield f"{what} is clipped: {samples} samples lie at its extremes; {suffers}"
+        yield f"{what} is clipped: at least {samples} samples lie at an end of its range; {suffers}"
 
 
 def _of_gains(acquired: Acquired, delay: Delay) -> Iterator[str]:

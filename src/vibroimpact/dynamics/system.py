@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.contact.law import CompliantLaw
+from vibroimpact.contact.law import CompliantLaw, ContactLaw
 from vibroimpact.contact.quasi_static import QuasiStatic
 from vibroimpact.dynamics.tolerance import check_tolerance
 from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State
@@ -136,6 +136,8 @@ class PointContact:
             if not isinstance(getattr(self, name), str):
                 raise InputError(f"{name} must be the name of a body, not {getattr(self, name)!r}")
         if not isinstance(self.law, CompliantLaw):
+            if not isinstance(self.law, ContactLaw):
+                raise InputError(f"law must be a contact law with its parameters, such as Hertz(stiffness=5e8), not {self.law!r}")
             raise InputError(f"the law of a contact of a system must give a force, which {self.law!r} does not")
         if any(np.ndim(getattr(self.law, item.name)) for item in fields(self.law)):
             raise InputError("the parameters of the law of a contact must be numbers: a system is one, and no batch")

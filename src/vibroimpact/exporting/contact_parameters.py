@@ -152,7 +152,7 @@ def _rigid_notes(drop: Drop) -> list[str]:
     return [
         *lost,
         "The exported drop therefore differs from the one that was run: it is the same case between rigid bodies, with the first "
-        "value of the contact law at its first impact, and so on.",
+        "value of the contact law at its first impact, and so on; a parameter that depends on the approach speed has the value at its own.",
         f"Restitution from impact to impact: {written} as written, {here} in the run.",
         f"For rigid bodies that rebound as in the run, calibrate the case with {' and '.join(remedy)} to the run's impacts.csv as "
         "[calibrate] target, and export the calibration.",

@@ -147,8 +147,8 @@ class _Reader:
                 if solid is not None and solid[1] in _KINDS:
                     raise block.line.wrong(f"{shown(given)} in the assembly is a solid element that is not read; it must be in a part")
                 raise block.line.wrong(
-                    f"{shown(given)} is a solid element that is not read; "
-                    "solid elements must be C3D4, C3D5, C3D6, C3D8, C3D10, C3D13, C3D15, C3D20 or C3D27"
+                    f"{shown(given)} is an element that is not read; solid elements must be "
+                    "C3D4, C3D5, C3D6, C3D8, C3D10, C3D13, C3D15, C3D20 or C3D27, also with letters behind, as C3D8R"
                 )
             if not given:
                 raise block.line.wrong("*ELEMENT has no TYPE; it must have one, such as TYPE=C3D10")

@@ -100,7 +100,10 @@ def unresolved_impact(problem: Problem, step: float, phases: Floats) -> dict[str
         separated = receding  # a sphere that comes back is recorded anew at its next separation
         if separated.all() and number * step >= least_duration:
             return {**peaks, **at_separation, "rebound_height_m": method.rebound_height(problem, at_separation["separation_speed_m_s"])}
-    raise ComputationError(f"the sphere does not leave the plate within {_MAX_STEPS} steps of {step:g} s")
+    raise ComputationError(
+        f"within {_MAX_STEPS} steps of {step:g} s the sphere does not leave the plate, or half a period of its lowest mode does not pass; "
+        "take a longer step"
+    )
 
 
 @dataclass(frozen=True)

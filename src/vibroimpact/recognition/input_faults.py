@@ -64,7 +64,8 @@ def check_groups(signals: LabelledSignals, classes: Indices, group: str, folds: 
     names = {int(one): np.unique(groups[classes == one]) for one in np.unique(classes)}
     if len(np.unique(groups)) == 1:
         raise InputError(
-            f"all {len(groups)} signals are of one {group}, so that no classifier can be tested on another {group}; give several"
+            f"all {len(groups)} signals are of one {group}, so that no classifier can be tested on another {group}; "
+            f"give signals of several {group}s, or draw more of the signals (--most)"
         )
     if all(len(one) == 1 for one in names.values()):
         raise InputError(

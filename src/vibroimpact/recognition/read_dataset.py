@@ -88,6 +88,8 @@ def _faults_of(path: Path) -> Iterator[None]:
         raise with_path(path, InputError(str(error))) from None
     except InputError as error:
         raise error if str(path.parent) in str(error) else with_path(path, error) from None
+    except (PermissionError, BlockingIOError) as error:
+        raise with_path(path, InputError(f"it can't be opened: {short_reason(error)}")) from None
     except OSError:
         raise with_path(path, InputError("this is not a NetCDF-4 file, or it is damaged")) from None
     except Exception as error:

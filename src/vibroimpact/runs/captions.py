@@ -87,7 +87,7 @@ def _acceleration(result: Result) -> str:
 def _loops(result: Result) -> str:
     found, lost = contacts_with_duration(result), result.impacts["energy_lost_J"]
     if result.impacts["separation_speed_m_s"][found[-1]] == 0.0:
-        return f"In impact {found[-1] + 1} the sphere comes to rest; its remaining energy is written off, and its curve ends there."
+        return f"In impact {found[-1] + 1} the sphere does not leave the plate again; its curve ends where that is certain."
     if np.max(lost) < 1e-9 * result.energy["input_J"]:
         return "Loading and unloading coincide: no energy is lost in contact."
     first, last = (impact_text(result, impact, "energy_lost_J", "J") for impact in (found[0], found[-1]))

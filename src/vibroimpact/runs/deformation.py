@@ -16,8 +16,8 @@ _SENTENCES = {
         "counted twice."
     ),
     "superposed": (
-        "Superposed: the contact law and the modes of the bodies are in series, as in a multibody program with flexible bodies. The local "
-        "indentation that modes of solid meshes contain, as those of the sphere do, is counted twice."
+        "Superposed: the contact law and the modes of the bodies are in series, as in a multibody program with flexible bodies. Where a "
+        "body has a solid mesh, as an elastic sphere does, the local indentation that its modes contain is counted twice."
     ),
     "identified": (
         "Identified: a spring and a dashpot in parallel, in series with the contact law, represent the deformation of the sphere; they "

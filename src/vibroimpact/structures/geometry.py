@@ -137,7 +137,8 @@ def check_mesh(mesh: Mesh) -> None:
             shown = ", ".join(str(first + index + 1) for index in bad[:5]) + (", ..." if len(bad) > 5 else "")
             kinds = ", kind by kind" if len(mesh.blocks) > 1 else ""
             raise InputError(
-                f"{len(bad)} of {mesh.number_of_elements} elements are inverted or folded (their volume is not positive everywhere): "
+                f"{len(bad)} of {len(block.connectivity)} {block.kind} elements are inverted or folded "
+                "(their volume is not positive everywhere): "
                 f"number {shown}, counted from 1 in the order of the mesh{kinds}; "
                 "use smaller elements, or mesh the part again if the mesh was imported"
             )

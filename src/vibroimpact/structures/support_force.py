@@ -121,7 +121,10 @@ def support_at(structure: Structure, supports: Sequence[Support], spot: Spot) ->
     near = [number for number, one in enumerate(apart) if one <= least + 1e-9 * reach]
     if len(near) > 1:
         both = " and ".join(supports[number].description for number in near)
-        raise InputError(f"({place[0]:g}, {place[1]:g}) m is as near to {both}; give a place on one of them")
+        raise InputError(
+            f"the held node next to ({place[0]:g}, {place[1]:g}) m belongs to {both}; "
+            "give a place that is an element or more away from where they meet"
+        )
     return near[0]
 
 

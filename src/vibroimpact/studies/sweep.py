@@ -238,7 +238,7 @@ def read_sweep(table: Mapping[str, Any]) -> Sweep:
     base = {key: value for key, value in table.items() if key != "sweep"}
     if "sweep" not in table:
         raise InputError(
-            'it is missing; it specifies the swept keys and their values, such as [sweep.over] "sphere.radius" = ["10 mm", "25 mm"]',
+            'it is missing; it specifies the swept keys and their values, such as "sphere.radius" = ["10 mm", "25 mm"] under [sweep.over]',
             "sweep",
         )
     if not isinstance(table["sweep"], dict):

@@ -59,7 +59,10 @@ def check_text(text: str) -> None:
     found = _DOTTED.search(text)
     if found is not None and not text[text.rfind("\n", 0, found.start()) + 1 : found.start()].lstrip().startswith("#"):
         line = text.count("\n", 0, found.start()) + 1
-        raise InputError(f"line {line}: {shown(found[0])} has too many parts; tables lie at most {DEEPEST} deep in one another")
+        raise InputError(
+            f"line {line}: {shown(found[0])} has more than {DEEPEST} parts joined by dots; a key may have so many at most, "
+            "and a text or a comment too"
+        )
 
 
 def _dots(line: str) -> int:

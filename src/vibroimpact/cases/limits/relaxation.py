@@ -28,7 +28,7 @@ LIMITS = (
     Limit(
         name="relaxation",
         title="viscoelastic time beside the contact",
-        meaning="dissipation time of the law over the duration of the first contact",
+        meaning="dissipation time of the law over the duration of the first impact, or of a Hertzian contact as deep if that is shorter",
         threshold=0.1,
         number=_number,
         sentence=_sentence,

@@ -71,7 +71,7 @@ def rate_of(time: Floats, lines: Sequence[int] | None = None) -> float:
     back = np.flatnonzero(np.diff(time) < 0.0)
     if back.size:
         at = int(back[0])
-        words = f"{_sample(at + 1, lines)} is at {time[at + 1]:.9g} s, after {time[at]:.9g} s"
+        words = f"{_sample(at + 1, lines)} is {time[at] - time[at + 1]:.3g} s before the one above, at {time[at + 1]:.9g} s"
         raise InputError(f"the times do not rise: {words}; if the file has several records, one below the other, keep one of them")
     if not (step > 0.0 and np.isfinite(step)):
         raise InputError(f"the times do not rise: all are {time[0]:.9g} s; write them with more digits")

@@ -177,8 +177,8 @@ def sensitivity_words(found: Sensitivity) -> str:
         least = f" Of {drops} drops, magnitudes below {digits(2.0 / np.sqrt(drops), 1)} may be due to chance." if drops else ""
         return f"Spearman's rank correlation: 1 if the result always rises with the key, \u22121 if it always falls.{least}"
     return (
-        "Range of a result along one key, from the smallest to the largest, with all other keys at their middle level; in percent of "
-        "the result in the middle of the grid."
+        "Range of a result along one key, from the smallest to the largest, with all other keys at their middle level, of an even "
+        "number the upper of the two in the middle; in percent of the result where all are."
     )
 
 

@@ -40,7 +40,7 @@ class Rigid(ImpulsiveFriction):
     )
 
     name = "rigid"
-    equation = "v_s' = -beta0 v_s, or v_s - mu J / m if it slips"
+    equation = "v_s' = -beta0 v_s, or v_s - sgn(v_s) mu J / m_t if it slips"
     source = "Walton 1993, in Particulate Two-Phase Flow, p. 884"
 
     def slip_after(self, slip: Floats, impulse: Floats, whole: Floats, mass: Floats) -> Floats:
