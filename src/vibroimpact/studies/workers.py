@@ -67,14 +67,17 @@ class _FileExecutor(Executor):
 def _to_file(folder: Path, fn: Callable[..., Any], args: Any, kwargs: Any) -> Path:
     """Write the result of a call, in a worker, to a new file, and return its path."""
     result = fn(*args, **kwargs)
+    path = folder
     try:
         with NamedTemporaryFile(dir=folder, prefix="result-", delete=False) as file:
+            path = Path(file.name)
             pickle.dump(result, file)
     except OSError as error:
-        Path(file.name).unlink(missing_ok=True)
+        if path is not folder:
+            path.unlink(missing_ok=True)
         words = "see to the disk, then go on with --resume; the chunks that are done stay"
         raise ComputationError(f"{folder}: what was computed can't be written: {error.strerror}; {words}") from None
-    return Path(file.name)
+    return path
 
 
 def _from_file(result: Future[Any], written: Future[Path]) -> None:
