@@ -49,8 +49,8 @@ def contact(**keys: Any) -> dict[str, Any]:
         ({"plate": {"supports": "free", "mesh": {"element_size": 0.14}}}, r"plate\.supports: the supports let the plate fall or tilt"),
         ({"contact": {"law": "newton", "restitution": 0.5}}, r"contact\.law: newton gives no force"),
         (contact(local_compliance="consitent"), r'contact\.local_compliance: .* or "identified"\. Did you mean "consistent"\?'),
-        (contact(local_compliance="identified"), "needs local_stiffness and local_damping, or measured"),
-        (contact(local_compliance="identified", local_stiffness=1e6), "needs local_stiffness and local_damping, or measured"),
+        (contact(local_compliance="identified"), "needs either local_stiffness and local_damping, or measured"),
+        (contact(local_compliance="identified", local_stiffness=1e6), "needs either local_stiffness and local_damping, or measured"),
         (contact(local_stiffness=1e6), r'contact\.local_stiffness: only local_compliance = "identified" takes it'),
         (
             contact(local_compliance="identified", measured={"max_force": 1.0}),

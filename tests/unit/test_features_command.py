@@ -123,7 +123,7 @@ def test_the_list(call) -> None:
         (("nothing.wav",), "there is no such file"),
         (("TAPS", "--only", "kurtossis"), 'Did you mean "kurtosis"'),
         (("TAPS", "--only", ","), "--only names no feature"),
-        (("TAPS", "--threshold", "-1"), "the threshold is -1; it must be above 0"),
+        (("TAPS", "--threshold", "-1"), "the threshold is -1; it must be finite and above 0"),
         (("TAPS", "--dead-time", "5 mm"), "5 mm"),
         (("TAPS", "--dead-time", "-5 ms"), "the dead time is -0.005 s"),
         (("TAPS", "--window", "0 s"), "a window of 0 s has 0 samples"),

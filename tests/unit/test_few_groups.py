@@ -220,7 +220,7 @@ def test_what_few_rocks_can_not_tell_is_said(few: vi.Recognition) -> None:
     error: Any = few.scores[few.best].error
     (needed,) = (one for one in told if "can't be told apart" in one)
     assert needed.startswith(
-        f"With 6 rocks an error between {100 * error.low:.0f} and {100 * error.high:.0f} % can't be told apart; for +-5 % "
+        f"With 6 rocks errors between {100 * error.low:.0f} and {100 * error.high:.0f} % can't be told apart; for +-5 % "
     )
     assert f"some {groups_for_error(error, 6):,} rocks are needed" in needed
     assert any(one.startswith("With 6 rocks no classifier can be shown to be better than this bound") for one in told)

@@ -417,7 +417,7 @@ def test_a_table_file_with_stated_columns(tmp_path: Path) -> None:
         (TIMED, "there are no rows under the header; line 1 was taken for the header: time [s], force [N], separated by commas"),
         (
             TIMED + BARE + BARE,
-            'column "time [s]": the times do not rise: sample 51 (line 52) is 0.049 s before the one above, at 0 s; if the file has several',
+            'column "time [s]": the times do not rise: sample 51 (line 52) is 0.049 s before the one above, at 0 s; if the file',
         ),
         (TIMED + "0,1\n" * 20 + "0,2\n", 'column "time [s]": the times do not rise: all are 0 s; write them with more digits'),
         (TIMED + BARE.replace("0.049", "9"), "leads to sample 50 (line 51); keep the part before or after it, or resample the record"),

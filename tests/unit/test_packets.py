@@ -78,7 +78,7 @@ def test_windows_are_aligned_at_the_onset(before: float) -> None:
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda record: vi.find_packets(record, threshold=0.0), "must be above 0"),
+        (lambda record: vi.find_packets(record, threshold=0.0), "must be finite and above 0"),
         (lambda record: vi.find_packets(record, dead_time=-1.0), "the dead time is -1 s"),
         (lambda record: vi.from_onset(record, 0.0), "has 0 samples"),
         (lambda record: vi.from_onset(record, 1e300), "samples at 10000 Hz"),

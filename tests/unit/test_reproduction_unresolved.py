@@ -96,7 +96,7 @@ def test_other_models_are_refused() -> None:
 
 def test_a_sphere_that_does_not_leave_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(implicit_euler, "_MAX_STEPS", 20)
-    with pytest.raises(ComputationError, match="within 20 steps of .* the sphere does not leave the plate"):
+    with pytest.raises(ComputationError, match=r"within 20 steps of .* the sphere does not leave the plate"):
         unresolved_impact(drop_on(IMPACT), 1e-6, PHASES)
 
 

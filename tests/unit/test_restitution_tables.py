@@ -126,7 +126,7 @@ def test_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: py
         ("speed [m/s],restitution\n1,0.8\n2,-0.1\n", (), "line 3: restitution is -0.1; it must be greater than 0"),
         ("speed [m/s],restitution\n0,0.8\n2,0.7\n", (), "line 2: approach_speed is 0; it must be greater than 0"),
         ("speed,restitution\n1,0.8\n2,0.7\n", (), 'column "speed": the unit is missing'),
-        ("speed [m/s],e,count\n1,0.8,2.5\n", (), "line 2: count is 2.5; it must be a whole number"),
+        ("speed [m/s],e,count\n1,0.8,2.5\n", (), "line 2: count is 2.5; it must be the number of impacts"),
         ("speed [m/s],v [m/s],e\n1,1,0.8\n", (), "the columns speed and v both mean approach_speed; leave one of them out"),
         (
             "speed [m/s],separation_speed [m/s],restitution_standard_deviation\n1,0.8,0.01\n2,1.5,0.01\n",

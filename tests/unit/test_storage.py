@@ -162,7 +162,7 @@ def test_report_is_remade_and_other_files_stay(tmp_path: Path, theory: vi.Respon
 def test_existing_folder_is_kept(tmp_path: Path, theory: vi.Response) -> None:
     (tmp_path / "out").mkdir()
     (tmp_path / "out" / "thesis.tex").write_text("years")
-    for force, words in ((False, "is there already"), (True, "is not a result folder")):
+    for force, words in ((False, "is there and is not a result folder"), (True, "is not a result folder")):
         with pytest.raises(vi.InputError, match=words):
             theory.save(tmp_path / "out", force=force)
     assert (tmp_path / "out" / "thesis.tex").read_text() == "years"
@@ -252,7 +252,7 @@ def test_results_of_earlier_versions_open(folder: Path, tmp_path: Path, theory: 
     assert vi.read_result(copy).status == theory.status
     summary["energy"], summary["truncation"] = 1.0, {"plate": [1.0]}
     (copy / "summary.json").write_text(json.dumps(summary))
-    with pytest.raises(vi.InputError, match=r"summary.json: the file is missing or damaged: truncation is not of the kind"):
+    with pytest.raises(vi.InputError, match=r"summary.json: the file is missing or damaged: truncation has the wrong type"):
         vi.read_result(copy)
 
 
@@ -262,7 +262,7 @@ def test_peaks_and_truncation_without_modes_are_refused(folder: Path, tmp_path: 
     summary = json.loads((copy / "summary.json").read_text())
     del summary["sha256"], summary["check_sums"]
     (copy / "summary.json").write_text(json.dumps(summary | damage))
-    with pytest.raises(vi.InputError, match=r"summary.json: the file is missing or damaged: frequencies_Hz is not of the kind"):
+    with pytest.raises(vi.InputError, match=r"summary.json: the file is missing or damaged: frequencies_Hz has the wrong type"):
         vi.read_result(copy)
 
 

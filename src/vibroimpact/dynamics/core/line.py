@@ -22,9 +22,9 @@ from vibroimpact.dynamics.core.line_events import (
     after_glide,
     end_of_glide,
     energy_to_part,
+    extreme_force,
     length_to,
     length_to_tension,
-    peak_within,
     sag_of,
 )
 from vibroimpact.dynamics.core.line_records import Advance, Line, LineContact, LineManner, LineState, LineSteps
@@ -197,8 +197,9 @@ def first_end(
         end = AT_LEVEL
         length = length_to(line, variable, begun, 0.0, length, AT_LEVEL, level, stages)
         state = advance(line, variable, begun, length, stages).state
-    if manner.tension == TENSION_CUT and not compressing and (end == AT_LEVEL or step.least_force < -slack):
-        until = length_to_tension(line, variable, begun, length, slack, stages)
+    if manner.tension == TENSION_CUT and not compressing:
+        is_seen = end == AT_LEVEL or step.least_force < -slack
+        until = length_to_tension(line, variable, begun, length, slack, is_seen, stages)
         if np.isfinite(until):
             end = AT_NO_FORCE
             length = until
@@ -297,7 +298,7 @@ def follow_line(law: Law, manner: LineManner, steps: LineSteps) -> LineContact:
             before = trend
             trend = force_trend(line, after, force)
             if before > 0.0 > trend:
-                highest, when = peak_within(line, variable, state, tried, before, trend, stages)
+                highest, when, _ = extreme_force(line, variable, state, tried, before, trend, stages)
                 if highest > peak_force:
                     peak_force = highest
                     time_of_peak = when

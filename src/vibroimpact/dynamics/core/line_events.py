@@ -75,15 +75,27 @@ def length_to(line: Line, variable: int, begun: LineState, low: float, high: flo
     return low if abs(low_value) < abs(high_value) else high
 
 
-@compiled(lambda t: t.real(t.of(Line), t.integer, t.of(LineState), t.real, t.real, t.matrix))
-def length_to_tension(line: Line, variable: int, begun: LineState, length: float, slack: float, stages: Floats) -> float:
-    """Return the length of a step to where the force becomes tensile by more than `slack` [N]; infinite where it does not."""
-    before = 0.0
-    for probe in range(len(_PROBES) + 1):
-        share = _PROBES[probe] if probe < len(_PROBES) else 1.0
-        if force_of(line, advance(line, variable, begun, share * length, stages).state) < -slack:
-            return length_to(line, variable, begun, before * length, share * length, AT_NO_FORCE, 0.0, stages)
-        before = share
+@compiled(lambda t: t.real(t.of(Line), t.integer, t.of(LineState), t.real, t.real, t.boolean, t.matrix))
+def length_to_tension(line: Line, variable: int, begun: LineState, length: float, slack: float, is_seen: bool, stages: Floats) -> float:
+    """Return the length of a step to where the force becomes tensile by more than `slack` [N]; infinite where it does not.
+
+    It is looked for at some places if it `is_seen`, and where the force has a minimum within the step.
+    """
+    if is_seen:
+        before = 0.0
+        for probe in range(len(_PROBES) + 1):
+            share = _PROBES[probe] if probe < len(_PROBES) else 1.0
+            if force_of(line, advance(line, variable, begun, share * length, stages).state) < -slack:
+                return length_to(line, variable, begun, before * length, share * length, AT_NO_FORCE, 0.0, stages)
+            before = share
+    begun_force = force_of(line, begun)
+    falling = force_trend(line, begun, begun_force)
+    after = advance(line, variable, begun, length, stages)
+    rising = force_trend(line, after.state, after.force)
+    if begun_force > 0.0 and falling < 0.0 < rising:
+        least, _, deepest = extreme_force(line, variable, begun, length, falling, rising, stages)
+        if least < -slack:
+            return length_to(line, variable, begun, 0.0, deepest, AT_NO_FORCE, 0.0, stages)
     return np.inf
 
 
@@ -147,36 +159,38 @@ def sag_of(line: Line, weight: float) -> float:
     return high
 
 
-@compiled(lambda t: t.tuple(t.real, t.real)(t.of(Line), t.integer, t.of(LineState), t.real, t.real, t.real, t.matrix))
-def peak_within(
-    line: Line, variable: int, begun: LineState, length: float, rising: float, falling: float, stages: Floats
-) -> tuple[float, float]:
-    """Return the largest force in a step [N], and its time since touch [s].
+@compiled(lambda t: t.tuple(t.real, t.real, t.real)(t.of(Line), t.integer, t.of(LineState), t.real, t.real, t.real, t.matrix))
+def extreme_force(
+    line: Line, variable: int, begun: LineState, length: float, before: float, after: float, stages: Floats
+) -> tuple[float, float, float]:
+    """Return the largest or least force within a step [N], its time since touch [s], and the length of the step up to it.
 
-    `rising`, `falling`: rates of change of the force at its start, positive, and at its end, negative [N/s].
+    `before`, `after`: rates of change of the force at its start and at its end, of opposite signs [N/s].
     """
+    rises = before > 0.0
     low = 0.0
     high = length
     kept = 0
-    highest = 0.0
+    force = 0.0
     when = begun.time
+    middle = 0.0
     for _ in range(_MOST_ITERATIONS):
-        middle = low + (high - low) * rising / (rising - falling)
+        middle = low + (high - low) * before / (before - after)
         step = advance(line, variable, begun, middle, stages)
         moved = abs(step.state.time - when)
-        highest = step.force
+        force = step.force
         when = step.state.time
         if moved <= _NEAR_PEAK * line.span or middle in (low, high):
             break
         trend = force_trend(line, step.state, step.force)
-        if trend > 0.0:
+        if (trend > 0.0) == rises:
             low = middle
-            rising = trend
-            falling *= 0.5 if kept == 1 else 1.0
+            before = trend
+            after *= 0.5 if kept == 1 else 1.0
             kept = 1
         else:
             high = middle
-            falling = trend
-            rising *= 0.5 if kept == -1 else 1.0
+            after = trend
+            before *= 0.5 if kept == -1 else 1.0
             kept = -1
-    return highest, when
+    return force, when, middle
