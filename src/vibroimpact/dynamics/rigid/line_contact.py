@@ -171,7 +171,14 @@ class RecordedContact:
             contact = follow_line(law, manner, steps)
             room = int(steps.written[0])
             if room <= len(steps.length):
-                return cls(law, manner, steps, contact, held)
+                kept = records.LineSteps(
+                    variable=steps.variable[:room].copy(),
+                    after=steps.after[:room].copy(),
+                    begun=steps.begun[:room].copy(),
+                    length=steps.length[:room].copy(),
+                    written=steps.written,
+                )
+                return cls(law, manner, kept, contact, held)
 
     def motion(self, times: Floats) -> Floats:
         """Return indentation [m], its rate [m/s] and energy dissipated [J] (3, T) at times since touch [s]."""
