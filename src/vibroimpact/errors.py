@@ -145,8 +145,8 @@ def lines_of(faults: Iterable[str]) -> tuple[str, ...]:
     room = LONGEST_MESSAGE - len("and more than 200 other faults")
     fitting = sum(end <= room for end in accumulate(len(line) + 1 for line in found[:MOST_LINES]))
     rest = len(found) - fitting
-    if not rest:
-        return found
+    if not rest:  # many are alike, and not all were looked at
+        return (*found, "and perhaps other faults")
     return (*found[:fitting], f"and {'' if all_seen else 'more than '}{rest} other fault{'s' if rest > 1 else ''}")
 
 

@@ -51,8 +51,6 @@ class Rule:
         From values at the nodes to Legendre coefficients in 2 x - 1.
     barycentric : array, shape (N + 1,)
         Barycentric weights of the points 0 and the nodes.
-    dense : array, shape (65, N)
-        From values at the nodes to values at 65 evenly spaced x.
     """
 
     time_map: Map
@@ -64,7 +62,6 @@ class Rule:
     integral_twice: Floats
     coefficients: Floats
     barycentric: Floats
-    dense: Floats
 
     def map_time(self, x: Floats) -> Floats:
         """Return m(x), the time as a fraction of the duration."""
@@ -115,18 +112,6 @@ class Rule:
         weights /= weights.sum(axis=0)
         return np.asarray(weights)
 
-    def tail(self, values: Floats, scale: Floats) -> Floats:
-        """Return the largest of the last two Legendre coefficients of m' times nodal `values` (N, B): (B,).
-
-        It is relative to the largest coefficient, or to `scale` (B,) where that is larger.
-        """
-        return self.tail_of_each(values.T, scale)
-
-    def tail_of_each(self, values: Floats, scale: Floats) -> Floats:
-        """Return `tail` for values (..., N) and scales (...)."""
-        spectrum = np.abs((self.slope * values)[..., None, :] @ self.coefficients.T)[..., 0, :]
-        return np.asarray(spectrum[..., -2:].max(axis=-1) / np.maximum(spectrum.max(axis=-1), scale))
-
 
 @cache
 def collocation_rule(number: int, time_map: Map, root: int = 2) -> Rule:
@@ -150,8 +135,7 @@ def collocation_rule(number: int, time_map: Map, root: int = 2) -> Rule:
     integral = integral * slope
     points = np.concatenate([[0.0], nodes])
     barycentric = 1.0 / np.prod(4.0 * (points[:, None] - points) + np.eye(number + 1), axis=1)  # the factor 4 avoids underflow
-    dense = legendre.legvander(np.linspace(-1.0, 1.0, 65), number - 1) @ coefficients
-    return Rule(time_map, root, nodes, time, slope, integral, integral @ integral, coefficients, barycentric, dense)
+    return Rule(time_map, root, nodes, time, slope, integral, integral @ integral, coefficients, barycentric)
 
 
 @cache

@@ -13,8 +13,8 @@ from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.dynamics.phase_plane.motion import PlaneMotion
 from vibroimpact.dynamics.rigid.glide import Glide
 
-COMPRESSION, RESTITUTION, GLIDE, RELEASED, CAPTURED, FAILED, SETTLED, RIDING = range(8)
-"""States of a drop in its contact; from RELEASED on the contact is over.
+RELEASED, CAPTURED, FAILED, SETTLED, RIDING = range(5)
+"""Outcomes of a contact.
 
 Only with bodies that vibrate: SETTLED, released below the rest speed and at rest; RIDING, still in contact without being at rest.
 """

@@ -47,11 +47,6 @@ class Encounter:
         """Return the encounter with another law, or with the same law and another memory."""
         return self if law is self.law else replace(self, law=law, floor=law.release_level + np.zeros(len(self.mass)))
 
-    def acceleration(self, delta: Floats, velocity: Floats) -> Floats:
-        """Return the second derivative of the indentation [m/s^2], with the force as the formula of the law gives it."""
-        static, dissipative = self.law.forces(delta, velocity, self.approach_speed)
-        return np.asarray(self.gravity - (static + dissipative) / self.mass)
-
 
 def encounter_of(law: CompliantLaw, mass: Floats, gravity: Floats, approach_speed: Floats) -> Encounter:
     """Return the encounter of B drops, with the undamped depth from the balance of energy."""

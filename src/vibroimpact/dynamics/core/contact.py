@@ -14,7 +14,7 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.attempt import attempt, basis_of, beginning_of, time_at, up_to_event
-from vibroimpact.dynamics.core.events import NO_EVENT, NO_PUSH, PARTED, TENSION_CUT, TURN
+from vibroimpact.dynamics.core.events import ENDS_AT_NO_FORCE, NO_EVENT, NO_PUSH, PARTED, TENSION_CUT, TURN
 from vibroimpact.dynamics.core.flight import approach_of, lost_in_flight, state_after, time_to_separation
 from vibroimpact.dynamics.core.law import law_after, law_indentation, stored_energy
 from vibroimpact.dynamics.core.parts import lose_at_end, write_part, write_stretch
@@ -26,8 +26,6 @@ RELEASED, CAPTURED, RIDES, TOO_STIFF, NEAR_REST, FULL = 0, 1, 2, 3, 4, 5
 """How a contact goes on: released; too little energy to leave; in contact at the end of the time or of the steps; not to be integrated;
 near equilibrium, which is to be looked at; no room for a further part.
 """
-
-ENDS_AT_NO_FORCE = 1
 
 _ROUNDING = 1e-14  # of the deepest indentation
 _TIME_ROUNDING = 1e-11  # of the duration of a contact

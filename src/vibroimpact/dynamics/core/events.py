@@ -15,6 +15,14 @@ NO_EVENT, PARTED, NO_PUSH, BREAKPOINT, TURN = 0, 1, 2, 3, 4
 NO_TENSION, TENSION_CUT, TENSION_KEPT = 0, 1, 2
 """May the force of a law be tensile? No; by its formula, which is cut; yes."""
 
+TENSIONS = ("none", "cut", "kept")
+"""The same as a law states it, by their numbers."""
+
+ENDS = ("zero-indentation", "zero-force", "pull-off")
+"""When a contact ends, as its law states it, by their numbers."""
+
+ENDS_AT_NO_FORCE = 1
+
 _ROUNDING = 1e-11  # relative to an indentation
 _ON_LEVEL = 1e-10  # relative to an indentation: a stretch that begins so near to a breakpoint begins on it; ends are solved to 1e-11
 _ZERO_RATE = 1e-9  # of the speed of the motion: a slower approach counts as having turned already

@@ -221,3 +221,9 @@ def law_after(law: Law, deepest: float) -> Law:
     changed = law.coefficients.copy()
     memory_level = compressed_at(law.addresses[3])(deepest, law.coefficients, changed)
     return law_beyond(law.addresses, changed, law.series, law.speed, memory_level)
+
+
+@compiled(lambda t: t.of(Law)(t.of(Law), t.real))
+def law_remembering(law: Law, deepest: float) -> Law:
+    """Return a law after a compression to an indentation [m]: itself where that does not change its memory."""
+    return law_after(law, deepest) if deepest > law.memory_level else law

@@ -11,8 +11,8 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled
-from vibroimpact.dynamics.core.events import TENSION_CUT
-from vibroimpact.dynamics.core.law import law_after
+from vibroimpact.dynamics.core.events import ENDS_AT_NO_FORCE, TENSION_CUT
+from vibroimpact.dynamics.core.law import law_remembering
 from vibroimpact.dynamics.core.line_events import (
     AT_CAPTURE,
     AT_LEVEL,
@@ -44,8 +44,6 @@ from vibroimpact.dynamics.core.records import Law
 
 RELEASED, CAPTURED, FAILED = 0, 1, 2
 """Outcomes: released; too little energy to leave the indentation; not to be integrated."""
-
-ENDS_AT_NO_FORCE = 1
 
 _FIRST_LENGTH = 1.7  # of the root of the depth over the speed, times the order-th root of the tolerance
 _SAFETY = 0.82
@@ -336,9 +334,8 @@ def follow_line(law: Law, manner: LineManner, steps: LineSteps) -> LineContact:
             plastic = energies_of(line, deepest)[1]
             if not abs(energy_of(line, state, plastic) - brought) <= imbalance:
                 break  # the law's energies are not those of its force
-            if deepest > law.memory_level:
-                law = law_after(law, deepest)
-                line = line_under(law, manner)
+            law = law_remembering(law, deepest)
+            line = line_under(law, manner)
             if sinks:
                 deepest = max(deepest, sag)
             # held by its energy, or by a force that does not exceed the weight

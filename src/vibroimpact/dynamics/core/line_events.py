@@ -8,11 +8,14 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled, force_at
-from vibroimpact.dynamics.core.line_records import Line, LineState
+from vibroimpact.dynamics.core.line_records import Bracket, Line, LineState
 from vibroimpact.dynamics.core.line_step import FREE, advance, energies_of, force_of, force_trend
 
 NO_END, AT_LEVEL, AT_TURN, AT_NO_FORCE, AT_CAPTURE = range(5)
 """Ends of a step: none; at an indentation; at a rate of zero; at a force of zero; where the energy no longer takes the bodies apart."""
+
+LOW, HIGH = -1, 1
+"""Ends of a bracket; 0 where none has been moved."""
 
 _MOST_ITERATIONS = 100
 _NEAR = 1e-15  # of the step
@@ -45,6 +48,24 @@ def energy_to_part(line: Line, state: LineState) -> float:
     return 0.5 * line.mass * state.rate * state.rate + elastic + plastic - barrier - weight * (state.delta - line.release)
 
 
+@compiled(lambda t: t.real(t.of(Bracket)))
+def secant_of(bracket: Bracket) -> float:
+    """Return where the secant through the ends of a bracket is zero."""
+    return bracket.low + (bracket.high - bracket.low) * bracket.low_value / (bracket.low_value - bracket.high_value)
+
+
+@compiled(lambda t: t.of(Bracket)(t.of(Bracket), t.real, t.real))
+def narrowed(bracket: Bracket, middle: float, value: float) -> Bracket:
+    """Return a bracket with the value in its middle in place of that at one end.
+
+    The value at an end that stays for the second time is halved, or it would stay for ever (the Illinois method).
+    """
+    low, high, low_value, high_value, moved = bracket
+    if (value > 0.0) == (high_value > 0.0):
+        return Bracket(low, middle, low_value * (0.5 if moved == HIGH else 1.0), value, HIGH)
+    return Bracket(middle, high, value, high_value * (0.5 if moved == LOW else 1.0), LOW)
+
+
 @compiled(lambda t: t.real(t.of(Line), t.integer, t.of(LineState), t.real, t.real, t.integer, t.real, t.matrix))
 def length_to(line: Line, variable: int, begun: LineState, low: float, high: float, end: int, level: float, stages: Floats) -> float:
     """Return the length of a step to an end between two lengths, by the secant within a bracket."""
@@ -54,25 +75,16 @@ def length_to(line: Line, variable: int, begun: LineState, low: float, high: flo
         return low
     if (low_value > 0.0) == (high_value > 0.0):
         return high
-    kept = 0
+    bracket = Bracket(low, high, low_value, high_value, 0)
     for _ in range(_MOST_ITERATIONS):
-        middle = low + (high - low) * low_value / (low_value - high_value)
-        if not abs(high - low) > _NEAR * abs(high) or middle in (low, high):
+        middle = secant_of(bracket)
+        if not abs(bracket.high - bracket.low) > _NEAR * abs(bracket.high) or middle in (bracket.low, bracket.high):
             break
         value = distance_to(line, end, level, advance(line, variable, begun, middle, stages).state)
         if value == 0.0:
             return middle
-        if (value > 0.0) == (high_value > 0.0):
-            high = middle
-            high_value = value
-            low_value *= 0.5 if kept == 1 else 1.0  # or one end would stay where it is
-            kept = 1
-        else:
-            low = middle
-            low_value = value
-            high_value *= 0.5 if kept == -1 else 1.0
-            kept = -1
-    return low if abs(low_value) < abs(high_value) else high
+        bracket = narrowed(bracket, middle, value)
+    return bracket.low if abs(bracket.low_value) < abs(bracket.high_value) else bracket.high
 
 
 @compiled(lambda t: t.real(t.of(Line), t.integer, t.of(LineState), t.real, t.real, t.boolean, t.matrix))
@@ -167,30 +179,17 @@ def extreme_force(
 
     `before`, `after`: rates of change of the force at its start and at its end, of opposite signs [N/s].
     """
-    rises = before > 0.0
-    low = 0.0
-    high = length
-    kept = 0
+    bracket = Bracket(0.0, length, before, after, 0)
     force = 0.0
     when = begun.time
     middle = 0.0
     for _ in range(_MOST_ITERATIONS):
-        middle = low + (high - low) * before / (before - after)
+        middle = secant_of(bracket)
         step = advance(line, variable, begun, middle, stages)
         moved = abs(step.state.time - when)
         force = step.force
         when = step.state.time
-        if moved <= _NEAR_PEAK * line.span or middle in (low, high):
+        if moved <= _NEAR_PEAK * line.span or middle in (bracket.low, bracket.high):
             break
-        trend = force_trend(line, step.state, step.force)
-        if (trend > 0.0) == rises:
-            low = middle
-            before = trend
-            after *= 0.5 if kept == 1 else 1.0
-            kept = 1
-        else:
-            high = middle
-            after = trend
-            before *= 0.5 if kept == -1 else 1.0
-            kept = -1
+        bracket = narrowed(bracket, middle, force_trend(line, step.state, force))
     return force, when, middle

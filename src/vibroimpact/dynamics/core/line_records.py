@@ -56,6 +56,16 @@ class Advance(NamedTuple):
     force: Real
 
 
+class Bracket(NamedTuple):
+    """Two places between which a function changes its sign, its values there, and which end was moved last, of `line_events`."""
+
+    low: Real
+    high: Real
+    low_value: Real
+    high_value: Real
+    moved: Integer
+
+
 class LineManner(NamedTuple):
     """Two rigid bodies as they touch, and what stays the same through their contact.
 

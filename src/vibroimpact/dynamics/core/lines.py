@@ -6,7 +6,7 @@ import numpy as np
 
 from vibroimpact.arrays import Floats, Integers
 from vibroimpact.compiled import compiled
-from vibroimpact.dynamics.core.law import law_after, law_at_touch
+from vibroimpact.dynamics.core.law import law_at_touch, law_remembering
 from vibroimpact.dynamics.core.line import follow_line, line_under
 from vibroimpact.dynamics.core.line_records import Line, LineManner, LineState, LineSteps
 from vibroimpact.dynamics.core.line_step import FREE, IMPLICIT, advance, energies_of
@@ -87,7 +87,7 @@ def read_line(law: Law, manner: LineManner, deepest: float, steps: LineSteps, ti
         Room for indentation [m], its rate [m/s], and energy lost since touch [J].
     """
     coming = line_under(law, manner)
-    leaving = line_under(law_after(law, deepest) if deepest > law.memory_level else law, manner)
+    leaving = line_under(law_remembering(law, deepest), manner)
     stages = np.empty((4, 13))
     number = 0
     for point in range(len(times)):
@@ -108,7 +108,7 @@ def read_line(law: Law, manner: LineManner, deepest: float, steps: LineSteps, ti
 def time_line(law: Law, manner: LineManner, deepest: float, steps: LineSteps, times: Floats) -> None:
     """Write the times at which a contact is well resolved [s] (steps, n): at the start of n parts of each step."""
     coming = line_under(law, manner)
-    leaving = line_under(law_after(law, deepest) if deepest > law.memory_level else law, manner)
+    leaving = line_under(law_remembering(law, deepest), manner)
     stages = np.empty((4, 13))
     parts = times.shape[1]
     for number in range(times.shape[0]):

@@ -19,7 +19,7 @@ from vibroimpact.dynamics.phase_plane.collocation import PlaneRule
 from vibroimpact.dynamics.phase_plane.motion import PlaneMotion
 
 if TYPE_CHECKING:
-    from vibroimpact.dynamics.rigid.line_contact import LineMotion
+    from vibroimpact.dynamics.rigid.line_contact import RecordedContact
 
 _ROUNDING = 1e-9
 _HALVINGS = 30
@@ -178,30 +178,29 @@ def _joined(parts: list[NormalMotion]) -> NormalMotion:
 
 def _followed(encounter: Encounter, steps: int) -> NormalMotion:
     """Return the normal motion of one drop as the core follows it, in parts between which the force is not smooth."""
-    from vibroimpact.dynamics.rigid.line_contact import LineMotion, follow_contacts  # a drop of impulses does not load the compiler
+    from vibroimpact.dynamics.rigid.line_contact import RecordedContact  # a drop of impulses does not load the compiler
 
-    contact, *_ = follow_contacts(encounter, _TOLERANCE)
+    recorded = RecordedContact.of(encounter, _TOLERANCE)
+    leaving = encounter.under(encounter.law.after_compression(np.array([recorded.contact.deepest])))
     parts = []
-    for piece in contact.pieces:
-        motion, encounter = piece.motion, encounter.under(piece.law)
-        assert isinstance(motion, LineMotion)
-        for begin, end in itertools.pairwise(motion.corners().tolist()):
-            part = _of_part(motion, encounter, begin, end - begin, steps)
-            if _is_steep_at_end(part):
-                part = _of_part(motion, encounter, begin, end - begin, _MORE * steps)
-            parts.append(part)
+    for begin, end in itertools.pairwise(recorded.corners().tolist()):
+        here = encounter if end <= recorded.contact.time_of_deepest else leaving
+        part = _of_part(recorded, here, begin, end - begin, steps)
+        if _is_steep_at_end(part):
+            part = _of_part(recorded, here, begin, end - begin, _MORE * steps)
+        parts.append(part)
     return _joined(parts)
 
 
-def _of_part(motion: LineMotion, encounter: Encounter, begin: float, length: float, steps: int) -> NormalMotion:
+def _of_part(recorded: RecordedContact, encounter: Encounter, begin: float, length: float, steps: int) -> NormalMotion:
     """Return the normal motion in a part of a contact that the core followed; the time is a cosine of the parameter.
 
-    `begin`, `length`: of the part, since the start of the motion [s].
+    `begin`, `length`: of the part, since touch [s].
     """
     angle = np.linspace(0.0, np.pi, steps + 1)
     half, step = 0.5 * length, angle[1]
     time, pace, bend = half * (1.0 - np.cos(angle)), step * half * np.sin(angle), step**2 * half * np.cos(angle)
-    delta, rate, _ = motion.at(begin + time, encounter)
+    delta, rate, _ = recorded.motion(begin + time)
     law, speed = encounter.law, encounter.approach_speed
     force = np.add(*law.forces(delta, rate, speed))
     aside = _ASIDE * length

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
 
@@ -13,6 +13,7 @@ from vibroimpact.compiled import law_addresses, law_coefficients
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.dynamics.contact import CAPTURED, FAILED, RELEASED, Contact, Piece
 from vibroimpact.dynamics.core import line_records as records
+from vibroimpact.dynamics.core.events import ENDS, TENSIONS
 from vibroimpact.dynamics.core.law import law_at_touch
 from vibroimpact.dynamics.core.line import follow_line
 from vibroimpact.dynamics.core.line_step import BY_ROOT, FREE
@@ -21,15 +22,13 @@ from vibroimpact.dynamics.core.records import Law
 from vibroimpact.dynamics.encounter import Encounter
 
 _OUTCOMES = np.array([RELEASED, CAPTURED, FAILED], dtype=np.int8)
-_TENSIONS = ("none", "cut", "kept")
-_ENDS = ("zero-indentation", "zero-force", "pull-off")
 _MOST_STEPS = 1_000_000  # the stiffest sensible contacts need thousands
 _ROOM = 200  # steps of a contact, at first
 _PARTS = 4  # of a step in a history
 _NO_COMPLIANCE = np.zeros(7)
 _OF_STEP = 0.01  # of the tolerance: error of a step, of which a contact has some dozens
 _LEAST_ERROR = 1e-14
-_ON_CORNER = 1e-9  # of a duration
+_ON_CORNER = 1e-9  # of the duration
 
 
 def follow_contacts(encounter: Encounter, tolerance: float) -> tuple[Contact, Floats, Floats]:
@@ -45,7 +44,7 @@ def follow_contacts(encounter: Encounter, tolerance: float) -> tuple[Contact, Fl
     law, size = encounter.law, len(encounter.mass)
     touches = np.array([encounter.mass, encounter.gravity, encounter.approach_speed, encounter.depth, encounter.speed_scale])
     outcomes, ends = np.zeros(size, dtype=np.int64), np.zeros((10, size))
-    laws = [_law_of_drop(law, drop) for drop in range(size)]  # kept: compiled code may call them
+    laws = [law.take(drop) for drop in range(size)]  # kept: compiled code may call them
     coefficients = np.array([law_coefficients(one) for one in laws])
     follow_lines(_manner(encounter, 0, tolerance), law_addresses(type(law)), coefficients, touches, outcomes, ends)
     duration, final_delta, final_rate, dissipated, deepest, time_of_deepest, peak_force, time_of_peak, plastic, stored = ends
@@ -120,12 +119,6 @@ class LineMotion:
             times = np.unique(np.append(times, self.recorded.contact.time_of_peak_force))
         return np.append(times[times < self.duration[0]], self.duration[0])
 
-    def corners(self) -> Floats:
-        """Return times since the start, and the end, between which the force of one drop is smooth [s]."""
-        within = self.recorded.corners() - self.begins
-        within = within[(within > _ON_CORNER * self.duration[0]) & (within < (1.0 - _ON_CORNER) * self.duration[0])]
-        return np.concatenate([[0.0], within, self.duration])
-
     def at(self, time: Floats, encounter: Encounter) -> tuple[Floats, Floats, Floats]:
         """Return indentation [m], its rate [m/s] and the energy dissipated since the start [J] of one drop at times since then [s]."""
         delta, rate, lost = self.recorded.motion(self.begins + np.append(time, 0.0))
@@ -157,7 +150,7 @@ class RecordedContact:
     @classmethod
     def of(cls, encounter: Encounter, tolerance: float) -> RecordedContact:
         """Follow the contact of one drop again, and record its steps."""
-        held = _law_of_drop(encounter.law, 0)
+        held = encounter.law.take(0)
         law = law_at_touch(law_addresses(type(held)), law_coefficients(held), _NO_COMPLIANCE, float(encounter.approach_speed[0]))
         manner, room = _manner(encounter, 0, tolerance), _ROOM
         while True:
@@ -191,16 +184,16 @@ class RecordedContact:
 
     def times(self, after: bool) -> Floats:
         """Return the times at which the contact is well resolved before, or after, its deepest point [s]."""
-        number = int(self.steps.written[0])
-        times = np.empty((number, _PARTS))
+        times = np.empty((len(self.steps.length), _PARTS))
         time_line(self.law, self.manner, self.contact.deepest, self.steps, times)
-        return np.asarray(times[self.steps.after[:number] == after].ravel())
+        return np.asarray(times[self.steps.after == after].ravel())
 
     def corners(self) -> Floats:
-        """Return the times at which the force is not smooth [s], except for the deepest point."""
-        number = int(self.steps.written[0])
-        starts, variables = self.steps.begun[1:number, 0], self.steps.variable[:number]
-        return np.asarray(starts[(variables[:-1] == BY_ROOT) | (variables[:-1] == FREE) | (variables[1:] == FREE)])
+        """Return the times between which the force is smooth, from touch to the end [s]."""
+        starts, variables, end = self.steps.begun[1:, 0], self.steps.variable, self.contact.end.time
+        within = starts[(variables[:-1] == BY_ROOT) | (variables[:-1] == FREE) | (variables[1:] == FREE)]
+        times = np.unique(np.append(within, self.contact.time_of_deepest))
+        return np.concatenate([[0.0], times[(times > _ON_CORNER * end) & (times < (1.0 - _ON_CORNER) * end)], [end]])
 
 
 def _manner(encounter: Encounter, drop: int, tolerance: float) -> records.LineManner:
@@ -208,8 +201,8 @@ def _manner(encounter: Encounter, drop: int, tolerance: float) -> records.LineMa
     law = encounter.law
     return records.LineManner(
         root=law.root,
-        tension=_TENSIONS.index(law.tension),
-        contact_end=_ENDS.index(law.contact_end),
+        tension=TENSIONS.index(law.tension),
+        contact_end=ENDS.index(law.contact_end),
         mass=float(encounter.mass[drop]),
         gravity=float(encounter.gravity[drop]),
         depth=float(encounter.depth[drop]),
@@ -217,9 +210,3 @@ def _manner(encounter: Encounter, drop: int, tolerance: float) -> records.LineMa
         tolerance=max(_OF_STEP * tolerance, _LEAST_ERROR),
         most_steps=_MOST_STEPS,
     )
-
-
-def _law_of_drop(law: CompliantLaw, drop: int) -> CompliantLaw:
-    """Return the law of one drop, with floats for arrays."""
-    values = {item.name: getattr(law, item.name) for item in fields(law)}
-    return law.changed({name: float(value[drop]) for name, value in values.items() if np.ndim(value)})

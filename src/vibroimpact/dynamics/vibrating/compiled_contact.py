@@ -10,6 +10,7 @@ import numpy as np
 from vibroimpact.compiled import law_addresses, law_coefficients
 from vibroimpact.dynamics.core import contact as core
 from vibroimpact.dynamics.core import records
+from vibroimpact.dynamics.core.events import ENDS, TENSIONS
 from vibroimpact.dynamics.core.law import law_at_touch
 from vibroimpact.dynamics.vibrating.active_contact import ActiveContact, record_peaks
 from vibroimpact.dynamics.vibrating.contact_history import ContactHistory
@@ -22,8 +23,6 @@ from vibroimpact.dynamics.vibrating.radau_eigenbasis import NODES_PER_STRETCH, R
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 from vibroimpact.dynamics.vibrating.stretch_end import with_separation_loss
 
-_TENSIONS = ("none", "cut", "kept")
-_ENDS = ("zero-indentation", "zero-force", "pull-off")
 _PARTS = 64
 
 
@@ -48,8 +47,8 @@ class CompiledContact:
         self.bases = records.Bases(*(rule.basis for rule in self.rules))
         self.bodies = records.Bodies(march.system.record, self.view.surfaces, self.view.coordinates)
         self.manner = records.Manner(
-            tension=_TENSIONS.index(law.tension),
-            contact_end=_ENDS.index(law.contact_end),
+            tension=TENSIONS.index(law.tension),
+            contact_end=ENDS.index(law.contact_end),
             motion_speed=active.speed,
             span=active.span,
             tolerance=march.tolerance,
