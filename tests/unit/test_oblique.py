@@ -253,9 +253,9 @@ def test_none_of_a_million_random_impacts_makes_energy(population: Callable[[int
 @pytest.mark.slow
 @pytest.mark.parametrize("rolling", [0.01, 0.3, 10.0])
 def test_no_random_impact_makes_energy_by_rolling_resistance(rolling: float) -> None:
-    without, with_it = (energies_of_random_impacts(4000, 6, coefficient)[1] for coefficient in (0.0, rolling))
-    assert (with_it <= without * (1.0 + 1e-12)).all()
-    assert (with_it < without).mean() > 0.9
+    before, after = energies_of_random_impacts(400, 6, rolling)
+    assert (after <= before * (1.0 + 1e-9)).all()
+    assert (after < before * 0.99).mean() > 0.9
 
 
 def test_an_inclined_plate_pulls_along_x() -> None:

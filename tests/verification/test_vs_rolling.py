@@ -26,6 +26,12 @@ SCIPY = Against(
     "oblique impact and friction",
     "friction regularized over a sliding velocity of 1e-6 m/s, in the test",
 )
+MARCHED = Against(
+    "small steps of Hertz's force, Mindlin's spring and the rolling moment",
+    "own independent computation",
+    "oblique impact and friction",
+    "semi-implicit Euler with 200,000 steps, in the test",
+)
 
 
 RADIUS, MASS, GRAVITY = 0.02, 0.3, 9.81
@@ -323,13 +329,17 @@ def test_rolling_resistance_decides_whether_it_reaches_the_edge() -> None:
 
 @pytest.mark.parametrize("friction", ["coulomb", "rigid", "mdr", "mindlin"])
 def test_an_impact_resists_rolling(agrees: Agrees, friction: str) -> None:
-    """Changes over the impulse J per mass: 5/7 mu_r of all that rolls; mu of what slips, and 5/2 (mu -+ mu_r) of its spin."""
+    """Changes over the impulse J per mass: 5/7 mu_r of all that rolls; mu of what slips, and 5/2 (mu -+ mu_r) of its spin.
+
+    Under elastic friction a sphere that rolls begins to oscillate along the plate as the moment begins, and ends elsewhere.
+    """
     pair = {"effective_modulus": 1e9, "effective_shear_modulus": 8e8, "effective_radius": RADIUS}
     mu, rolling = 0.3, 0.04
     law = vi.find_friction_law(friction)(coefficient=mu, rolling_coefficient=rolling, **({} if friction in ("coulomb", "rigid") else pair))
     slower = -5.0 / 7.0 * rolling
+    rolls = [(1.0, 1.0, slower, slower)] if friction in ("coulomb", "rigid") else []
     for speed, spin, push, turn in (
-        (1.0, 1.0, slower, slower),
+        *rolls,
         (30.0, 0.0, -mu, 2.5 * (mu - rolling)),
         (0.0, -30.0, -mu, 2.5 * (mu + rolling)),
     ):
@@ -346,6 +356,105 @@ def test_an_impact_resists_rolling(agrees: Agrees, friction: str) -> None:
             relative=1e-8,
         )
         agrees(case, "angular velocity times radius after impact", turned, spin + turn * impulse, unit="m/s", relative=1e-8)
+
+
+_BALL = {"radius": 0.01, "mass": 0.03, "modulus": 115e9, "shear": 47.5e9, "friction": 0.2, "rolling": 0.02, "speed": 2.0}
+
+
+def marched_with_a_moment(velocity: float, turning: float, steps: int = 200_000) -> tuple[float, float]:
+    """Return velocity and angular velocity times radius [m/s] after a Hertzian impact of `_BALL`, by small steps of the law as stated.
+
+    A spring of Mindlin's stiffness whose displacement is kept, at most mu F, and a moment of mu_r R F against what spins.
+    """
+    ball = _BALL
+    mass, shear, radius = ball["mass"], 2.0 * ball["shear"], ball["radius"]
+    hertz = 4.0 / 3.0 * ball["modulus"] * radius**0.5
+    deepest = (1.25 * mass * ball["speed"] ** 2 / hertz) ** 0.4
+    step = 3.0 * deepest / ball["speed"] / steps
+    depth, rate, stretch = 0.0, ball["speed"], 0.0
+    while depth >= 0.0:
+        force = hertz * depth**1.5
+        stretch += (velocity + turning) * step
+        stiffness = shear * (radius * depth) ** 0.5
+        friction = min(max(stiffness * stretch, -ball["friction"] * force), ball["friction"] * force)
+        stretch = friction / stiffness if stiffness else 0.0
+        velocity -= friction / mass * step
+        turning -= 2.5 * friction / mass * step
+        slower = 2.5 * ball["rolling"] * force / mass * step
+        turning = max(abs(turning) - slower, 0.0) * (1.0 if turning > 0.0 else -1.0)
+        rate -= force / mass * step
+        depth += rate * step
+    return velocity, turning
+
+
+@pytest.mark.parametrize(("velocity", "turning"), [(0.0, -0.5), (1.0, 0.0), (0.01, 0.0), (0.02, 0.03), (-0.3, 0.2)])
+def test_elastic_friction_and_a_moment_act_together(agrees: Agrees, velocity: float, turning: float) -> None:
+    """The moment acted after the contact, as if friction had not known of it: the spin of the first case became 21 instead of 29 rad/s."""
+    ball = _BALL
+    law = vi.find_friction_law("mindlin")(
+        coefficient=ball["friction"],
+        rolling_coefficient=ball["rolling"],
+        effective_modulus=ball["modulus"],
+        effective_shear_modulus=ball["shear"],
+        effective_radius=ball["radius"],
+    )
+    response = vi.simulate(
+        vi.Problem(
+            sphere=vi.Body(mass=ball["mass"], contact_offset=ball["radius"]),
+            plate=vi.rigid_plate(),
+            laws=(vi.find_contact_law("hertz")(stiffness=4.0 / 3.0 * ball["modulus"] * ball["radius"] ** 0.5),),
+            speed=ball["speed"],
+            gravity=0.0,
+            impacts=1,
+            oblique=vi.Oblique(velocity=(velocity, 0.0), spin=(0.0, -turning / ball["radius"], 0.0), friction=law),
+        )
+    )
+    expected = marched_with_a_moment(velocity, turning)
+    found = response.impacts["separation_velocity_x_m_s"][0], -ball["radius"] * response.impacts["spin_y_after_rad_s"][0]
+    bound = 1e-3 * max(abs(velocity), abs(turning))
+    for quantity, value, other in zip(("tangential velocity", "angular velocity times radius"), found, expected, strict=True):
+        case = "impact under elastic friction with rolling resistance"
+        agrees(case, quantity, value, other, unit="m/s", against=MARCHED, absolute=bound)
+
+
+@pytest.mark.parametrize(
+    ("velocity", "spin", "after"), [((0.0, 0.0, -2.0), 50.0, (0.0972, 28.8)), ((0.01, 0.0, -2.0), 0.0, (-0.0105, -0.007))]
+)
+def test_balls_of_the_guide(velocity: tuple[float, ...], spin: float, after: tuple[float, float]) -> None:
+    """Velocity along the plate and spin [rad/s] as the guide to oblique drops and the changelog have them."""
+    friction = {"law": "mindlin", "coefficient": 0.2, "rolling_coefficient": 0.02}
+    case = {
+        "name": "ball",
+        "sphere": {"radius": 0.01, "material": "steel"},
+        "plate": {"material": "steel"},
+        "drop": {"velocity": list(velocity), "spin": [0.0, spin, 0.0]},
+        "contact": {"law": "hertz", "friction": friction},
+        "run": {"impacts": 1},
+    }
+    impacts = vi.simulate(vi.read_case(case).to_problem()).impacts
+    assert impacts["separation_velocity_x_m_s"][0] == pytest.approx(after[0], abs=1.5e-4)
+    assert impacts["spin_y_after_rad_s"][0] == pytest.approx(after[1], abs=0.06)
+
+
+def test_a_batch_with_resisted_drops_is_its_drops() -> None:
+    friction = {"coefficient": 0.2, "effective_modulus": 115e9, "effective_shear_modulus": 47.5e9, "effective_radius": 0.01}
+    rolling = np.array([0.0, 0.02, 0.0, 0.3])
+
+    def found(coefficient: Any, speed: Any) -> vi.Response:
+        law = vi.find_friction_law("mindlin")(rolling_coefficient=coefficient, **friction)
+        contact = vi.find_contact_law("hunt-crossley")(stiffness=1.5e10, restitution=0.7)
+        ball = vi.Body(mass=0.03, contact_offset=0.01)
+        oblique = vi.Oblique(velocity=(speed, 0.1), spin=(0.0, 20.0, 5.0), friction=law)
+        return vi.simulate(vi.Problem(sphere=ball, plate=vi.rigid_plate(), laws=(contact,), speed=2.0, impacts=2, oblique=oblique))
+
+    speeds = np.array([0.1, 0.2, 1.0, 0.0])
+    whole = found(rolling, speeds)
+    for drop in range(4):
+        alone = found(rolling[drop], speeds[drop])
+        for name, values in alone.impacts.items():
+            np.testing.assert_allclose(whole.drop(drop).impacts[name], values, rtol=1e-12, atol=1e-15)
+        time = np.linspace(0.0, float(alone.end_time[0]), 50)
+        np.testing.assert_allclose(whole.drop(drop).at(time)["velocity_x_m_s"], alone.at(time)["velocity_x_m_s"], rtol=1e-12)
 
 
 def test_a_contact_with_an_area_resists_twisting(agrees: Agrees) -> None:

@@ -10,13 +10,23 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.arrays import Bools, Drops, Floats
-from vibroimpact.contact.friction.law import FrictionLaw, ImpulsiveFriction
+from vibroimpact.contact.friction.law import CompliantFriction, FrictionLaw, ImpulsiveFriction
 from vibroimpact.dynamics.columns import OBLIQUE_IMPACT_COLUMNS
 from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.oblique.normal_motion import NormalMotion
+from vibroimpact.dynamics.oblique.resisted_contact import ResistedContact, resisted_contact
 from vibroimpact.dynamics.oblique.rolling import ACROSS, LyingSpheres
 from vibroimpact.dynamics.oblique.sliding import slide
-from vibroimpact.dynamics.oblique.state import ImpulseAlong, ObliqueContact, ObliqueContacts, Sliding, Sphere, State, energy_taken
+from vibroimpact.dynamics.oblique.state import (
+    ContactAlong,
+    ImpulseAlong,
+    ObliqueContact,
+    ObliqueContacts,
+    Sliding,
+    Sphere,
+    State,
+    energy_taken,
+)
 from vibroimpact.dynamics.oblique.statement import Oblique
 from vibroimpact.dynamics.oblique.twisting import slowed_spins
 from vibroimpact.dynamics.shaken.statement import PlateMotion
@@ -125,7 +135,30 @@ class ObliqueMotion:
 
         `motions`: normal motions of groups of the drops, with their places among these.
         """
-        return tuple((places, self._collide(drops[places], normal, row)) for places, normal in motions)
+        found: list[tuple[Drops, ContactAlong]] = []
+        for places, normal in motions:
+            resisted = self._resists_rolling(drops[places])
+            for one in np.flatnonzero(resisted).tolist():
+                place = places[one : one + 1]
+                found.append((place, self._march(drops[place], normal.take(np.array([one])), row)))
+            free = np.flatnonzero(~resisted)
+            if free.size:
+                motion = normal.take(free) if resisted.any() else normal
+                found.append((places[free], self._collide(drops[places[free]], motion, row)))
+        return tuple(found)
+
+    def _resists_rolling(self, drops: Drops) -> Bools:
+        """Return of which drops rolling is resisted while friction is elastic, so that both have to be followed together."""
+        if not isinstance(self.law, CompliantFriction):
+            return np.zeros(len(drops), dtype=bool)
+        return np.broadcast_to(self.law.rolling_coefficient, self.lost.shape)[drops] > 0.0
+
+    def _march(self, drops: Drops, normal: NormalMotion, row: dict[str, Floats]) -> ResistedContact:
+        assert isinstance(self.law, CompliantFriction)
+        sphere, before = self.now(drops)
+        contact = resisted_contact(self.law.take(int(drops[0])), normal, sphere, before)
+        self.finish(drops, contact.end, energy_taken(sphere, before, contact.end), contact.microslip, row)
+        return contact
 
     def _collide(self, drops: Drops, normal: NormalMotion, row: dict[str, Floats]) -> ObliqueContact:
         sphere, before = self.sphere.take(drops), self.state.take(drops)

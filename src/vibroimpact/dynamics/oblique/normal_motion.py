@@ -47,6 +47,10 @@ class NormalMotion:
     force_slope: Floats
     impulse: Floats
 
+    def take(self, drops: Drops) -> NormalMotion:
+        """Return the normal motion of some of the contacts."""
+        return NormalMotion(self.steps, *(getattr(self, name)[:, drops] for name in _ARRAYS))
+
     @property
     def pressed(self) -> Floats:
         """Impulse of the force so far [N s] (G, B), of which a force that pulls, as some laws have at the end, gives nothing back."""

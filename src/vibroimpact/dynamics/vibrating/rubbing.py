@@ -30,6 +30,7 @@ from vibroimpact.contact.friction.law import CompliantFriction, TangentialHistor
 from vibroimpact.dynamics.collocation import Map, Rule
 from vibroimpact.dynamics.core.receptance import surface_motion
 from vibroimpact.dynamics.core.records import Motion
+from vibroimpact.dynamics.oblique.microslip import lost_in_microslip
 from vibroimpact.dynamics.oblique.state import Sphere
 from vibroimpact.dynamics.oblique.state import State as Along
 from vibroimpact.dynamics.vibrating.contact_view import ContactView, contact_view
@@ -285,18 +286,6 @@ class Friction:
             turned, way = (part[:, 0] for part in stretch.turned(np.array([length])))
             stretch = replace(stretch, end=replace(end, spin=own[2:, -1], turned=turned, turned_way=way))
         return stretch
-
-
-def lost_in_microslip(law: CompliantFriction, normal: Floats, friction: Floats, moved: Floats, slid: Floats) -> float:
-    """Return what friction took on a way [J], but while all of the contact slid; less its elastic energy, where it slides at the end.
-
-    `normal`: forces [N] (T,). `friction`: forces [N] (T, 2). `moved`: displacements between them [m] (T - 1, 2). `slid`: on the way to
-    each of them [m] (T,).
-    """
-    normal = np.maximum(normal, 0.0)
-    mean, slides = 0.5 * (normal[1:] + normal[:-1]), (slid > 0.0) | (normal == 0.0)
-    taken = 0.5 * ((friction[1:] + friction[:-1]) * moved).sum(axis=1) - law.coefficient * mean * slid[1:]
-    return float(np.where(slides[1:] & slides[:-1], np.diff(law.energy_in_sliding(normal)), taken).sum())
 
 
 def _together(values: Floats) -> Floats:

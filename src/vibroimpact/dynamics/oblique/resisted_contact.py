@@ -1,0 +1,185 @@
+r"""Contacts of rigid bodies in which rolling is resisted while friction is elastic, marched in time.
+
+With the slip s of the contact point, of which the spin makes the part w, the friction Q that the law makes of the way of the slip, the
+normal force F, and the moment M of rolling resistance
+
+.. math:: m \dot v = m g - Q,\qquad I \dot w = -R^2 Q - R M,\qquad s = v + w
+
+M is :math:`\mu_r R F` against w, and where w is zero what keeps it so, up to that. Friction and moment act together: a spin that the moment
+holds leaves friction the whole mass to slow, one that it does not hold only the effective mass of the contact point.
+
+Each step is half a kick, a drift and half a kick (leapfrog, of order two). Each kick takes from w what the moment can take of it, and no
+more, so that w ends at zero and stays there without a special case.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.contact.friction.cubics import cubic_at
+from vibroimpact.contact.friction.law import CompliantFriction
+from vibroimpact.dynamics.oblique.microslip import lost_in_microslip
+from vibroimpact.dynamics.oblique.normal_motion import NormalMotion
+from vibroimpact.dynamics.oblique.state import Sphere, State, energy_taken
+from vibroimpact.dynamics.oblique.twisting import slowed_spins
+
+_PARTS = 16
+"""Steps in each of the normal motion's: spins after the contact are then within 1e-3 of the largest; where the slip turns it is 3e-4."""
+
+_MOST_PARTS = 1024
+_MOST_TURNING = 0.2
+"""Angle by which the free oscillation of a contact that sticks turns in a step at most [rad], until there are `_MOST_PARTS`."""
+
+
+@dataclass(frozen=True)
+class ResistedContact:
+    """The motion along the plate during the contact of one drop; see `ContactAlong`.
+
+    `sphere`, `before`: the sphere, and its state at first touch. `time`: since then [s] (G,). `states`: then. `friction`: force on the
+    sphere [N] (2, G). `microslip`: energy lost while a part of the contact sticks [J] (1,).
+    """
+
+    sphere: Sphere
+    before: State
+    time: Floats
+    states: State
+    friction: Floats
+    microslip: Floats
+
+    @property
+    def duration(self) -> Floats:
+        """The duration of the contact [s] (1,)."""
+        return self.time[-1:]
+
+    @property
+    def end(self) -> State:
+        """The state at the end of the contact."""
+        return self.states.take(np.array([-1]))
+
+    def of(self, drop: int) -> ResistedContact:
+        """Return itself: it belongs to one drop."""
+        return self
+
+    def at(self, time: Floats) -> tuple[State, Floats, Floats]:
+        """Return states, friction on the sphere [N] (2, T) and energy taken [J] (T,), at times since first touch [s] (T,)."""
+        from scipy.interpolate import CubicHermiteSpline, PchipInterpolator  # a drop along the normal does not load it
+
+        now = np.minimum(time, self.time[-1])
+        passed = np.flatnonzero(np.append(np.diff(self.time) > 0.0, True))  # of a force that jumps what comes after it
+        times, states, friction = self.time[passed], self.states.take(passed), self.friction[:, passed]
+        path = CubicHermiteSpline(times, states.position, states.velocity, axis=1)
+        smooth = PchipInterpolator(times, np.concatenate([states.velocity, states.spin, friction]), axis=1)(now)
+        state = State(path(now), smooth[:2], smooth[2:5])
+        return state, smooth[5:], energy_taken(self.sphere, self.before, state)
+
+
+def resisted_contact(law: CompliantFriction, normal: NormalMotion, sphere: Sphere, before: State) -> ResistedContact:
+    """Return the motion of one drop along the plate during a contact in which rolling is resisted.
+
+    Parameters
+    ----------
+    law : CompliantFriction
+        Of one drop.
+    normal : NormalMotion
+        The normal motion of its contact.
+    sphere : Sphere
+        The sphere.
+    before : State
+        Its state at first touch.
+    """
+    time, force, impulse = _refined(normal, _parts(law, normal, sphere))
+    history = law.history(float(force.max()))
+    mass = float(sphere.mass[0])
+    turn = float(sphere.radius[0] ** 2 / sphere.inertia[0])
+    gravity = sphere.gravity[:, 0]
+    elapsed = np.diff(time)
+    pressed = np.diff(impulse)
+    mean = 0.5 * (force[1:] + force[:-1])
+    # half a step, such that a friction of a constant part of the normal force has exactly that part of its impulse
+    rubbing = 0.5 * np.divide(pressed, mean, out=elapsed.copy(), where=mean > 0.0)
+    resisted = 0.5 * turn * float(law.rolling_coefficient) * pressed
+    velocity = before.velocity[:, 0]
+    turning = sphere.turning(before)[:, 0]
+    friction = np.zeros(2)
+    velocities = np.empty((len(time), 2))
+    turnings = np.empty((len(time), 2))
+    frictions = np.zeros((len(time), 2))
+    moved = np.empty((len(elapsed), 2))
+    slid = np.zeros(len(time))
+    velocities[0] = velocity
+    turnings[0] = turning
+    steps = zip(elapsed.tolist(), rubbing.tolist(), force[1:].tolist(), resisted.tolist(), strict=True)
+    for step, (length, rubs, pressing, most) in enumerate(steps):
+        pulled = 0.5 * length * gravity
+        velocity = velocity + pulled - rubs / mass * friction
+        turning, unused = _slowed(turning - rubs * turn * friction, most)
+        moved[step] = length * (velocity + turning)
+        history, friction = history.after(pressing, moved[step])
+        velocity = velocity + pulled - rubs / mass * friction
+        turning, _ = _slowed(turning - rubs * turn * friction, most + unused)
+        velocities[step + 1] = velocity
+        turnings[step + 1] = turning
+        frictions[step + 1] = friction
+        slid[step + 1] = history.slid
+    position = np.zeros_like(velocities)
+    np.cumsum(0.5 * elapsed[:, None] * (velocities[1:] + velocities[:-1]), axis=0, out=position[1:])
+    slips = np.hypot(*(velocities + turnings).T)
+    spins = _spins_about_normal(law, time, force, np.hypot(*frictions.T), slips, sphere, before)
+    states = State(
+        before.position + position.T,
+        velocities.T,
+        np.stack([turnings[:, 1] / sphere.radius, -turnings[:, 0] / sphere.radius, spins]),
+    )
+    microslip = lost_in_microslip(law, force, frictions, moved, slid)
+    return ResistedContact(sphere, before, time, states, -frictions.T, np.array([microslip]))
+
+
+def _slowed(turning: Floats, most: float) -> tuple[Floats, float]:
+    """Return what a moment leaves of w that can take `most` of it [m/s], and how much more it could have taken."""
+    speed = float(np.hypot(turning[0], turning[1]))
+    if speed > most:
+        return turning * (1.0 - most / speed), 0.0
+    return np.zeros(2), most - speed
+
+
+def _parts(law: CompliantFriction, normal: NormalMotion, sphere: Sphere) -> int:
+    """Return how many steps there are in each of the normal motion's."""
+    stiffness = 2.0 * law.effective_shear_modulus * law.contact_radius(normal.force.max())
+    longest = np.diff(normal.time[:, 0]).max()
+    turning = float(np.sqrt(stiffness / sphere.tangential_mass[0]) * longest)
+    return int(min(max(np.ceil(turning / _MOST_TURNING), _PARTS), _MOST_PARTS))
+
+
+def _refined(normal: NormalMotion, parts: int) -> tuple[Floats, Floats, Floats]:
+    """Return times [s], normal forces [N] and their impulses so far [N s] (G,) of one drop, with `parts` steps for each of the motion's."""
+    inside = normal.steps > 0.0  # where two parts meet nothing lies between
+    place = np.arange(1, parts + 1)[:, None] / parts
+
+    def at(values: Floats, slopes: Floats) -> Floats:
+        ends = np.array([values[:-1, 0], slopes[:-1, 0], values[1:, 0], slopes[1:, 0]])
+        between, _ = cubic_at(ends, place)
+        return np.append(values[0, 0], np.where(inside, between, values[1:, 0]).T.ravel())
+
+    time = np.maximum.accumulate(at(normal.time, normal.pace))
+    force = np.maximum(at(normal.force, normal.force_slope), 0.0)
+    bound = np.append(normal.pressed[:1, 0], np.repeat(normal.pressed[1:, 0], parts))  # by the end of each step of the motion
+    impulse = np.minimum(np.maximum.accumulate(at(normal.impulse, normal.pace * normal.force)), bound)
+    kept = np.append(True, (np.diff(time) > 0.0) | (np.diff(force) != 0.0))
+    return time[kept], force[kept], impulse[kept]
+
+
+def _spins_about_normal(
+    law: CompliantFriction, time: Floats, force: Floats, friction: Floats, slip: Floats, sphere: Sphere, before: State
+) -> Floats:
+    """Return the spins about the normal of one drop [rad/s] (G,), which twisting slows; they do not act on the motion along the plate."""
+    if not before.spin[2].any():
+        return np.zeros_like(time)
+    moment = law.twisting_moment(force)
+    slower = np.zeros_like(time)
+    np.cumsum(0.5 * np.diff(time) * (moment[1:] + moment[:-1]), out=slower[1:])
+    series = (slower / sphere.inertia[0], force, friction, slip)
+    left, _ = slowed_spins(law, before.spin[2], *(values[:, None] for values in series))
+    return np.asarray(np.sign(before.spin[2]) * left[:, 0])
