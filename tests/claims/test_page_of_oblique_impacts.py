@@ -51,6 +51,25 @@ def test_measured_and_computed() -> None:
     says(PAGE, "deviate from the measurements by up to {}", np.abs(computed - MEASURED)[1:4, ANGLES < 30.0].max())
 
 
+def test_ball_whose_spin_a_moment_stops() -> None:
+    friction = {"law": "mindlin", "coefficient": 0.2, "rolling_coefficient": 0.02}
+    case = {
+        "sphere": {"radius": "10 mm", "material": "steel"},
+        "plate": {"material": "steel"},
+        "drop": {"velocity": [0.01, 0.0, -2.0]},
+        "contact": {"law": "hertz", "friction": friction},
+        "run": {"impacts": 1},
+    }
+    rigid = vi.read_case(case).to_problem()
+    returns = [
+        1e3 * float(vi.simulate(problem).impacts["separation_velocity_x_m_s"][0])
+        for problem in (rigid, replace(rigid, local_element=(1e18, 1e6)))
+    ]
+    says(PAGE, "falls on steel at {} m/s with {} mm/s along the plate", 2.0, 10.0)
+    says(PAGE, "coefficients {} and {}) returns with {} mm/s", friction["coefficient"], friction["rolling_coefficient"], returns[0])
+    says(PAGE, "returns with {} mm/s from a plate with a local stiffness of {} N/m", returns[1], 1e18)
+
+
 def friction_left(ratio: float) -> float:
     """Return the friction of a contact that slides and twists over that of sliding alone, by quadrature of Hertz's pressure."""
     distance = (np.arange(2000) + 0.5) / 2000

@@ -208,6 +208,20 @@ def modules_of_a_drop(case: str, folder: Path) -> set[str]:
     return set(subprocess.run(command, check=True, capture_output=True, text=True, timeout=120).stdout.split())
 
 
+@pytest.mark.parametrize(
+    ("mesh", "remedy"),
+    [
+        ({"elements": 30}, "give plate.mesh.elements = 102"),
+        ({"elements": 60, "layers": 1}, "give plate.mesh.elements = 135"),
+        ({"element_size": 0.1}, 'give plate.mesh.element_size = "66.7 mm"'),
+    ],
+)
+def test_a_finer_mesh_is_asked_for_as_the_mesh_was(mesh: dict[str, Any], remedy: str) -> None:
+    """An element size was proposed to a mesh of a number of elements, which refuses one."""
+    (doubt,) = vi.compute_modes(vi.read_case(plate_case(element="solid", mesh=mesh)))["plate"].doubts
+    assert remedy in doubt
+
+
 def test_a_rigid_case_loads_nothing_that_vibrates(tmp_path: Path) -> None:
     loaded = modules_of_a_drop("paper:type1-theory", tmp_path / "drop")
     assert "vibroimpact.runs.paraview" in loaded

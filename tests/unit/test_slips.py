@@ -135,6 +135,9 @@ def test_a_run_that_is_over_too_soon_is_told_when_it_should_end() -> None:
     assert "is over before the first contact is, which ends at about 0.311" in said
     assert told(run={"duration": 0.3125}) == []
     assert "give 0.00034 s or more" in told(drop={"speed": 3.0}, run={"duration": 2e-4})[0]
+    assert "touches the plate, at 0.4402 s" in told(plate__inclination="60 deg", run={"duration": 0.4})[0]  # half of gravity
+    shaken = {"amplitude": "1 mm", "frequency": "20 Hz"}
+    assert told(plate__motion=shaken, run={"duration": 0.3}) == []
 
 
 def test_one_value_an_impact_is_said_once() -> None:

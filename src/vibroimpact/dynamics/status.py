@@ -117,8 +117,8 @@ def _at_rest(run: Ended) -> str:
     when = _time(run, time, 7)
     if run.outcomes[0] is Outcome.CAPTURED:
         if vibration:
-            return f"at {when} s it lies in its indentation for good.{vibration}"
-        return f"from {when} s on it has too little energy left to get out of its indentation, and lies there for good."
+            return f"from {when} s on it stays in its indentation.{vibration}"
+        return f"from {when} s on it has too little energy left to get out of its indentation, and stays in it."
     if run.outcomes[0] is Outcome.STUCK:
         return f"from {when} s on it has too little energy left to break the adhesion, and sticks.{vibration}"
     speed, last = float(run.rest.speed[0]), float(run.impacts["separation_speed_m_s"][-1])

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
 _FREQUENCY_OFF = 0.005  # relative: a larger estimated frequency error is doubted
 _WEIGHT_OFF = 0.05  # relative: a larger difference in mass between an imported mesh and the case is doubted
+_FINER = 1.5  # times smaller elements are proposed
 _MATERIAL_OFF = 0.1  # relative: a larger difference between the material of a case and that of the elements touched is doubted
 _MESH_OFF = 0.005  # relative: a generated mesh with a larger error of its mass is too coarse
 _LARGE = 50.0  # m: the coordinates of a larger body are probably in millimetres
@@ -126,28 +127,29 @@ def _doubts(case: CaseTable, name: str, body: ElasticBody, model: ModalModel, ba
         yield "the plate is not held: its supports let it fall or tilt, and a drop under gravity needs a plate that is held"
     yield from _doubts_of_mass(case, name, body, model)
     yield from _doubts_of_materials(case, name, body, model)
-    yield from _doubts_of_frequencies(name, body, model)
+    yield from _doubts_of_frequencies(case, name, body, model)
     if any(block.element.order == 1 for block in model.mesh.blocks):
         yield f"the mesh of the {name} has elements of first order, which are far too stiff in bending; take elements of second order"
     if isinstance(body.damping, (ConstantRatio, RatioOfEach, RatioTable)) and basis.damping_ratios.max() >= 1.0:
         yield f"the damping of the {name} is critical or more; a ratio of 0.01 is 1 %"
 
 
-def _doubts_of_frequencies(name: str, body: ElasticBody, model: ModalModel) -> Iterator[str]:
+def _doubts_of_frequencies(case: CaseTable, name: str, body: ElasticBody, model: ModalModel) -> Iterator[str]:
     """Yield a doubt if estimated frequency errors exceed half a per cent, with the main cause and a remedy."""
     errors = np.nan_to_num(model.frequency_errors)
     off = int((errors > _FREQUENCY_OFF).sum())
     if not off:
         return
     worst, cause = int(errors.argmax()), model.facts.get(MAIN_CAUSE, MESH)
+    remedy = _remedy(case, name, body.recipe, cause)
     which = f"{off} of the {len(errors)} modes" if len(errors) > 1 else "the mode"
     yield (
         f"the frequencies of {which} of the {name} may be off by more than {100 * _FREQUENCY_OFF:g} %, most that of mode {worst + 1}, "
-        f"{model.frequencies[worst]:.4g} Hz, by about {100.0 * errors[worst]:.2g} %, due to {cause}; {_remedy(name, body.recipe, cause)}"
+        f"{model.frequencies[worst]:.4g} Hz, by about {100.0 * errors[worst]:.2g} %, due to {cause}; {remedy}"
     )
 
 
-def _remedy(name: str, recipe: Recipe, cause: str) -> str:
+def _remedy(case: CaseTable, name: str, recipe: Recipe, cause: str) -> str:
     """Return the remedy for frequency errors by their main cause."""
     shape = recipe.shape
     if cause == THEORY and is_thin(recipe):
@@ -158,9 +160,12 @@ def _remedy(name: str, recipe: Recipe, cause: str) -> str:
         return f'take {name}.element = "solid"'
     if isinstance(shape, SphereOfSolids):
         return f"give {name}.mesh.elements_across = {2 * math.ceil(0.75 * shape.elements_across)}"
+    elements = getattr(getattr(case, name).mesh, "elements", None)
+    if elements:  # their size follows
+        return f"give {name}.mesh.elements = {math.ceil(_FINER ** (2 if getattr(case, name).mesh.layers else 3) * elements)}"
     size = getattr(shape, "element_size", 0.0)
     splits = f", or {name}.mesh.splits = {shape.splits + 1}" if isinstance(shape, PlateOfSolids) else ""
-    return f'give {name}.mesh.element_size = "{1e3 * size / 1.5:.3g} mm"{splits}'
+    return f'give {name}.mesh.element_size = "{1e3 * size / _FINER:.3g} mm"{splits}'
 
 
 def _doubts_of_materials(case: CaseTable, name: str, body: ElasticBody, model: ModalModel) -> Iterator[str]:

@@ -60,6 +60,12 @@ class HertzEstimate:
         return float(self._conditions.mass)
 
     @property
+    def gravity(self) -> float:
+        """Acceleration of gravity along the normal of the plate [m/s^2]."""
+        inclination = self.case["plate"].get("inclination") or 0.0
+        return float(self.case["drop"]["gravity"] * math.cos(inclination))
+
+    @property
     def _upward(self) -> float:
         """Velocity along the normal at the start [m/s], upwards; zero if it falls from rest."""
         velocity = self.case["drop"].get("velocity")
@@ -73,13 +79,13 @@ class HertzEstimate:
             return float(drop["speed"])
         if drop.get("height") is None:
             return -self._upward
-        return float(np.sqrt(self._upward**2 + 2.0 * drop["gravity"] * max(drop["height"] - self.radius, 0.0)))
+        return float(np.sqrt(self._upward**2 + 2.0 * self.gravity * max(drop["height"] - self.radius, 0.0)))
 
     @property
     def touch(self) -> float:
-        """Time of the first touch [s]."""
+        """Time of the first touch of a plate that is not moved [s]."""
         drop = self.case["drop"]
-        return 0.0 if drop.get("height") is None else (self._upward + self.speed) / drop["gravity"]
+        return 0.0 if drop.get("height") is None else (self._upward + self.speed) / self.gravity
 
     @cached_property
     def stiffness(self) -> float:

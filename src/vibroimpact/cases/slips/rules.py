@@ -186,6 +186,7 @@ def gravitational_acceleration(estimate: HertzEstimate, table: Mapping[str, Any]
 def run_duration(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
     """Return the range of the duration of a run, which ends after the first contact at the earliest."""
     touch, lasts = estimate.touch, float(np.nan_to_num(estimate.contact_time))
+    moving = bool(estimate.case["plate"].get("motion"))  # it is touched at another time
 
     def below(value: float) -> str:
         if value < touch:
@@ -193,13 +194,13 @@ def run_duration(estimate: HertzEstimate, table: Mapping[str, Any]) -> Plausible
         return f"is over before the first contact is, which ends at about {touch + lasts:.6g} s"
 
     return PlausibleRange(
-        low=touch + lasts,
+        low=0.0 if moving else touch + lasts,
         high=1000.0,
         below=below,
         above="is far longer than a sphere bounces",
         reference=touch + lasts,
         within=500.0,
-        remedy=lambda value: f"give {_rounded_up(touch + lasts)} s or more" if value < touch + lasts else "",
+        remedy=lambda value: f"give {_rounded_up(touch + lasts)} s or more" if value < touch + lasts and not moving else "",
     )
 
 
