@@ -18,7 +18,7 @@ from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.dynamics.tabulate import tabulate
 
-_TOLERANCE = 1e-11
+_TOLERANCE = 1e-11  # with a smaller one the impacts are followed one by one
 AT_ONCE = 4000
 """Impacts that are computed together: more take memory and no less time."""
 

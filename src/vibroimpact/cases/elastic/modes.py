@@ -160,9 +160,10 @@ def _remedy(case: CaseTable, name: str, recipe: Recipe, cause: str) -> str:
         return f'take {name}.element = "solid"'
     if isinstance(shape, SphereOfSolids):
         return f"give {name}.mesh.elements_across = {2 * math.ceil(0.75 * shape.elements_across)}"
-    elements = getattr(getattr(case, name).mesh, "elements", None)
-    if elements:  # their size follows
-        return f"give {name}.mesh.elements = {math.ceil(_FINER ** (2 if getattr(case, name).mesh.layers else 3) * elements)}"
+    mesh = getattr(case, name).mesh
+    if getattr(mesh, "elements", None):  # their size follows
+        directions = 2 if mesh.layers else 3
+        return f"give {name}.mesh.elements = {math.ceil(_FINER**directions * mesh.elements)}"
     size = getattr(shape, "element_size", 0.0)
     splits = f", or {name}.mesh.splits = {shape.splits + 1}" if isinstance(shape, PlateOfSolids) else ""
     return f'give {name}.mesh.element_size = "{1e3 * size / _FINER:.3g} mm"{splits}'

@@ -186,7 +186,8 @@ def gravitational_acceleration(estimate: HertzEstimate, table: Mapping[str, Any]
 def run_duration(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
     """Return the range of the duration of a run, which ends after the first contact at the earliest."""
     touch, lasts = estimate.touch, float(np.nan_to_num(estimate.contact_time))
-    moving = bool(estimate.case["plate"].get("motion"))  # it is touched at another time
+    # a plate that is moved is touched at another time
+    earliest = 0.0 if estimate.case["plate"].get("motion") else touch + lasts
 
     def below(value: float) -> str:
         if value < touch:
@@ -194,13 +195,13 @@ def run_duration(estimate: HertzEstimate, table: Mapping[str, Any]) -> Plausible
         return f"is over before the first contact is, which ends at about {touch + lasts:.6g} s"
 
     return PlausibleRange(
-        low=0.0 if moving else touch + lasts,
+        low=earliest,
         high=1000.0,
         below=below,
         above="is far longer than a sphere bounces",
         reference=touch + lasts,
         within=500.0,
-        remedy=lambda value: f"give {_rounded_up(touch + lasts)} s or more" if value < touch + lasts and not moving else "",
+        remedy=lambda value: f"give {_rounded_up(earliest)} s or more" if value < earliest else "",
     )
 
 
