@@ -65,7 +65,8 @@ def find_root(function: Callable[[Array], Array], low: Array, high: Array, *, to
         width = np.abs(far - new)
         least = tolerance * np.maximum(np.abs(new), np.abs(far))
         zero = np.minimum(np.abs(new_value), np.abs(far_value)) < close
-        if not np.any((width > least) & ~zero):
+        close_by = ~(width > least)
+        if not np.any(~close_by & ~zero):
             break
         with np.errstate(all="ignore"):
             across, up = (new - far) / (old - far), (new_value - far_value) / (old_value - far_value)
@@ -74,6 +75,7 @@ def find_root(function: Callable[[Array], Array], low: Array, high: Array, *, to
             part += (old - new) / (far - new) * new_value / (old_value - new_value) * far_value / (old_value - far_value)
             edge = np.minimum(least / width, 0.5)
         part = np.where(curved & np.isfinite(part), np.clip(part, edge, 1.0 - edge), 0.5)
+        part = np.where(close_by, 0.0, part)  # whatever the others still need
         part = np.where(zero, np.where(np.abs(new_value) <= np.abs(far_value), 0.0, 1.0), part)  # a root found stays
     nearer = np.abs(new_value) <= np.abs(far_value)
     zero = np.minimum(np.abs(new_value), np.abs(far_value)) < close

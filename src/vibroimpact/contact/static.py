@@ -47,9 +47,9 @@ def undamped_depth(law: CompliantLaw, energy: Array, weight: Array) -> Array:
 
     def work_and_power(delta: Array) -> tuple[Array, Array]:
         work = static_work(law, delta)
-        return work, delta * _force(law, delta) / work
+        return work, (delta - touch) * _force(law, delta) / work
 
-    return _solve(work_and_power, lambda delta: energy + weight * (delta - touch), touch, 1e-3)
+    return _solve(work_and_power, lambda delta: energy + weight * (delta - touch), touch, 1e-3, origin=touch)
 
 
 def _force(law: CompliantLaw, delta: Array) -> Array:
@@ -61,10 +61,12 @@ def static_work(law: CompliantLaw, delta: Array) -> Array:
     return law.elastic_energy(delta) + law.plastic_work(delta) if law.yields else law.elastic_energy(delta)
 
 
-def _solve(function: Callable[[Array], tuple[Array, Array]], wanted: Callable[[Array], Array], least: Array, within: float) -> Array:
+def _solve(
+    function: Callable[[Array], tuple[Array, Array]], wanted: Callable[[Array], Array], least: Array, within: float, origin: Array = 0.0
+) -> Array:
     """Return the indentation, at least `least`, at which an increasing function of it has the value `wanted`.
 
-    `function` returns the value and an estimate of the local exponent d ln(value) / d ln(delta): the iteration is exact after one
+    `function` returns the value and an estimate of the local exponent d ln(value) / d ln(delta - origin): the iteration is exact after one
     step for a power law. Where it does not converge, the root is bracketed.
     """
 
@@ -75,11 +77,12 @@ def _solve(function: Callable[[Array], tuple[Array, Array]], wanted: Callable[[A
     delta, unloaded = least + 1e-6, wanted(least) <= 0.0
     with np.errstate(all="ignore"):
         # fixed-point iteration with the local exponent
+        converged = np.zeros(np.shape(delta), dtype=bool)
         for _ in range(30):
             value, power = function(delta)
             step = (wanted(delta) / value) ** (1.0 / power)
-            delta = delta * np.where(unloaded, 1.0, step)
-            converged = np.abs(step - 1.0) < within
+            delta = origin + (delta - origin) * np.where(unloaded | converged, 1.0, step)  # whatever the others still need
+            converged |= np.abs(step - 1.0) < within
             if np.all(converged | unloaded | ~np.isfinite(delta)):
                 break
         # where it failed, the bracket is extended by factors of four from `least` until it holds the root
