@@ -25,6 +25,7 @@ from vibroimpact.compiler.function_values import (
     interpreted_function,
     law_coefficients,
     levels_at,
+    multiply_row,
 )
 from vibroimpact.compiler.marks import Function, scalar, scalar_as
 
@@ -37,6 +38,7 @@ __all__ = [
     "law_coefficients",
     "law_function",
     "levels_at",
+    "multiply_row",
     "scalar",
     "scalar_as",
     "why_not_compiled",

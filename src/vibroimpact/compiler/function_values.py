@@ -55,6 +55,27 @@ def compressed_at(address: Any) -> Any:
     return address
 
 
+def multiply_row(room: Any, values: Any, matrices: Any, matrix: Any, width: Any, product: Any) -> None:
+    """Write the product of a row of an array with a matrix into another row; for use in compiled functions.
+
+    Parameters
+    ----------
+    room : array, shape (R, M)
+        Holds both rows.
+    values : int
+        Number of the row that is multiplied.
+    matrices : array, shape (K, M, M)
+        Matrices with a column for each element of the product.
+    matrix : int
+        Number of the one.
+    width : int
+        How much of rows and matrix is used, a multiple of eight.
+    product : int
+        Number of the row that is written, another one.
+    """
+    room[product, :width] = room[values, :width] @ matrices[matrix, :width, :width]
+
+
 def law_coefficients(law: Any) -> Floats:
     """Return the coefficients of a contact law for its functions.
 

@@ -175,6 +175,9 @@ def _register() -> None:
             of_address = getattr(intrinsics, f"{kind}_of_address")
             _REPLACED[at] = getattr(of_address, "_defn", at)
             overload(at)(_inserting(of_address))
+        multiply = function_values.multiply_row
+        _REPLACED[multiply] = getattr(intrinsics.product_of_rows, "_defn", multiply)
+        overload(multiply)(_multiplying)
     for function, of_floats in SCALAR:
         if function in _REPLACED:
             continue
@@ -187,6 +190,10 @@ def _inserting(of_address: Any) -> Callable[..., Any]:
         return lambda address: of_address(address)
 
     return replacement
+
+
+def _multiplying(room, values, matrices, matrix, width, product):  # type: ignore[no-untyped-def]
+    return lambda room, values, matrices, matrix, width, product: intrinsics.product_of_rows(room, values, matrices, matrix, width, product)
 
 
 def _fields(kind: Any) -> str:

@@ -23,9 +23,9 @@ _HISTORY = 100.0  # factor between the tolerance of impacts and that of contacts
 def simulate(problem: StatesProblem, progress: Callable[[float], None] | None = None) -> Response:
     """Return the response of a sphere that falls and bounces until a stop rule.
 
-    Flight is exact. The contact of a single drop is followed in steps of order 8, in a variable in which the force is smooth; each event is
-    the end of a step. The contacts of a batch, and oblique ones, are solved together by Gauss collocation in the phase plane, speed over
-    indentation, of order 39 at the default tolerance; those for which that does not come out are followed one by one. Bodies that have
+    Flight is exact. A contact is solved by Gauss collocation of whole phases, speed over indentation, or, where that does not come out to
+    the tolerance, in steps of order 8, in a variable in which the force is smooth; histories are read in such steps. The motion
+    that drives friction is collocated for many drops together. Bodies that have
     modes vibrate: between contacts exactly, and the next touch is the first meeting with the surface as it moves.
 
     Parameters

@@ -10,36 +10,53 @@ from vibroimpact.dynamics.core.law import law_at_touch, law_remembering
 from vibroimpact.dynamics.core.line import follow_line, line_under
 from vibroimpact.dynamics.core.line_records import Line, LineManner, LineState, LineSteps
 from vibroimpact.dynamics.core.line_step import FREE, IMPLICIT, advance, energies_of
+from vibroimpact.dynamics.core.phase_contact import collocate_contact
+from vibroimpact.dynamics.core.phase_records import ROWS, PhaseRules
 from vibroimpact.dynamics.core.records import Law
 
 _MOST_ITERATIONS = 60
 _NEAR = 4e-16  # of the time since touch
 
 
-@compiled(lambda t: t.of(LineManner)(t.of(LineManner), t.vector))
-def with_bodies(manner: LineManner, touch: Floats) -> LineManner:
-    """Return what stays the same through the contact of two bodies; `touch` (5,): as in `follow_lines`."""
+@compiled(lambda t: t.of(LineManner)(t.of(LineManner), t.matrix, t.integer))
+def with_bodies(manner: LineManner, touches: Floats, pair: int) -> LineManner:
+    """Return what stays the same through the contact of a pair of bodies; `touches` (5, B): as in `follow_lines`."""
     return LineManner(
         manner.root,
         manner.tension,
         manner.contact_end,
-        touch[0],
-        touch[1],
-        touch[3],
-        touch[4],
+        touches[0, pair],
+        touches[1, pair],
+        touches[3, pair],
+        touches[4, pair],
         manner.tolerance,
         manner.most_steps,
     )
 
 
-@compiled(lambda t: t.void(t.of(LineManner), t.integers, t.matrix, t.matrix, t.integers, t.matrix))
-def follow_lines(manner: LineManner, addresses: Integers, coefficients: Floats, touches: Floats, outcomes: Integers, ends: Floats) -> None:
-    """Follow the contacts of B pairs of rigid bodies, each from touch on.
+@compiled(
+    lambda t: t.void(t.of(LineManner), t.of(PhaseRules), t.boolean, t.integers, t.matrix, t.matrix, t.integers, t.matrix),
+)
+def follow_lines(
+    manner: LineManner,
+    rules: PhaseRules,
+    collocates: bool,
+    addresses: Integers,
+    coefficients: Floats,
+    touches: Floats,
+    outcomes: Integers,
+    ends: Floats,
+) -> None:
+    """Solve the contacts of B pairs of rigid bodies, each from touch on: by collocation, or step by step where that does not come out.
 
     Parameters
     ----------
     manner : LineManner
         What all have in common; the bodies of each pair take the place of those in it.
+    rules : PhaseRules
+        The Gauss rules of the collocation.
+    collocates : bool
+        Is it tried?
     addresses : array of int, shape (4,)
         The functions of their law.
     coefficients : array, shape (B, K)
@@ -52,10 +69,17 @@ def follow_lines(manner: LineManner, addresses: Integers, coefficients: Floats, 
         Room for duration [s], indentation [m] and its rate at the end [m/s], energy lost in damping [J], deepest indentation [m] and its
         time [s], largest force [N] and its time [s], plastic work and stored energy [J].
     """
+    room = np.zeros((ROWS, rules.vectors.shape[2]))
+    series = np.zeros(7)
     steps = LineSteps(np.zeros(0, np.int64), np.zeros(0, np.bool_), np.zeros((0, 4)), np.zeros(0), np.zeros(1, np.int64))
     for pair in range(len(outcomes)):
-        law = law_at_touch(addresses, coefficients[pair], np.zeros(7), touches[2, pair])
-        contact = follow_line(law, with_bodies(manner, touches[:, pair].copy()), steps)
+        law = law_at_touch(addresses, coefficients[pair], series, touches[2, pair])
+        bodies = with_bodies(manner, touches, pair)
+        solved = False
+        if collocates:
+            solved, contact = collocate_contact(law, bodies, rules, room)
+        if not solved:
+            contact = follow_line(law, bodies, steps)
         outcomes[pair] = contact.outcome
         ends[0, pair] = contact.end.time
         ends[1, pair] = contact.end.delta

@@ -3,14 +3,14 @@
 The compression phase is solved up to the largest indentation, then the restitution phase with the law's memory of it, each in segments
 between the indentations where the force is not smooth (`collocation`). Where the force of a law without tension becomes zero in
 restitution, the contact ends, or the sphere moves freely within the indentation until the law pushes again. Contacts that are not solved
-to the tolerance here, and those of a single drop, are followed by the core (`rigid.line_contact`).
+to the tolerance here, and all that are not oblique, are solved by the core (`rigid.line_contact`).
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Self
 
 import numpy as np
@@ -41,8 +41,8 @@ _INSIDE = 300.0  # tolerances: bound of the last coefficients of a phase that en
 def solver_for(problem: Problem, *, finer: float = 1.0) -> SolvesContact:
     """Return the solver of contacts of rigid bodies for the drops of a problem.
 
-    A single drop along the normal is followed by the core. Others are solved together, and the oblique ones on a grid that is the same for
-    one drop as for many.
+    The core solves them one after the other. The motion that drives the friction of oblique drops is solved together, on a grid that is the
+    same for one drop as for many.
 
     Parameters
     ----------
@@ -51,10 +51,16 @@ def solver_for(problem: Problem, *, finer: float = 1.0) -> SolvesContact:
     finer : float
         Factor by which the error is reduced where histories are read within the contacts.
     """
-    size = math.prod(problem.shape)
-    if size == 1 and problem.oblique is None:
-        return followed(problem.tolerance)
-    return contact_solver(problem.laws[0], problem.tolerance, size, finer=finer)
+    one_by_one = followed(problem.tolerance)
+    if problem.oblique is None:
+        return one_by_one
+    together = contact_solver(problem.laws[0], problem.tolerance, math.prod(problem.shape), finer=finer)
+
+    def solve(encounter: Encounter, drops: Drops) -> tuple[Contact, Floats, Floats]:
+        contact, force, when = one_by_one(encounter, drops)
+        return replace(contact, pieces=together(encounter, drops)[0].pieces), force, when
+
+    return solve
 
 
 def contact_solver(law: ContactLaw, tolerance: float, size: int, *, finer: float = 1.0) -> SolvesContact:

@@ -1,7 +1,9 @@
-"""Contacts of rigid bodies, followed by the core one drop after the other, and the motion within them."""
+"""Contacts of rigid bodies, solved by the core one drop after the other, and the motion within them."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
@@ -20,11 +22,14 @@ from vibroimpact.dynamics.core.line_step import BY_ROOT, FREE
 from vibroimpact.dynamics.core.lines import follow_lines, read_line, time_line
 from vibroimpact.dynamics.core.records import Law
 from vibroimpact.dynamics.encounter import Encounter
+from vibroimpact.dynamics.rigid.phase_rules import phase_rules
 
 _OUTCOMES = np.array([RELEASED, CAPTURED, FAILED], dtype=np.int8)
 _MOST_STEPS = 1_000_000  # the stiffest sensible contacts need thousands
 _ROOM = 200  # steps of a contact, at first
 _PARTS = 4  # of a step in a history
+_TIGHTEST = 1e-11  # a smaller tolerance is too close to rounding for collocation
+_LOOSEST = 1e-9  # at a larger one, which costs hardly less, the largest force would be less exact than it is taken to be
 _NO_COMPLIANCE = np.zeros(7)
 _OF_STEP = 0.01  # of the tolerance: error of a step, of which a contact has some dozens
 _LEAST_ERROR = 1e-14
@@ -44,9 +49,11 @@ def follow_contacts(encounter: Encounter, tolerance: float) -> tuple[Contact, Fl
     law, size = encounter.law, len(encounter.mass)
     touches = np.array([encounter.mass, encounter.gravity, encounter.approach_speed, encounter.depth, encounter.speed_scale])
     outcomes, ends = np.zeros(size, dtype=np.int64), np.zeros((10, size))
-    laws = [law.take(drop) for drop in range(size)]  # kept: compiled code may call them
-    coefficients = np.array([law_coefficients(one) for one in laws])
-    follow_lines(_manner(encounter, 0, tolerance), law_addresses(type(law)), coefficients, touches, outcomes, ends)
+    collocates = tolerance >= _TIGHTEST and law.contact_end != "pull-off"
+    rules = phase_rules(law.root, min(max(tolerance, _TIGHTEST), _LOOSEST))
+    with _coefficients(law, size) as coefficients:
+        addresses = law_addresses(type(law))
+        follow_lines(_manner(encounter, 0, tolerance), rules, collocates, addresses, coefficients, touches, outcomes, ends)
     duration, final_delta, final_rate, dissipated, deepest, time_of_deepest, peak_force, time_of_peak, plastic, stored = ends
     after = law.after_compression(deepest)
     pieces = [Piece(np.arange(size), np.zeros(size), LineMotion(encounter, tolerance, "compression", time_of_deepest), law)]
@@ -194,6 +201,19 @@ class RecordedContact:
         within = starts[(variables[:-1] == BY_ROOT) | (variables[:-1] == FREE) | (variables[1:] == FREE)]
         times = np.unique(np.append(within, self.contact.time_of_deepest))
         return np.concatenate([[0.0], times[(times > _ON_CORNER * end) & (times < (1.0 - _ON_CORNER) * end)], [end]])
+
+
+@contextmanager
+def _coefficients(law: CompliantLaw, size: int) -> Iterator[Floats]:
+    """Give the coefficients of a law for each of B drops (B, K); laws without functions of floats are kept as long as they are used."""
+    if type(law).missing_functions():
+        laws = [law.take(drop) for drop in range(size)]
+        yield np.array([law_coefficients(one) for one in laws])
+        return
+    coefficients = np.zeros((size, len(law.coefficients)))
+    for number, values in enumerate(law.coefficients):
+        coefficients[:, number] = values
+    yield coefficients
 
 
 def _manner(encounter: Encounter, drop: int, tolerance: float) -> records.LineManner:

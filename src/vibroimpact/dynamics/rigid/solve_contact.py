@@ -1,4 +1,4 @@
-"""The interface of contact solvers of rigid bodies, and the one that follows each drop on its own."""
+"""The interface of contact solvers of rigid bodies, and the one that solves each drop on its own."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class SolvesContact(Protocol):
 
 
 def followed(tolerance: float) -> SolvesContact:
-    """Return the solver that follows each drop on its own, whatever its law."""
+    """Return the solver that solves each drop on its own, whatever its law."""
 
     def solve(encounter: Encounter, drops: Drops) -> tuple[Contact, Floats, Floats]:
         from vibroimpact.dynamics.rigid.line_contact import follow_contacts  # a law without a force does not load the compiler

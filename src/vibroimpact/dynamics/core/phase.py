@@ -1,0 +1,291 @@
+r"""A segment of a phase of the contact of two rigid bodies, collocated as a whole: the speed over the indentation.
+
+A phase, compression or restitution, is divided where the force is not smooth. In a segment y goes from 0 at its deep end to 1 at its
+shallow one, and the indentation is :math:`\delta = \delta_1 + (\delta_0 - \delta_1)\, s(y)`, with :math:`s = 1 - y^2`, so that it is smooth
+in y also just beyond a point where the speed is zero; that is raised to the power p, the root of the law, in a segment that ends at touch.
+The square of the speed, :math:`w = f^2 u` with f = y in a segment where the speed becomes zero and f = 1 else, is smooth in y throughout.
+It is collocated at N Gauss nodes, with the acceleration a:
+
+.. math:: \frac{dw}{dy} = 2 a(\delta, \pm\sqrt w)\, \frac{d\delta}{dy} = f\, G(y),
+          \qquad u(y) = \frac1{f^2} \left(w(0) + \int_0^y f\, G(z)\, dz\right)
+
+which is of order 2N - 1 at y = 1 (Hairer, Lubich and Wanner 2006, section II.1), and so is the time, :math:`dt = d\delta/\sqrt w`.
+"""
+
+from __future__ import annotations
+
+import math
+
+from vibroimpact.arrays import Floats
+from vibroimpact.compiled import compiled, energies_at, force_at, multiply_row
+from vibroimpact.dynamics.core.line_records import Line
+from vibroimpact.dynamics.core.phase_records import (
+    AT_TOUCH_INWARD,
+    BEFORE_LAST,
+    BY_DEPTH,
+    BY_LENGTH,
+    BY_SQUARE,
+    CHANGE,
+    DEFECT,
+    FACTOR,
+    FALL,
+    GROWTH,
+    KINDS,
+    LAST,
+    LOSS,
+    PACE,
+    PER_FACTOR,
+    RATE,
+    REACHED,
+    SHAPE,
+    SHRUNK,
+    SLOPE,
+    SQUARE,
+    STATIC,
+    SUMMAND,
+    WEIGHT,
+    Phase,
+    PhaseRules,
+    Segment,
+)
+
+_SWEEPS = 12
+_FRESH = 2  # sweeps with derivatives of their own, after which they change too little to matter
+_CLOSE = 0.1  # of the tolerance: defect of a solution
+_ROUNDING = 1e-13
+_FAST = 1e-2  # of the defect before: one that falls so fast is about to vanish
+_DOUBT = 2.0  # times as much as it seems may be left of it
+_SHORTER, _LONGER = -0.5, 0.35  # bounds of the change of the logarithm of a length in one sweep
+_LEAST = 1e-3  # of the square of the approach speed: starting value of u
+_LEAST_OF_BEFORE = 0.1  # of u, in one sweep
+_OF_WORK = 0.05  # of the tolerance: error of the static work
+
+
+@compiled(lambda t: t.tuple(t.real, t.real, t.real, t.real)(t.of(Line), t.of(PhaseRules), t.of(Segment), t.matrix))
+def start_phase(line: Line, rules: PhaseRules, segment: Segment, room: Floats) -> tuple[float, float, float, float]:
+    r"""Write starting values of u, and return the length [m], the powers of the indentation with which both forces grow, and the potential
+    at the shallow end [J].
+
+    Under a force :math:`F_s (1 + D\, \dot\delta/v)`, with the approach speed v, the square of the speed x v changes nearly as the static
+    work over :math:`1 + \tfrac23 D x`, which is solved for x; D is taken from the forces in the middle of the segment.
+    """
+    force = force_at(line.force)
+    energies = energies_at(line.energies)
+    coefficients = line.coefficients
+    vectors = rules.vectors
+    speed = line.speed
+    shallow = segment.shallow
+    span = segment.deep - shallow
+    sign = segment.sign
+    weight = line.mass * line.gravity
+    touch = speed * speed
+    middle_rate = 0.7 * sign * speed
+    static, loss = force(shallow + 0.5 * span, middle_rate, speed, coefficients)
+    damping = max(loss / static * (sign / 1.05), 0.0)
+    elastic, plastic = energies(shallow, coefficients)
+    low = elastic + plastic - weight * shallow
+    elastic, plastic = energies(shallow + span, coefficients)
+    high = elastic + plastic - weight * (shallow + span)
+    known = math.sqrt(max(segment.begun, segment.wanted)) / speed
+    begun = known * known / (1.0 + sign * damping * known)
+    by_work = 2.0 / (line.mass * touch)
+    static_power = 0.0
+    loss_power = 0.0
+    if segment.wanted > 0.0:
+        static_deeper, loss_deeper = force(shallow + 0.55 * span, middle_rate, speed, coefficients)
+        static_power = 21.0 * (static_deeper - static) / (static_deeper + static)
+        if loss > 0.0:
+            loss_power = 21.0 * (loss_deeper - loss) / (loss_deeper + loss)
+        span *= (begun / (by_work * (high - low))) ** (1.0 / (1.0 + max(static_power, 0.0)))
+        elastic, plastic = energies(shallow + span, coefficients)
+        high = elastic + plastic - weight * (shallow + span)
+        by_work = begun / (high - low)
+        begun = 0.0
+    elif sign > 0.0:
+        high = low
+    vector = segment.kind
+    width = (rules.counts[0] + 8) // 8 * 8
+    for node in range(width):
+        delta = shallow + span * vectors[vector, SHAPE, node]
+        elastic, plastic = energies(delta, coefficients)
+        room[SQUARE, node] = elastic + plastic - weight * delta
+    for node in range(width):
+        undamped = max(begun + by_work * (high - room[SQUARE, node]), 0.0)
+        damped = sign * damping * undamped
+        damped += math.sqrt(damped * damped + 4.0 * undamped)
+        per_factor = vectors[vector, PER_FACTOR, node]
+        room[SQUARE, node] = touch * max(0.25 * damped * damped * (per_factor * per_factor), _LEAST)
+    return span, static_power, loss_power, low
+
+
+@compiled(lambda t: t.of(Phase)(t.of(Line), t.of(PhaseRules), t.of(Segment), t.real, t.matrix))
+def solve_phase(line: Line, rules: PhaseRules, segment: Segment, roughness: float, room: Floats) -> Phase:
+    r"""Solve a segment of a phase by Newton's method, with more nodes until it is resolved.
+
+    With d the residual of u, the linearised equation for its correction e is scalar, and is solved by quadrature:
+
+    .. math:: e = d + M \int_0^y \frac{J d}{M} dz,\qquad M = \exp \int_0^y J\, dz,\qquad J = -\frac{d\delta}{dy}\, \frac{F_d}{m w}
+
+    for a dissipative force F_d proportional to the indentation rate, as nearly all are; for others it takes more iterations. Where the
+    deep end is sought, the logarithm of the length is corrected as well, so that the speed at the shallow end is the one wanted.
+
+    Parameters
+    ----------
+    line : Line
+        The bodies and their law.
+    rules : PhaseRules
+        The Gauss rules.
+    segment : Segment
+        The segment.
+    roughness : float
+        The last Legendre coefficients allowed.
+    room : array, shape (17, M)
+        Room; the motion stays in it.
+    """
+    force = force_at(line.force)
+    energies = energies_at(line.energies)
+    vectors = rules.vectors
+    matrices = rules.matrices
+    coefficients = line.coefficients
+    speed = line.speed
+    sign = segment.sign
+    shallow = segment.shallow
+    begun = segment.begun
+    touch = speed * speed
+    weight = line.mass * line.gravity
+    worked = _OF_WORK * rules.tolerance * line.mass * touch
+    gravity = 2.0 * line.gravity
+    per_mass = 1.0 / line.mass
+    is_sought = segment.wanted > 0.0
+    close = max(_CLOSE * rules.tolerance, _ROUNDING) * touch
+    span, static_power, loss_power, low = start_phase(line, rules, segment, room)
+    static_part = -2.0 * per_mass * (1.0 + static_power)
+    loss_part = -2.0 * per_mass * (1.0 + loss_power)
+    rule = 0
+    vector = segment.kind
+    matrix = 2 * segment.kind
+    count = rules.counts[0]
+    width = (count + 8) // 8 * 8
+    for row in (STATIC, LOSS, RATE, DEFECT, BY_SQUARE, SUMMAND, SLOPE, BY_LENGTH, BY_DEPTH):
+        for node in range(count, width):
+            room[row, node] = 0.0
+    before = 0.0
+    sweep = 0
+    solved_span = span
+    duration = 0.0
+    work = 0.0
+    rough = math.inf
+    solved = False
+    high = low
+    is_lossy = False
+    for _ in range(len(rules.counts) * _SWEEPS):
+        for node in range(count):
+            square = room[SQUARE, node]
+            slope = span * vectors[vector, FALL, node]
+            rate = sign * vectors[vector, FACTOR, node] * math.sqrt(square)
+            static, loss = force(shallow + span * vectors[vector, SHAPE, node], rate, speed, coefficients)
+            by_square = -per_mass * loss * slope / square
+            room[STATIC, node] = static
+            room[LOSS, node] = loss
+            room[SLOPE, node] = slope
+            room[RATE, node] = (gravity - 2.0 * per_mass * (static + loss)) * slope
+            room[BY_SQUARE, node] = by_square
+            room[SUMMAND, node] = by_square * vectors[vector, PER_FACTOR, node]
+            room[BY_LENGTH, node] = (static_part * static + loss_part * loss + gravity) * slope
+        multiply_row(room, RATE, matrices, matrix, width, REACHED)
+        missing = segment.wanted - room[REACHED, count] if is_sought else 0.0
+        apart = abs(missing)
+        for node in range(count + 1):
+            defect = begun + room[REACHED, node] - room[SQUARE, node]
+            room[DEFECT, node] = defect
+            apart = max(apart, abs(defect))
+        if not apart < math.inf:
+            break
+        settled = apart <= close or (apart <= _FAST * before and _DOUBT * apart * (apart / before) <= close)
+        before = apart
+        solved_span = span
+        if sweep < _FRESH:
+            multiply_row(room, SUMMAND, matrices, matrix + 1, width, GROWTH)
+            for node in range(width):  # the exponential, as closely as Newton's method needs it
+                part = 0.125 * room[GROWTH, node]
+                part = 1.0 + part * (1.0 + part * (1.0 / 2.0 + part * (1.0 / 6.0 + part * (1.0 / 24.0 + part * (1.0 / 120.0)))))
+                part *= part
+                part *= part
+                part *= part
+                room[GROWTH, node] = part
+                room[SHRUNK, node] = 1.0 / part
+        for node in range(width):
+            room[SUMMAND, node] = room[BY_SQUARE, node] * room[DEFECT, node] * room[SHRUNK, node]
+        multiply_row(room, SUMMAND, matrices, matrix, width, CHANGE)
+        longer = 0.0
+        if is_sought:  # derivative by the length, with forces taken as powers of the indentation
+            if sweep < _FRESH:
+                for node in range(width):
+                    room[SUMMAND, node] = room[BY_LENGTH, node] * room[SHRUNK, node]
+                multiply_row(room, SUMMAND, matrices, matrix, width, BY_DEPTH)
+            longer = (missing / room[GROWTH, count] - room[CHANGE, count]) / room[BY_DEPTH, count]
+            longer = min(max(longer, _SHORTER), _LONGER)
+            span *= 1.0 + longer if longer > 0.0 else math.exp(longer)
+        for node in range(width):
+            square = room[SQUARE, node]
+            change = room[DEFECT, node] + room[GROWTH, node] * (room[CHANGE, node] + longer * room[BY_DEPTH, node])
+            room[SQUARE, node] = max(square + change, _LEAST_OF_BEFORE * square)
+        sweep += 1
+        if not settled:
+            if sweep == _SWEEPS:
+                break
+            continue
+        for node in range(width):
+            room[PACE, node] = -room[SLOPE, node] / math.sqrt(room[SQUARE, node])
+        duration = 0.0
+        work = 0.0
+        rough_rate = 0.0
+        rough_rate_before = 0.0
+        rough_pace = 0.0
+        rough_pace_before = 0.0
+        is_lossy = False
+        for node in range(count):
+            pace = room[PACE, node]
+            rate = room[RATE, node]
+            duration += vectors[vector, WEIGHT, node] * pace
+            work -= vectors[vector, WEIGHT, node] * room[STATIC, node] * room[SLOPE, node] * vectors[vector, FACTOR, node]
+            rough_rate += vectors[vector, LAST, node] * rate
+            rough_rate_before += vectors[vector, BEFORE_LAST, node] * rate
+            rough_pace += vectors[vector, LAST, node] * pace
+            rough_pace_before += vectors[vector, BEFORE_LAST, node] * pace
+            is_lossy = is_lossy or room[LOSS, node] != 0.0
+        duration *= span / solved_span
+        rough = rules.sharper * max(abs(rough_rate), abs(rough_rate_before)) / touch
+        rough = max(rough, 2.0 * max(abs(rough_pace), abs(rough_pace_before)) / duration)
+        elastic, plastic = energies(shallow + solved_span, coefficients)
+        high = elastic + plastic - weight * (shallow + solved_span)
+        if rough <= roughness and abs(work - (high - low + weight * solved_span)) <= worked:
+            solved = True
+            break
+        if rule == len(rules.counts) - 1:
+            break
+        rule += 1
+        at_end = room[SQUARE, count]
+        vector += KINDS
+        matrix += 2 * KINDS
+        count = rules.counts[rule]
+        width = (count + 8) // 8 * 8
+        multiply_row(room, SQUARE, rules.onward, rule, width, SUMMAND)
+        for node in range(width):
+            room[SQUARE, node] = room[SUMMAND, node] if node < count else at_end
+        for row in (STATIC, LOSS, RATE, DEFECT, BY_SQUARE, SUMMAND, SLOPE, BY_LENGTH, BY_DEPTH):
+            for node in range(count, width):
+                room[row, node] = 0.0
+        before = 0.0
+        sweep = 0
+        rough = math.inf
+    deep = shallow + span
+    reached = segment.wanted if is_sought else room[SQUARE, count]
+    lost = 0.0
+    if is_lossy:  # what is missing in the balance of energy, which is more accurate than the work of the dissipative force
+        if is_sought:
+            elastic, plastic = energies(deep, coefficients)
+            high = elastic + plastic - weight * deep
+        gained = reached - begun if segment.kind < AT_TOUCH_INWARD else begun - reached
+        lost = sign * (0.5 * line.mass * gained - high + low)
+    return Phase(solved, rule, deep, reached, duration, lost, rough)

@@ -1,0 +1,391 @@
+"""The contact of two rigid bodies, collocated phase by phase, where that comes out to the tolerance.
+
+Compression is solved from the touch inwards between the breakpoints of the law, and then up to its deepest point, which is sought;
+restitution goes back through them. No event has to be located in time but the largest force, and the place where the force of a law
+that may not pull becomes zero.
+"""
+
+from __future__ import annotations
+
+import math
+
+from vibroimpact.arrays import Floats
+from vibroimpact.compiled import compiled, energies_at, force_at, multiply_row
+from vibroimpact.dynamics.core.events import ENDS_AT_NO_FORCE, TENSION_CUT
+from vibroimpact.dynamics.core.law import law_remembering
+from vibroimpact.dynamics.core.line import RELEASED, next_level
+from vibroimpact.dynamics.core.line_events import after_glide, end_of_glide, energy_to_part, narrowed, secant_of
+from vibroimpact.dynamics.core.line_records import Bracket, Line, LineContact, LineManner, LineState
+from vibroimpact.dynamics.core.line_step import energies_of, force_of
+from vibroimpact.dynamics.core.phase import solve_phase
+from vibroimpact.dynamics.core.phase_records import (
+    AT_TOUCH,
+    AT_TOUCH_INWARD,
+    BARYCENTRIC,
+    BETWEEN,
+    BETWEEN_INWARD,
+    ELAPSED,
+    KINDS,
+    LOSS,
+    PACE,
+    PLACE,
+    SHARE,
+    SQUARE,
+    STATIC,
+    TURNING,
+    TURNING_AT_TOUCH,
+    Phase,
+    PhaseRules,
+    Segment,
+)
+from vibroimpact.dynamics.core.records import Law
+
+_SEGMENTS = 3
+_SEGMENTS_BACK = 6  # as the law may push again after it has pulled
+_MARGIN = 5e-3  # of the depth: the depth is not certain to pass a breakpoint that is closer
+_ABOUT = 10.0  # tolerances of the depth: a breakpoint passed by less counts as not passed
+_LEAST_RESTITUTION = 0.1  # below it a pair may be captured
+_ON_LEVEL = 1e-14  # of the depth
+_ITERATIONS = 30
+_ASIDE = 1e-6  # of the span: step of finite differences
+_NEAR = 1e-5  # in y, of a step, after which the next one would be about its square
+_NEAR_ZERO = 1e-12
+_TINY = 1e-300  # so that a node has a distance from itself
+_NO_FORCE = 1e-11  # of the largest force
+
+
+@compiled(lambda t: t.real(t.of(Line), t.real))
+def potential_of(line: Line, delta: float) -> float:
+    """Return the static work of a law and of the weight [J] at an indentation [m]."""
+    elastic, plastic = energies_at(line.energies)(delta, line.coefficients)
+    return float(elastic + plastic - line.mass * line.gravity * delta)
+
+
+@compiled(lambda t: t.void(t.cube, t.integer, t.integer, t.real, t.matrix))
+def weigh(vectors: Floats, vector: int, count: int, y: float, room: Floats) -> None:
+    """Write the weights of the nodes and the far end in the value of a polynomial at y."""
+    width = (count + 8) // 8 * 8
+    for node in range(width):
+        room[SHARE, node] = vectors[vector, BARYCENTRIC, node] / (y - vectors[vector, PLACE, node] + _TINY)
+    even = 0.0
+    odd = 0.0
+    for node in range(0, count, 2):
+        even += room[SHARE, node]
+        odd += room[SHARE, node + 1]
+    whole = 1.0 / (even + odd)
+    for node in range(width):
+        room[SHARE, node] *= whole
+
+
+@compiled(lambda t: t.real(t.integer, t.integer, t.matrix))
+def weighed(count: int, values: int, room: Floats) -> float:
+    """Return the value of a polynomial where `weigh` has been called, from the row of its values in the room."""
+    even = 0.0
+    odd = 0.0
+    for node in range(0, count, 2):
+        even += room[SHARE, node] * room[values, node]
+        odd += room[SHARE, node + 1] * room[values, node + 1]
+    return even + odd
+
+
+@compiled(lambda t: t.of(LineState)(t.of(PhaseRules), t.of(Segment), t.of(Phase), t.real, t.matrix))
+def state_in(rules: PhaseRules, segment: Segment, phase: Phase, y: float, room: Floats) -> LineState:
+    """Return the state at y in a segment, with no time and no loss."""
+    kind = segment.kind
+    shape = 1.0 - y * y
+    if kind in (TURNING_AT_TOUCH, AT_TOUCH, AT_TOUCH_INWARD):
+        shape = shape * shape if rules.root == 2 else shape * shape * shape * shape
+    count = rules.counts[phase.rule]
+    weigh(rules.vectors, phase.rule * KINDS + kind, count, y, room)
+    square = max(weighed(count, SQUARE, room), 0.0)
+    factor = y if kind in (TURNING_AT_TOUCH, TURNING) else 1.0
+    delta = segment.shallow + (phase.deep - segment.shallow) * shape
+    return LineState(0.0, delta, segment.sign * factor * math.sqrt(square), 0.0)
+
+
+@compiled(lambda t: t.real(t.cube, t.cube, t.integer, t.integer, t.real, t.matrix))
+def elapsed_at(vectors: Floats, matrices: Floats, vector: int, count: int, y: float, room: Floats) -> float:
+    """Return the integral of the pace up to y [s], from the end of a segment where the motion is known."""
+    width = (count + 8) // 8 * 8
+    for node in range(count, width):
+        room[PACE, node] = 0.0
+    multiply_row(room, PACE, matrices, 2 * vector + 1, width, ELAPSED)
+    weigh(vectors, vector, count, y, room)
+    return weighed(count, ELAPSED, room)
+
+
+@compiled(lambda t: t.tuple(t.real, t.real)(t.of(Line), t.of(PhaseRules), t.of(Segment), t.of(Phase), t.matrix))
+def peak_in(line: Line, rules: PhaseRules, segment: Segment, phase: Phase, room: Floats) -> tuple[float, float]:
+    """Return the largest force within a segment of compression [N], and its time since the start of that [s]; none if at an end of it.
+
+    It is where the rate of change of the force is zero, by inverse quadratic interpolation within a bracket.
+    """
+    force = force_at(line.force)
+    coefficients = line.coefficients
+    vectors = rules.vectors
+    count = rules.counts[phase.rule]
+    vector = phase.rule * KINDS + segment.kind
+    turns = segment.kind in (TURNING_AT_TOUCH, TURNING)
+    power = rules.root if segment.kind in (TURNING_AT_TOUCH, AT_TOUCH_INWARD) else 1
+    speed = line.speed
+    release = line.release
+    gravity = line.gravity
+    per_mass = 1.0 / line.mass
+    shallow = segment.shallow
+    span = phase.deep - shallow
+    aside = _ASIDE * line.span
+    most = -math.inf
+    best = 0
+    for node in range(count):
+        highest = room[STATIC, node] + room[LOSS, node]
+        if highest > most:
+            most = highest
+            best = node
+    middle = vectors[vector, PLACE, best]
+    low = vectors[vector, PLACE, best - 1] if best > 0 else 0.0
+    high = vectors[vector, PLACE, best + 1] if best < count - 1 else 1.0
+    y = low
+    first = low
+    second = high
+    first_trend = 0.0
+    second_trend = 0.0
+    moved = math.inf
+    highest = -math.inf
+    when = 0.0
+    nodes_aside = (-1, 1, 0)
+    for step in range(_ITERATIONS):
+        node = best + nodes_aside[step] if step < 3 else -1
+        if 0 <= node < count:
+            square = room[SQUARE, node]
+        else:
+            weigh(vectors, vector, count, y, room)
+            square = max(weighed(count, SQUARE, room), 0.0)
+        shape = 1.0 - y * y
+        if power > 1:
+            shape *= shape
+        if power > 2:
+            shape *= shape
+        delta = shallow + span * shape
+        rate = math.sqrt(square) * (y if turns else 1.0)
+        static, loss = force(delta, rate, speed, coefficients)
+        highest = static + loss
+        if moved <= _NEAR:
+            break
+        faster = aside * (gravity - highest * per_mass)
+        static, loss = force(max(delta - aside * rate, release), rate - faster, speed, coefficients)
+        later_static, later_loss = force(delta + aside * rate, rate + faster, speed, coefficients)
+        trend = later_static + later_loss - static - loss
+        if step == 0:
+            first_trend = trend
+            y = high
+        elif step == 1:
+            second_trend = trend
+            y = middle
+            if not first_trend < 0.0 < second_trend:
+                break
+        elif trend == 0.0:
+            break
+        else:
+            if trend < 0.0:
+                low = y
+            else:
+                high = y
+            nearer = (
+                first * second_trend * trend / ((first_trend - second_trend) * (first_trend - trend))
+                + second * first_trend * trend / ((second_trend - first_trend) * (second_trend - trend))
+                + y * first_trend * second_trend / ((trend - first_trend) * (trend - second_trend))
+            )
+            if not low <= nearer <= high:
+                nearer = 0.5 * (low + high)
+            first = second
+            first_trend = second_trend
+            second = y
+            second_trend = trend
+            moved = abs(nearer - y)
+            y = nearer
+    if first_trend < 0.0 < second_trend or moved < math.inf:
+        elapsed = elapsed_at(vectors, rules.matrices, vector, count, y, room)
+        when = phase.duration - elapsed if segment.kind < AT_TOUCH_INWARD else -elapsed
+    else:
+        highest = -math.inf
+    return highest, when
+
+
+@compiled(lambda t: t.tuple(t.boolean, t.real)(t.of(Line), t.of(PhaseRules), t.of(Segment), t.of(Phase), t.boolean, t.matrix))
+def tension_in(line: Line, rules: PhaseRules, segment: Segment, phase: Phase, is_last: bool, room: Floats) -> tuple[bool, float]:
+    """Return whether it is certain where the force of a segment of restitution first pulls, and that y; infinite if it does not.
+
+    It is looked for at the nodes and the shallow end, and not certain if a parabola through three of them pulls between them.
+    """
+    count = rules.counts[phase.rule]
+    vector = phase.rule * KINDS + segment.kind
+    largest = 0.0
+    for node in range(count):
+        largest = max(largest, abs(room[STATIC, node] + room[LOSS, node]))
+    slack = _NO_FORCE * largest
+    before = 0.0
+    last = force_of(line, LineState(0.0, phase.deep, -math.sqrt(segment.begun), 0.0))
+    before_y = 0.0
+    last_y = 0.0
+    for node in range(count + 1):
+        y = rules.vectors[vector, PLACE, node]
+        if node < count:
+            force = room[STATIC, node] + room[LOSS, node]
+        else:
+            force = 0.0 if is_last else force_of(line, LineState(0.0, segment.shallow, -math.sqrt(phase.reached), 0.0))
+        if force < -slack:
+            bracket = Bracket(last_y, y, last, force, 0)
+            if node == 0 or not last > 0.0:
+                return False, 0.0
+            for _ in range(_ITERATIONS):
+                nearer = secant_of(bracket)
+                moved = abs(nearer - y)
+                y = nearer
+                force = force_of(line, state_in(rules, segment, phase, y, room))
+                if moved <= _NEAR_ZERO or force == 0.0 or y in (bracket.low, bracket.high):
+                    break
+                bracket = narrowed(bracket, y, force)
+            return True, y
+        if node > 0 and last < before and last <= force:
+            rise = (force - last) / (y - last_y)
+            fall = (before - last) / (last_y - before_y)
+            bend = (rise + fall) / (y - before_y)
+            slope = rise - bend * (y - last_y)
+            if last - 0.25 * slope * slope / bend < -slack:
+                return False, 0.0
+        before = last
+        before_y = last_y
+        last = force
+        last_y = y
+    return True, math.inf
+
+
+@compiled(lambda t: t.of(Line)(t.of(Law), t.of(LineManner)))
+def plain_line(law: Law, manner: LineManner) -> Line:
+    """Return the two bodies under a law, with its memory, without the errors that steps are allowed."""
+    return Line(
+        law.addresses[0],
+        law.addresses[1],
+        law.coefficients,
+        law.speed,
+        law.release,
+        manner.root,
+        manner.mass,
+        manner.gravity,
+        (manner.depth - law.release) / manner.speed_scale,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+    )
+
+
+@compiled(lambda t: t.tuple(t.boolean, t.of(LineContact))(t.of(Law), t.of(LineManner), t.of(PhaseRules), t.matrix))
+def collocate_contact(law: Law, manner: LineManner, rules: PhaseRules, room: Floats) -> tuple[bool, LineContact]:
+    """Return whether the contact of two rigid bodies is solved to the tolerance, and the contact.
+
+    Parameters
+    ----------
+    law : Law
+        Their law at touch, with its memory.
+    manner : LineManner
+        The bodies, and what stays the same.
+    rules : PhaseRules
+        The Gauss rules.
+    room : array, shape (17, M)
+        Room.
+    """
+    line = plain_line(law, manner)
+    touch = law.speed * law.speed
+    rounding = _ON_LEVEL * (manner.depth - law.release)
+    deepest = law.touch
+    square = touch
+    time = 0.0
+    lost = 0.0
+    peak_force = force_of(line, LineState(0.0, law.touch, law.speed, 0.0))
+    time_of_peak = 0.0
+    unsolved = LineContact(RELEASED, LineState(0.0, 0.0, 0.0, 0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    turned = False
+    for _ in range(_SEGMENTS):
+        level = next_level(law, deepest, True, rounding)
+        is_at_touch = deepest == law.touch
+        phase = Phase(False, 0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        segment = Segment(TURNING, 1.0, 0.0, 0.0, 0.0, 0.0)
+        if level < manner.depth - _MARGIN * (manner.depth - law.touch):
+            segment = Segment(AT_TOUCH_INWARD if is_at_touch else BETWEEN_INWARD, 1.0, level, deepest, square, 0.0)
+            phase = solve_phase(line, rules, segment, rules.roughness, room)
+        if not phase.solved:
+            segment = Segment(TURNING_AT_TOUCH if is_at_touch else TURNING, 1.0, manner.depth, deepest, 0.0, square)
+            phase = solve_phase(line, rules, segment, rules.roughness, room)
+            turned = True
+            if not phase.solved or phase.deep > level + _ABOUT * rules.tolerance * (phase.deep - law.touch):
+                return False, unsolved
+        highest, when = peak_in(line, rules, segment, phase, room)
+        if highest > peak_force:
+            peak_force = highest
+            time_of_peak = time + when
+        time += phase.duration
+        lost += phase.lost
+        deepest = phase.deep
+        square = 0.0 if turned else phase.reached
+        at_end = force_of(line, LineState(0.0, deepest, math.sqrt(square), 0.0))
+        if at_end > peak_force:
+            peak_force = at_end
+            time_of_peak = time
+        if turned:
+            break
+    if not turned:
+        return False, unsolved
+    time_of_deepest = time
+    plastic = energies_of(line, deepest)[1]
+    law = law_remembering(law, deepest)
+    line = plain_line(law, manner)
+    state = LineState(time, deepest, 0.0, lost)
+    least_energy = 0.5 * line.mass * (rules.tolerance * manner.speed_scale) ** 2
+    if energy_to_part(line, state) < least_energy or line.gravity >= force_of(line, state) / line.mass:
+        return False, unsolved
+    for _ in range(_SEGMENTS_BACK):
+        level = next_level(law, state.delta, False, _ABOUT * rules.tolerance * (deepest - law.release))
+        is_last = level == law.release
+        kind = TURNING if state.rate == 0.0 else BETWEEN
+        if is_last:
+            kind = TURNING_AT_TOUCH if state.rate == 0.0 else AT_TOUCH
+        segment = Segment(kind, -1.0, state.delta, level, state.rate * state.rate, 0.0)
+        ends_inside = manner.tension == TENSION_CUT and manner.contact_end == ENDS_AT_NO_FORCE
+        phase = solve_phase(line, rules, segment, rules.roughness_inside if ends_inside else rules.roughness, room)
+        if not phase.solved:
+            return False, unsolved
+        if manner.tension == TENSION_CUT:
+            certain, y = tension_in(line, rules, segment, phase, is_last, room)
+            if not certain:
+                return False, unsolved
+            if y < math.inf:
+                if phase.roughness > rules.roughness_inside:
+                    phase = solve_phase(line, rules, segment, rules.roughness_inside, room)
+                    if not phase.solved:
+                        return False, unsolved
+                    certain, y = tension_in(line, rules, segment, phase, is_last, room)
+                    if not (certain and y < math.inf):
+                        return False, unsolved
+                pulled = state_in(rules, segment, phase, y, room)
+                energy = 0.5 * line.mass * (pulled.rate * pulled.rate - state.rate * state.rate)
+                fallen = potential_of(line, state.delta) - potential_of(line, pulled.delta) - energy
+                vector = phase.rule * KINDS + kind
+                elapsed = elapsed_at(rules.vectors, rules.matrices, vector, rules.counts[phase.rule], y, room)
+                state = LineState(state.time + elapsed, pulled.delta, pulled.rate, state.lost + fallen)
+                if manner.contact_end != ENDS_AT_NO_FORCE:
+                    glide, pushes, stays = end_of_glide(line, state)
+                    if stays:
+                        return False, unsolved
+                    state = after_glide(line, state, glide, pushes)
+                    if pushes:
+                        continue
+                break
+        state = LineState(state.time + phase.duration, level, -math.sqrt(phase.reached), state.lost + phase.lost)
+        if is_last:
+            break
+    is_short = manner.tension == TENSION_CUT and manner.contact_end == ENDS_AT_NO_FORCE and state.delta == law.release
+    if is_short or not state.rate * state.rate > _LEAST_RESTITUTION * _LEAST_RESTITUTION * touch:
+        return False, unsolved
+    stored = energies_of(line, state.delta)[0]
+    return True, LineContact(RELEASED, state, deepest, time_of_deepest, peak_force, time_of_peak, plastic, stored)
