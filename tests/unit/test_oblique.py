@@ -88,7 +88,7 @@ def test_random_impacts_lose_in_microslip_and_in_gross_slip() -> None:
     )
     np.testing.assert_allclose(micro + gross, lost, atol=1e-12)
     assert micro.min() > -1e-5
-    assert gross.min() > -1e-9
+    assert gross.min() > -1e-5
     assert 0.2 < (micro == 0.0).mean() < 0.6
     assert (lost < energy + 1e-9).all()
 

@@ -18,16 +18,9 @@ from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.cubics import cubic_at
 from vibroimpact.dynamics.core.friction_records import Cubic, Curve, Friction, NormalState, SlipState
-from vibroimpact.dynamics.core.sliding import (
-    MOST_CHANGES,
-    advance_step,
-    begin_sliding,
-    join,
-    least_rate,
-    settle,
-    slides,
-)
+from vibroimpact.dynamics.core.sliding import MOST_CHANGES, advance_step, join, settle
 from vibroimpact.dynamics.core.sliding_steps import shortened, sliding_integral
+from vibroimpact.dynamics.core.slip_states import begin_sliding, least_rate, slides
 from vibroimpact.dynamics.core.turning_points import BELOW, RIM, add_rim
 
 TIME, PACE, PACE_SLOPE, FORCE, FORCE_SLOPE, IMPULSE = range(6)
@@ -46,8 +39,8 @@ _MOST = 1e6
 _PRESSED = 1e-7
 """Part of the largest normal force below which it is the error of the normal motion."""
 
-_MOST_TURNING = 0.6
-_MOST_PARTS = 16
+_MOST_TURNING = 0.2
+_MOST_PARTS = 64
 """Angle by which the free oscillation of a contact that sticks turns in a step at most [rad], and parts of a step for that at most."""
 
 
