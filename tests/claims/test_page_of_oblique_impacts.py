@@ -67,7 +67,7 @@ def test_ball_whose_spin_a_moment_stops() -> None:
     ]
     says(PAGE, "falls on steel at {} m/s with {} mm/s along the plate", 2.0, 10.0)
     says(PAGE, "coefficients {} and {}) returns with {} mm/s", friction["coefficient"], friction["rolling_coefficient"], returns[0])
-    says(PAGE, "returns with {} mm/s from a plate with a local stiffness of {} N/m", returns[1], 1e18)
+    says(PAGE, "returns with {} mm/s from a plate with a local stiffness of {} N/m as well", returns[1], 1e18)
 
 
 def friction_left(ratio: float) -> float:

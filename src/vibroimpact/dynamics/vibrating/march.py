@@ -33,7 +33,7 @@ from vibroimpact.dynamics.vibrating.local import LocalContact
 from vibroimpact.dynamics.vibrating.next_touch import next_touch, time_to_separation
 from vibroimpact.dynamics.vibrating.radau_eigenbasis import GRID
 from vibroimpact.dynamics.vibrating.recoil import end_of_recoil, recoil_end_value
-from vibroimpact.dynamics.vibrating.rubbing import Rubbing
+from vibroimpact.dynamics.vibrating.rubbing import Rubbing, longest_with_friction
 from vibroimpact.dynamics.vibrating.solve_stretch import StretchProblem
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 from vibroimpact.dynamics.vibrating.stretch_end import (
@@ -234,6 +234,8 @@ class March:
                 self.update_memory(contact)
         span, speed = min(contact.span for contact in pushing), max(contact.speed for contact in self.active.values())
         energy = max(contact.energy for contact in pushing)
+        if self.rubbing is not None:
+            longest = min(longest, longest_with_friction(self.tolerance) * span)
         if self.next_length < 1e-12 * span:
             raise NotIntegrable(f"the contact at {self.time:g} s can't be integrated to the tolerance")
         time_map: Map = "touch" if any(contact.fresh for contact in pushing) else "inside"

@@ -46,6 +46,8 @@ def next_touch(motion: FreeMotion, level: float, until: float, contact: int = 0)
         # the larger of two lower bounds of the time to touch: from the range of the vibration, and from the bound of the acceleration
         peak_speeds, reach = _peak_speeds(system, state), _displacement_bound(system, state, contact)
         approach, speed = (float(part[contact]) for part in system.rigid_motion(state))
+        if system.gravity[contact] <= 0.0 and speed <= 0.0 and approach < level - reach:
+            return np.inf  # what slows a sphere in a fluid does not bring it back
         far = _fall_time(approach, speed, gravity, level - reach)
         most = (
             float(size @ (peak_speeds * omega * (1.0 + 2.0 * system.damping_ratio)))
@@ -73,9 +75,11 @@ def time_to_separation(motion: FreeMotion, level: float, contact: int = 0) -> fl
     for _ in range(_MOST_HORIZONS):
         state = motion.state(np.array(time))
         approach, rate = float(system.approach(state)[contact]), float(system.rates(state)[contact])
-        # twice the last one where that was too short to change anything, as below the rounding of the time of a flight
-        horizon = 2.0 * horizon if approach == before else 2.0 * (approach - level) / abs(rate) if rate else 1e-6
-        before = approach
+        overlap = approach - level
+        needed = 2.0 * overlap / abs(rate) if rate else 1e-6
+        # at least twice the last one where that changed little, as below the rounding of the time of a flight
+        horizon = max(needed, 2.0 * horizon) if overlap > 0.5 * before else needed
+        before = overlap
         terms = float(np.abs(system.shape[contact]) @ np.abs(state.displacement)) + abs(float(system.offset[contact]))
         if approach <= level + (_ROUNDING * terms if rate < 0.0 else 0.0):
             return time
