@@ -62,6 +62,18 @@ class State(NamedTuple):
     local: Vector
 
 
+class Flight(NamedTuple):
+    """A free motion of some time [s]: displacements of the coordinates after it by displacements and by velocities [s] at its start (n,).
+
+    fading (k,): what it leaves of the deformations of the massless elements.
+    """
+
+    time: Real
+    by_displacement: Vector
+    by_velocity: Vector
+    fading: Vector
+
+
 class System(NamedTuple):
     """A linear system with one contact: n coordinates of unit mass, rigid motions first, driven ones last, and k massless elements.
 
@@ -185,7 +197,8 @@ class Motion(NamedTuple):
 
     Without contact forces (M,): approach [m], its rate by coordinates outside the contacts and closing, its whole rate [m/s]. To be
     subtracted, per force at the nodes (M, M): approach_by_force, rate_by_force, and, of the static forces on coordinates within the
-    contacts, approach_by_static and closing_by_static; the latter are (0, 0) where there are none.
+    contacts, approach_by_static and closing_by_static; the latter are (0, 0) where there are none. weights (W, m), sums (2, W, H): the sums
+    over the modes that it consists of, as `receptance.modal_sums` gives them.
     """
 
     approach: Vector
@@ -195,6 +208,8 @@ class Motion(NamedTuple):
     rate_by_force: Matrix
     approach_by_static: Matrix
     closing_by_static: Matrix
+    weights: Matrix
+    sums: Cube
 
 
 class Histories(NamedTuple):
@@ -233,10 +248,10 @@ class Coordinates(NamedTuple):
 class Path(NamedTuple):
     """Motion of all coordinates through a stretch.
 
-    At the nodes: acceleration, velocity of the coordinates (n, N), and rates of the massless elements, massless (k, N). At the end:
-    displacement, speed (n,) and local (k,). lost (n + 1,): energy lost by the damping of each coordinate, and last in the massless elements
-    [J]; of a driven coordinate minus the work of its drive. energies (2,): increase of the energy of coordinates and massless elements, and
-    its rounding error [J].
+    At the nodes: velocity of the coordinates (N, n), their acceleration (N, n), or (0, n) where it is not asked for, and rates of the
+    massless elements, massless (k, N). At the end: displacement, speed (n,) and local (k,). lost (n + 1,): energy lost by the damping of
+    each coordinate, and last in the massless elements [J]; of a driven coordinate minus the work of its drive. energies (2,): increase of
+    the energy of coordinates and massless elements, and its rounding error [J].
     """
 
     acceleration: Matrix
@@ -275,22 +290,42 @@ class Beginning(NamedTuple):
 
 
 class Attempt(NamedTuple):
-    """A solved stretch of one contact.
+    """A stretch of one contact as Newton's method leaves it.
 
-    nodes, contact, path: its forces, histories, and the motion of all coordinates. closing: the whole rate of the approach at the start and
-    the nodes [m/s] (N + 1,). length [s]. work: increase of the energy stored by the law and of the plastic work [J]. solved: did Newton's
-    method converge? resolved: is it solved with an error within the tolerance? event: the first one within it.
+    nodes, contact: its forces and histories. closing: the whole rate of the approach at the start and the nodes [m/s] (N + 1,). length [s].
+    solved: did Newton's method converge? event: the first one within it.
     """
 
     nodes: Nodes
     contact: Histories
-    path: Path
     closing: Vector
     length: Real
-    work: Real
     solved: Boolean
-    resolved: Boolean
     event: Event
+
+
+class Solved(NamedTuple):
+    """Solved stretches of one contact, one after the other.
+
+    time_map (P,): their maps of time, in `MAPS`. length (P,) [s]. At the start and the nodes (P, N + 1): delta, indentation of the law [m],
+    and rate of the approach at its dashpot [m/s].
+    """
+
+    time_map: Integers
+    length: Vector
+    delta: Matrix
+    rate: Matrix
+
+
+class Balance(NamedTuple):
+    """Motion of all coordinates through a solved stretch of one contact, and its balance of energy.
+
+    work: increase of the energy stored by the law and of the plastic work [J]. resolved: is it solved with an error within the tolerance?
+    """
+
+    path: Path
+    work: Real
+    resolved: Boolean
 
 
 class Manner(NamedTuple):

@@ -203,7 +203,7 @@ def newton_step(
         missing += product(motion.approach_by_static, linear[0])
     by_length = np.zeros((3, size))
     if event != GIVEN_LENGTH:
-        by_length = motion_by_length(basis, surfaces, start, length, now.force, linear[0])
+        by_length = motion_by_length(basis, surfaces, start, motion, length, now.force, linear[0])
     for row in range(size):
         for column in range(size):
             columns[row, column] = motion.approach_by_force[row, column]

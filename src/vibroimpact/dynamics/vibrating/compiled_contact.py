@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cache
 
 import numpy as np
 
@@ -19,7 +18,7 @@ from vibroimpact.dynamics.vibrating.free_motion import FreePhase
 from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, State
 from vibroimpact.dynamics.vibrating.local import LocalContact
 from vibroimpact.dynamics.vibrating.march import March, MotionPart
-from vibroimpact.dynamics.vibrating.radau_eigenbasis import NODES_PER_STRETCH, RadauEigenbasis, radau_eigenbasis
+from vibroimpact.dynamics.vibrating.radau_eigenbasis import NODES_PER_STRETCH, bases_of, radau_eigenbasis
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 from vibroimpact.dynamics.vibrating.stretch_end import with_separation_loss
 
@@ -43,9 +42,7 @@ class CompiledContact:
         self.active = active
         law = active.local.law
         self.view = contact_view(march.system, (0,))
-        self.rules = _rules(law.root)
-        self.bases = records.Bases(*(rule.basis for rule in self.rules))
-        self.bodies = records.Bodies(march.system.record, self.view.surfaces, self.view.coordinates)
+        self.root = law.root
         self.manner = records.Manner(
             tension=TENSIONS.index(law.tension),
             contact_end=ENDS.index(law.contact_end),
@@ -87,7 +84,7 @@ class CompiledContact:
         march, outcome = self.march, core.FULL
         while outcome == core.FULL:
             outcome, count, self.progress, self.state, self.law = core.follow_contact(
-                self.bases, self.bodies, self.manner, self.law, self.state, self.progress, march.lost, self.parts
+                bases_of(self.root), self.view.bodies, self.manner, self.law, self.state, self.progress, march.lost, self.parts
             )
             self._read(count)
         active, progress = self.active, self.progress
@@ -123,7 +120,7 @@ class CompiledContact:
 
     def _stretch(self, part: int, local: LocalContact, begun: State) -> VibratingStretch:
         parts = self.parts
-        basis = self.rules[parts.time_map[part]]
+        basis = radau_eigenbasis(records.MAPS[parts.time_map[part]], self.root)
         static = parts.static[part].copy()
         history = ContactHistory(
             0,
@@ -139,13 +136,6 @@ class CompiledContact:
             separation_loss=float(parts.separation_loss[part]),
         )
         return VibratingStretch(self.view, basis, float(parts.length[part]), begun, (history,), True, float(parts.roughness[part]))
-
-
-@cache
-def _rules(root: int) -> tuple[RadauEigenbasis, RadauEigenbasis, RadauEigenbasis]:
-    """Return the Radau rule under the maps of time of the core, in their order."""
-    touch, inside, release = (radau_eigenbasis(time_map, root) for time_map in ("touch", "inside", "release"))
-    return touch, inside, release
 
 
 def _room(number: int, elements: int) -> records.Parts:

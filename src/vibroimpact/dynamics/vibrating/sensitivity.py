@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import groupby
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -112,25 +113,30 @@ class _Neighbour:
 
     def pass_visit(self, motions: Sequence[VibratingStretch | FreePhase]) -> None:
         """Propagate through the parts of a visit."""
-        for motion in motions:
-            if isinstance(motion, FreePhase):
-                self.fly(motion.free, motion.length, inside=motion.local is not None)
-            else:
-                self.pass_through(motion)
+        for _, parts in groupby(motions, _contact_of):
+            alike = list(parts)
+            stretches = [motion for motion in alike if isinstance(motion, VibratingStretch)]
+            if stretches:
+                self.pass_through(stretches)
+            for motion in alike:
+                if isinstance(motion, FreePhase):
+                    self.fly(motion.free, motion.length, inside=motion.local is not None)
 
-    def pass_through(self, stretch: VibratingStretch) -> None:
-        """Propagate through a stretch of contact."""
+    def pass_through(self, stretches: Sequence[VibratingStretch]) -> None:
+        """Propagate through stretches of contact under one law."""
+        first, local = stretches[0], stretches[0].contacts[0].local
         if self.separated:
-            self.begin_contact(stretch)
-        elif stretch.contacts[0].local is not self.local:
-            self.update_memory(stretch)
-        variations = _law_variations(stretch.contacts[0].local, self.law_differences)
-        self.difference, force_difference = propagate_difference(stretch, self.difference, variations)
-        self.force_difference, self.last_stretch = float(force_difference[-1]), stretch
+            self.begin_contact(first)
+        elif local is not self.local:
+            self.update_memory(first)
+        variations = _law_variations(local, self.law_differences)
+        self.difference, force_differences = propagate_difference(stretches, self.difference, variations)
+        self.force_difference, self.last_stretch = float(force_differences[-1, -1]), stretches[-1]
         assert self.visit is not None  # it has touched
-        force = float(stretch.force.max())
-        if force > self.visit.force:
-            self.visit.force, self.visit.strongest = force, (stretch, force_difference)
+        for stretch, force_difference in zip(stretches, force_differences, strict=True):
+            force = float(stretch.contacts[0].force.max())
+            if force > self.visit.force:
+                self.visit.force, self.visit.strongest = force, (stretch, force_difference)
 
     def leave(self, speed: float) -> float:
         """End a visit with a speed upwards [m/s]; return the growth of the change."""
@@ -210,6 +216,11 @@ class _Neighbour:
         (contact,) = stretch.contacts
         rates = _state_rates(stretch.system, stretch.end, float(contact.force[-1]), float(contact.static[-1]))
         self.difference = _shifted(self.difference, rates, -excess / rate)
+
+
+def _contact_of(motion: VibratingStretch | FreePhase) -> int:
+    """Return a number of the contact of a stretch, which stays the same until its law's memory changes; 0 for free motion."""
+    return id(motion.contacts[0].local) if isinstance(motion, VibratingStretch) else 0
 
 
 def _state_rates(system: LinearSystem, state: State, force: float, static: float) -> State:

@@ -13,6 +13,7 @@ import numpy as np
 
 from vibroimpact.arrays import Bools, Floats
 from vibroimpact.dynamics.collocation import Rule
+from vibroimpact.dynamics.core import records
 from vibroimpact.dynamics.core.path import stretch_path
 from vibroimpact.dynamics.vibrating.contact_history import ContactHistory
 from vibroimpact.dynamics.vibrating.contact_view import ContactView
@@ -108,11 +109,12 @@ class VibratingStretch:
             view = rubbed_view(view)
             force = np.concatenate([force, self.rubbed.force])
             static = np.concatenate([static, np.zeros_like(self.rubbed.force)])
-        state = (self.start.displacement, self.start.velocity, self.start.local)
-        path = stretch_path(self.basis.basis, view.surfaces, view.coordinates, *state, self.length, force.ravel(), static.ravel())
+        start = records.State(self.start.displacement, self.start.velocity, self.start.local)
+        bodies = (view.surfaces, view.coordinates)
+        path = stretch_path(self.basis.basis, *bodies, start, self.length, force.ravel(), static.ravel(), True)
         gain, rounding = path.energies.tolist()
         end = State(path.displacement, path.speed, path.local)
-        return StretchMotion(path.acceleration.T, path.velocity.T, path.massless.T, end, gain, rounding, path.lost)
+        return StretchMotion(path.acceleration, path.velocity, path.massless.T, end, gain, rounding, path.lost)
 
     @property
     def accelerations(self) -> Floats:
