@@ -15,12 +15,13 @@ from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.attempt import attempt, balance_of, basis_of, beginning_of, time_at, up_to_event
 from vibroimpact.dynamics.core.events import ENDS_AT_NO_FORCE, NO_EVENT, NO_PUSH, PARTED, TENSION_CUT, TURN
-from vibroimpact.dynamics.core.flight import approach_of, lost_in_flight, state_after, time_to_separation
+from vibroimpact.dynamics.core.flight import approach_of, lost_in_flight, state_after
 from vibroimpact.dynamics.core.law import law_after, law_indentation, stored_energy
 from vibroimpact.dynamics.core.parts import lose_at_end, write_part, write_stretch
 from vibroimpact.dynamics.core.recoil import end_of_recoil
 from vibroimpact.dynamics.core.records import Bases, Bodies, Event, Law, Manner, Nodes, Parts, Progress, State, System
 from vibroimpact.dynamics.core.rest import is_captured, is_near_rest
+from vibroimpact.dynamics.core.touch import time_to_separation
 
 RELEASED, CAPTURED, RIDES, TOO_STIFF, NEAR_REST, FULL = 0, 1, 2, 3, 4, 5
 """How a contact goes on: released; too little energy to leave; in contact at the end of the time or of the steps; not to be integrated;

@@ -102,6 +102,22 @@ class System(NamedTuple):
     driven: Integer
 
 
+class Approach(NamedTuple):
+    """Approach of the surfaces of one contact in free motion [m], and its rate [m/s].
+
+    rigid, rigid_rate: what the rigid motions contribute. Of vibration and massless elements from then on, reach: a bound of the
+    displacement [m], and fastest: of the acceleration [m/s^2]. terms: sum of the magnitudes of what the approach is the sum of [m].
+    """
+
+    approach: Real
+    rate: Real
+    rigid: Real
+    rigid_rate: Real
+    reach: Real
+    fastest: Real
+    terms: Real
+
+
 class Law(NamedTuple):
     """A contact law of one contact, with its memory and the compliance in series.
 

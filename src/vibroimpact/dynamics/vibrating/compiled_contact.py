@@ -70,7 +70,7 @@ class CompiledContact:
             largest_force=0.0,
             deepest=0.0,
         )
-        self.state = records.State(march.state.displacement, march.state.velocity, march.state.local)
+        self.state = march.state.record
         self.parts = _room(march.system.number, len(march.system.rate))
         self.locals = [active.local]
 

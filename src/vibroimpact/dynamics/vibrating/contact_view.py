@@ -91,7 +91,7 @@ class ContactView:
     @cached_property
     def bodies(self) -> Bodies:
         """The system, of one contact, as the core takes it."""
-        return Bodies(self.system.record, self.surfaces, self.coordinates)
+        return Bodies(self.system.record_of(self.contacts[0]), self.surfaces, self.coordinates)
 
     @cached_property
     def without_load(self) -> ContactView:

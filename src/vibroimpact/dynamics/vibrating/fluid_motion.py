@@ -30,13 +30,13 @@ class FluidMotion(FreeMotion):
         """Return the motion from a time on [s]."""
         return FluidMotion(self.system, self.state(np.array(time)), self.flight.after(self._when(np.array(time))))
 
-    def pull(self, time: float) -> Floats:
-        """Return a bound of the acceleration of the approach by what acts on the sphere [m/s^2] (contacts,), from a time on [s].
+    def pull(self, time: float) -> float:
+        """Return a bound of the acceleration of the approach by what acts on the sphere [m/s^2], from a time on [s].
 
         A rising sphere is slowed less and less, at last by gravity, and a falling one is accelerated by less than that.
         """
         now = abs(float(self.flight.acceleration(self._when(np.array(time)))[0]))
-        return np.maximum(self.system.gravity, now)
+        return max(float(self.system.gravity[0]), now)
 
     def _when(self, time: Floats) -> Floats:
         return np.asarray(self.flight.start + np.asarray(time, dtype=float)[..., None])

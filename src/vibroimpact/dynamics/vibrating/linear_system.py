@@ -26,7 +26,7 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.arrays import Bools, Floats, Indices
-from vibroimpact.dynamics.core.records import System
+from vibroimpact.dynamics.core import records
 from vibroimpact.dynamics.vibrating.oscillators import Oscillators
 
 _ALIKE = 1e-12  # of the sum of the magnitudes of the terms of an acceleration: smaller sums are rounding errors
@@ -42,6 +42,11 @@ class State:
     displacement: Floats
     velocity: Floats
     local: Floats
+
+    @property
+    def record(self) -> records.State:
+        """The state as the core takes it."""
+        return records.State(self.displacement, self.velocity, self.local)
 
     def take(self, index: int) -> State:
         """Return one state along the leading axis."""
@@ -101,26 +106,32 @@ class LinearSystem(Oscillators):
         return {}
 
     @cached_property
-    def record(self) -> System:
-        """The system as the core takes it, of one contact."""
-        return System(
-            frequency=self.angular_frequency,
-            ratio=self.damping_ratio,
-            damping=self.damping,
-            load=self.load,
-            shape=np.ascontiguousarray(self.shape[0]),
-            outer_shape=np.ascontiguousarray(self.outer_shape[0]),
-            indentation_shape=np.ascontiguousarray(self.indentation_shape[0]),
-            rate=self.rate,
-            mobility=self.mobility,
-            offset=float(self.offset[0]),
-            gravity=float(self.gravity[0]),
-            mass=float(self.mass[0]),
-            compliance=float(self.compliance[0]),
-            flexibility=float(self.flexibility.sum()),
-            rigid=int(self.rigid.sum()),
-            driven=self.driven,
-        )
+    def _records(self) -> dict[int, records.System]:
+        """Cache of `record_of`, by the contacts."""
+        return {}
+
+    def record_of(self, contact: int) -> records.System:
+        """Return the system with one of its contacts, as the core takes it."""
+        if contact not in self._records:
+            self._records[contact] = records.System(
+                frequency=self.angular_frequency,
+                ratio=self.damping_ratio,
+                damping=self.damping,
+                load=self.load,
+                shape=np.ascontiguousarray(self.shape[contact]),
+                outer_shape=np.ascontiguousarray(self.outer_shape[contact]),
+                indentation_shape=np.ascontiguousarray(self.indentation_shape[contact]),
+                rate=self.rate,
+                mobility=self.mobility,
+                offset=float(self.offset[contact]),
+                gravity=float(self.gravity[contact]),
+                mass=float(self.mass[contact]),
+                compliance=float(self.compliance[contact]),
+                flexibility=float(self.flexibility.sum()),
+                rigid=int(self.rigid.sum()),
+                driven=self.driven,
+            )
+        return self._records[contact]
 
     def with_sphere(self, shape: float, load: float) -> LinearSystem:
         """Return the same system with a sphere of another mass and weight, whose fall is the first coordinate."""
@@ -290,10 +301,6 @@ class FreeMotion:
         coordinates = np.where(system.rigid, 0.0, sum(system.energies(self.start)) - sum(system.energies(state)))
         massless = system.local_energy(self.start) - system.local_energy(state)
         return np.concatenate([coordinates, massless[..., None]], axis=-1)
-
-    def pull(self, time: float) -> Floats:
-        """Return a bound of the acceleration of the approach by what acts on the sphere [m/s^2] (contacts,), from a time on [s]."""
-        return self.system.gravity
 
     def motion(self, time: Floats) -> tuple[Floats, Floats]:
         """Return the approach of the surfaces [m] and its rate [m/s] at times since the start [s], (..., contacts)."""

@@ -13,7 +13,6 @@ import numpy as np
 
 from vibroimpact.arrays import Bools, Floats
 from vibroimpact.dynamics.collocation import Rule
-from vibroimpact.dynamics.core import records
 from vibroimpact.dynamics.core.path import stretch_path
 from vibroimpact.dynamics.vibrating.contact_history import ContactHistory
 from vibroimpact.dynamics.vibrating.contact_view import ContactView
@@ -109,7 +108,7 @@ class VibratingStretch:
             view = rubbed_view(view)
             force = np.concatenate([force, self.rubbed.force])
             static = np.concatenate([static, np.zeros_like(self.rubbed.force)])
-        start = records.State(self.start.displacement, self.start.velocity, self.start.local)
+        start = self.start.record
         bodies = (view.surfaces, view.coordinates)
         path = stretch_path(self.basis.basis, *bodies, start, self.length, force.ravel(), static.ravel(), True)
         gain, rounding = path.energies.tolist()

@@ -40,6 +40,5 @@ def propagate_difference(
     )
     laws = contacts_of([local, *(varied for varied, _ in variations)])
     weights = np.array([weight for _, weight in variations], dtype=float)
-    start = records.State(difference.displacement, difference.velocity, difference.local)
-    end, forces = propagate(bases_of(local.law.root), first.view.without_load.bodies, laws, weights, solved, start)
+    end, forces = propagate(bases_of(local.law.root), first.view.without_load.bodies, laws, weights, solved, difference.record)
     return State(*end), forces
