@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.quasi_static import QuasiStatic
-from vibroimpact.contact.roots import locate_maximum
 from vibroimpact.contact.static import static_indentation
+from vibroimpact.dynamics.core.attempt import time_at
+from vibroimpact.dynamics.core.peak import peak_of
 from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State
 from vibroimpact.dynamics.vibrating.local import LocalContact
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
@@ -37,22 +39,22 @@ class ContactPeak:
 
     def __init__(self) -> None:
         self.nodal_max = 0.0
-        self._candidates: list[tuple[float, float, VibratingStretch, Callable[[Floats], Floats]]] = []
+        self._candidates: list[tuple[float, float, VibratingStretch, Callable[[], tuple[float, float]]]] = []
 
-    def add(self, nodal_max: float, start: float, stretch: VibratingStretch, values: Callable[[Floats], Floats]) -> None:
-        """Add a stretch that starts at a time [s], with its largest nodal value, and its values as a function of x in [0, 1]."""
+    def add(self, nodal_max: float, start: float, stretch: VibratingStretch, peak: Callable[[], tuple[float, float]]) -> None:
+        """Add a stretch that starts at a time [s], with its largest nodal value; `peak` returns the x of the largest one, and that."""
         if nodal_max >= _PEAK * self.nodal_max:
-            self._candidates.append((nodal_max, start, stretch, values))
+            self._candidates.append((nodal_max, start, stretch, peak))
             self.nodal_max = max(self.nodal_max, nodal_max)
 
     def locate(self) -> tuple[float, float]:
         """Return the largest value and its time [s]; zeros if there is none."""
         found = (0.0, 0.0)
-        for nodal_max, start, stretch, values in self._candidates:
+        for nodal_max, start, stretch, peak in self._candidates:
             if nodal_max >= _PEAK * self.nodal_max:
-                x = np.array([locate_maximum(values)])
-                if (value := float(values(x)[0])) > found[0]:
-                    found = value, start + stretch.length * float(stretch.rule.map_time(x)[0])
+                x, value = peak()
+                if value > found[0]:
+                    found = value, start + stretch.length * time_at(stretch.basis.basis, x)
         return found
 
 
@@ -146,6 +148,6 @@ def record_peaks(impact: Impact, stretch: VibratingStretch, place: int, start: f
     """
     rule, contact = stretch.rule, stretch.contacts[place]
     force = float(contact.force.max()) if contact.local.law.tension == "kept" else max(float(contact.force.max()), 0.0)
-    impact.force.add(force, start, stretch, contact.force_at)
-    impact.indentation.add(float(indentations[1:].max()), start, stretch, lambda x: np.asarray(rule.weights(x).T @ indentations))
+    impact.force.add(force, start, stretch, partial(stretch.peak_force, place))
+    impact.indentation.add(float(indentations[1:].max()), start, stretch, partial(peak_of, stretch.basis.basis, indentations))
     impact.impulse += stretch.length * float(rule.integral[-1] @ contact.force)

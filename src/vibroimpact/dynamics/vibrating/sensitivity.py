@@ -17,7 +17,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.contact.roots import locate_maximum
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.vibrating.free_motion import FreePhase
 from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
@@ -145,9 +144,8 @@ class _Neighbour:
         if visit is None or visit.strongest is None:
             return float("nan")
         stretch, force_difference = visit.strongest
-        (contact,) = stretch.contacts
-        top = np.array([locate_maximum(contact.force_at)])
-        force_change = float(stretch.rule.interpolate(top, force_difference)[0]) / float(contact.force_at(top)[0])
+        top, force = stretch.peak_force()
+        force_change = float(stretch.rule.interpolate(np.array([top]), force_difference)[0]) / force
         speed_change = float(stretch.system.rigid_motion(self.difference)[1][0]) / max(abs(speed), _SLOW * visit.speed)
         return max(abs(visit.closing) / visit.speed, abs(force_change), abs(speed_change))
 

@@ -14,6 +14,7 @@ import numpy as np
 from vibroimpact.arrays import Bools, Floats
 from vibroimpact.dynamics.collocation import Rule
 from vibroimpact.dynamics.core.path import stretch_path
+from vibroimpact.dynamics.core.peak import peak_of_force
 from vibroimpact.dynamics.vibrating.contact_history import ContactHistory
 from vibroimpact.dynamics.vibrating.contact_view import ContactView
 from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State
@@ -147,6 +148,12 @@ class VibratingStretch:
             start.velocity + across * load + integral @ driven,
             start.local + integral @ self.motion.massless,
         )
+
+    def peak_force(self, contact: int = 0) -> tuple[float, float]:
+        """Return the x in [0, 1] at which the force of a contact is largest, and that force [N]; zero where it pulls and may not."""
+        history = self.contacts[contact]
+        x, force = peak_of_force(self.basis.basis, history.local.record, history.delta, history.rate)
+        return x, force if history.local.law.tension == "kept" else max(force, 0.0)
 
     def indentations(self, contact: int = 0) -> Floats:
         """Return the approach of the centre above to the surface below at a contact [m], at the start and the nodes (N + 1,)."""

@@ -1,0 +1,82 @@
+"""The largest force and the largest indentation within a stretch of contact, between its nodes."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.compiled import compiled, force_at
+from vibroimpact.dynamics.core.attempt import weights_at
+from vibroimpact.dynamics.core.records import Basis, Contacts
+
+_POINTS = 33
+_ROUNDS = 3  # each narrows the search to a sixteenth
+
+
+@compiled(lambda t: t.real(t.of(Basis), t.vector, t.real))
+def value_between(basis: Basis, values: Floats, x: float) -> float:
+    """Return the value at x in [0, 1] of a quantity with values at the start and the nodes (N + 1,)."""
+    weights = np.empty(len(values))
+    weights_at(basis, x, weights)
+    value = 0.0
+    for point in range(len(values)):
+        value += weights[point] * values[point]
+    return value
+
+
+@compiled(lambda t: t.real(t.of(Basis), t.of(Contacts), t.vector, t.vector, t.real))
+def force_between(basis: Basis, law: Contacts, delta: Floats, rate: Floats, x: float) -> float:
+    """Return the force of a law [N] at x in [0, 1], from its indentation and its rate at the start and the nodes (N + 1,)."""
+    reached = max(value_between(basis, delta, x), law.release[0])
+    static, dissipative = force_at(law.laws[0])(reached, value_between(basis, rate, x), law.speed[0], law.coefficients[0])
+    return float(static + dissipative)
+
+
+@compiled(lambda t: t.tuple(t.real, t.real)(t.of(Basis), t.vector))
+def peak_of(basis: Basis, values: Floats) -> tuple[float, float]:
+    """Return the x in [0, 1] at which a quantity with values at the start and the nodes (N + 1,) is largest, and how large."""
+    sampled = np.empty(_POINTS)
+    low = 0.0
+    high = 1.0
+    x = 0.0
+    for _ in range(_ROUNDS):
+        for point in range(_POINTS):
+            sampled[point] = value_between(basis, values, low + (high - low) * point / (_POINTS - 1))
+        x, low, high = narrowed(sampled, low, high)
+    return x, value_between(basis, values, x)
+
+
+@compiled(lambda t: t.tuple(t.real, t.real)(t.of(Basis), t.of(Contacts), t.vector, t.vector))
+def peak_of_force(basis: Basis, law: Contacts, delta: Floats, rate: Floats) -> tuple[float, float]:
+    """Return the x in [0, 1] at which the force of `force_between` is largest, and that force [N]."""
+    sampled = np.empty(_POINTS)
+    low = 0.0
+    high = 1.0
+    x = 0.0
+    for _ in range(_ROUNDS):
+        for point in range(_POINTS):
+            sampled[point] = force_between(basis, law, delta, rate, low + (high - low) * point / (_POINTS - 1))
+        x, low, high = narrowed(sampled, low, high)
+    return x, force_between(basis, law, delta, rate, x)
+
+
+@compiled(lambda t: t.tuple(t.real, t.real, t.real)(t.vector, t.real, t.real))
+def narrowed(sampled: Floats, low: float, high: float) -> tuple[float, float, float]:
+    """Return about where values at evenly spaced points of an interval are largest, and the two points around.
+
+    It is the vertex of the parabola through three of them, which is insensitive to rounding.
+    """
+    last = len(sampled) - 1
+    best = 0
+    for point in range(1, last + 1):
+        if sampled[point] > sampled[best]:
+            best = point
+    step = (high - low) / last
+    x = low + step * best
+    if 0 < best < last:
+        before = sampled[best - 1]
+        after = sampled[best + 1]
+        bend = 2.0 * sampled[best] - before - after
+        if bend > 0.0:
+            x += 0.5 * step * (after - before) / bend
+    return x, low + step * max(best - 1, 0), low + step * min(best + 1, last)
