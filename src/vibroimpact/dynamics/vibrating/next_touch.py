@@ -71,7 +71,9 @@ def _time_to_separation_in_fluid(motion: FluidMotion, level: float) -> float:
     horizon, before = 0.0, np.nan
     for _ in range(_MOST_HORIZONS):
         now = _approach(motion, time)
-        horizon = touch.next_horizon(now, level, horizon, before)
+        # a shorter time is lost in that of the flight
+        shortest = float(np.spacing(motion.flight.start[0] + time))
+        horizon = max(touch.next_horizon(now, level, horizon, before), shortest)
         before = now.approach
         if touch.is_apart(now, level):
             return time
