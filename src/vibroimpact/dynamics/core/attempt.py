@@ -8,8 +8,8 @@ from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled, force_at
 from vibroimpact.dynamics.core.events import BREAKPOINT, NO_EVENT, NO_PUSH, PARTED, TURN, first_event
 from vibroimpact.dynamics.core.flight import approach_of
+from vibroimpact.dynamics.core.histories import contact_histories
 from vibroimpact.dynamics.core.law import static_work
-from vibroimpact.dynamics.core.linear import product
 from vibroimpact.dynamics.core.path import stretch_path
 from vibroimpact.dynamics.core.receptance import surface_motion
 from vibroimpact.dynamics.core.records import (
@@ -35,7 +35,6 @@ from vibroimpact.dynamics.core.stretch import (
     AT_TURN,
     GIVEN_LENGTH,
     begun_indentations,
-    contact_histories,
     first_guess,
     solve_stretch,
 )
@@ -158,14 +157,10 @@ def attempt(
         ends = AT_TURN
     nodes, motion, length, solved = solve_stretch(basis, surfaces, contacts, start, guess, motion, length, ends, event.level, 0)
     contact = contact_histories(basis, surfaces, contacts, start, begun, nodes, motion, length)
-    closing = contact.rate[0].copy()
-    if surfaces.shapes.shape[0] == 2:
-        closing[0] += start.inner_rate[0]
-        closing[1:] = motion.closing - product(motion.rate_by_force, nodes.force) - product(motion.closing_by_static, nodes.static)
     seen = Event(NO_EVENT, 0.0, np.inf)
     if solved:
-        seen = first_event(basis, system, law, manner.tension, contact, nodes, closing, manner.motion_speed, manner.span)
-    return Attempt(nodes, contact, closing, length, solved, seen)
+        seen = first_event(basis, system, law, manner.tension, contact, nodes, manner.motion_speed, manner.span)
+    return Attempt(nodes, contact, length, solved, seen)
 
 
 @compiled(lambda t: t.of(Balance)(t.of(Basis), t.of(Bodies), t.of(Law), t.of(Manner), t.of(State), t.of(Attempt)))

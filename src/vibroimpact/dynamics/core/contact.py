@@ -202,7 +202,7 @@ def follow_contact(
         time += tried.length
         delta = tried.contact.delta[0, number]
         force = tried.nodes.force[number - 1]
-        closing = tried.closing[number]
+        closing = tried.contact.closing[0, number]
         trend = 0.0
         for node in range(number):
             trend += basis.at_end[node] * tried.nodes.force[node] / tried.length

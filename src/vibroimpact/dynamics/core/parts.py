@@ -41,6 +41,7 @@ def write_stretch(parts: Parts, part: int, basis: Basis, system: System, solved:
     parts.force[part] = solved.nodes.force
     parts.approach[part] = solved.contact.approach[0]
     parts.rate[part] = solved.contact.rate[0]
+    parts.closing[part] = solved.contact.closing[0]
     parts.delta[part] = solved.contact.delta[0]
     parts.work[part] = balance.work
     parts.dissipated[part] = solved.contact.dissipated[0]

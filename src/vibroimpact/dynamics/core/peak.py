@@ -24,6 +24,22 @@ def value_between(basis: Basis, values: Floats, x: float) -> float:
     return value
 
 
+@compiled(lambda t: t.real(t.of(Basis), t.vector, t.real))
+def nodal_value_between(basis: Basis, values: Floats, x: float) -> float:
+    """Return the value at x in [0, 1] of a quantity with values at the nodes alone (N,)."""
+    total = 0.0
+    value = 0.0
+    for node in range(len(values)):
+        place = basis.places[node + 1]
+        distance = x - place
+        if distance == 0.0:
+            return float(values[node])
+        weight = basis.barycentric[node + 1] * place / distance
+        total += weight
+        value += weight * values[node]
+    return value / total
+
+
 @compiled(lambda t: t.real(t.of(Basis), t.of(Contacts), t.vector, t.vector, t.real))
 def force_between(basis: Basis, law: Contacts, delta: Floats, rate: Floats, x: float) -> float:
     """Return the force of a law [N] at x in [0, 1], from its indentation and its rate at the start and the nodes (N + 1,)."""

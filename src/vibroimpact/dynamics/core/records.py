@@ -231,13 +231,14 @@ class Motion(NamedTuple):
 class Histories(NamedTuple):
     """Motion and energy of c contacts through a stretch.
 
-    At the start and the nodes (c, N + 1): approach of the surfaces [m], its rate at the dashpots [m/s], and delta, the indentation of the
-    laws [m]. dissipated (c,): work of the dissipative forces [J]. roughness: the last Legendre coefficients of the forces, relative to
-    their scale.
+    At the start and the nodes (c, N + 1): approach of the surfaces [m], its rate at the dashpots and closing, its whole rate [m/s], and
+    delta, the indentation of the laws [m]. dissipated (c,): work of the dissipative forces [J]. roughness: the last Legendre coefficients
+    of the forces, relative to their scale.
     """
 
     approach: Matrix
     rate: Matrix
+    closing: Matrix
     delta: Matrix
     dissipated: Vector
     roughness: Real
@@ -308,13 +309,11 @@ class Beginning(NamedTuple):
 class Attempt(NamedTuple):
     """A stretch of one contact as Newton's method leaves it.
 
-    nodes, contact: its forces and histories. closing: the whole rate of the approach at the start and the nodes [m/s] (N + 1,). length [s].
-    solved: did Newton's method converge? event: the first one within it.
+    nodes, contact: its forces and histories. length [s]. solved: did Newton's method converge? event: the first one within it.
     """
 
     nodes: Nodes
     contact: Histories
-    closing: Vector
     length: Real
     solved: Boolean
     event: Event
@@ -389,10 +388,10 @@ class Parts(NamedTuple):
     """Room for P parts of the motion through a contact: stretches (kind 1) and recoils (kind 0).
 
     kind, time_map (P,). start, length [s] (P,). displacement, velocity (P, n), local (P, k): state at the start. memories (P,): changes of
-    the law's memory before it. Of stretches, as in `Nodes`, `Histories` and `Attempt`: static, force (P, N), approach, rate, delta
-    (P, N + 1), work, dissipated, roughness (P,). separation_loss (P,): stored energy that is lost at the end [J]. indentation (P, N + 1):
-    of the surface by the centre above [m]. turned_at (P,): indentations of the law at the changes of its memory [m]. late_loss (1,): stored
-    energy lost at the end of the last part of the call before [J].
+    the law's memory before it. Of stretches, as in `Nodes`, `Histories` and `Attempt`: static, force (P, N), approach, rate, closing,
+    delta (P, N + 1), work, dissipated, roughness (P,). separation_loss (P,): stored energy that is lost at the end [J]. indentation
+    (P, N + 1): of the surface by the centre above [m]. turned_at (P,): indentations of the law at the changes of its memory [m]. late_loss
+    (1,): stored energy lost at the end of the last part of the call before [J].
     """
 
     kind: Integers
@@ -407,6 +406,7 @@ class Parts(NamedTuple):
     force: Matrix
     approach: Matrix
     rate: Matrix
+    closing: Matrix
     delta: Matrix
     work: Vector
     dissipated: Vector

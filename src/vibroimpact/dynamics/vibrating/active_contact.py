@@ -13,6 +13,7 @@ from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.quasi_static import QuasiStatic
 from vibroimpact.contact.static import static_indentation
 from vibroimpact.dynamics.core.attempt import time_at
+from vibroimpact.dynamics.core.law import law_indentation
 from vibroimpact.dynamics.core.peak import peak_of
 from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State
 from vibroimpact.dynamics.vibrating.local import LocalContact
@@ -113,7 +114,7 @@ class ActiveContact:
 
     def law_indentation(self, system: LinearSystem, state: State) -> float:
         """Return the indentation of its law in a state [m]."""
-        return float(self.local.indentation_at(self.overlap(system, state) + self.local.release_level))
+        return law_indentation(self.local.with_levels, self.overlap(system, state) + self.local.release_level)
 
     def plastic_work(self, system: LinearSystem, state: State) -> float:
         """Return the plastic work since the last update of the law's memory [J], in a state."""

@@ -6,11 +6,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from vibroimpact.compiled import law_addresses, law_coefficients
 from vibroimpact.dynamics.core import contact as core
 from vibroimpact.dynamics.core import records
 from vibroimpact.dynamics.core.events import ENDS, TENSIONS
-from vibroimpact.dynamics.core.law import law_at_touch
 from vibroimpact.dynamics.vibrating.active_contact import ActiveContact, record_peaks
 from vibroimpact.dynamics.vibrating.contact_history import ContactHistory
 from vibroimpact.dynamics.vibrating.contact_view import contact_view
@@ -54,8 +52,7 @@ class CompiledContact:
             longest=limits.longest,
             most_steps=limits.most_steps,
         )
-        series = active.local.record.series[0]
-        self.law = law_at_touch(law_addresses(type(law)), law_coefficients(law), series, float(active.local.approach_speed))
+        self.law = active.local.with_levels
         self.progress = records.Progress(
             time=march.time,
             next_length=march.next_length,
@@ -106,31 +103,36 @@ class CompiledContact:
             before = self.locals[-1]
             march.plastic += float(before.law.plastic_work(turned_at))
             self.locals.append(before.after_indentation(turned_at))
+        written = records.Parts._make(values[:count].copy() for values in parts)
         for part in range(count):
-            local = self.locals[parts.memories[part]]
-            start = float(parts.start[part])
-            begun = State(parts.displacement[part].copy(), parts.velocity[part].copy(), parts.local[part].copy())
-            if parts.kind[part] == 0:
-                length = float(parts.length[part])
+            local = self.locals[written.memories[part]]
+            start = float(written.start[part])
+            begun = State(written.displacement[part], written.velocity[part], written.local[part])
+            if written.kind[part] == 0:
+                length = float(written.length[part])
                 march.parts.append(MotionPart(start, FreePhase(FreeMotion(march.system, begun), length, ((0, local),))))
                 continue
-            stretch = self._stretch(part, local, begun)
+            stretch = self._stretch(written, part, local, begun)
             march.parts.append(MotionPart(start, stretch))
-            record_peaks(self.active.impact, stretch, 0, start, parts.indentation[part].copy())
+            record_peaks(self.active.impact, stretch, 0, start, written.indentation[part])
+            end = State(*self.state)
+            if part + 1 < count:
+                end = State(written.displacement[part + 1], written.velocity[part + 1], written.local[part + 1])
+            stretch.__dict__["end"] = end  # which it would compute anew
 
-    def _stretch(self, part: int, local: LocalContact, begun: State) -> VibratingStretch:
-        parts = self.parts
+    def _stretch(self, parts: records.Parts, part: int, local: LocalContact, begun: State) -> VibratingStretch:
         basis = radau_eigenbasis(records.MAPS[parts.time_map[part]], self.root)
-        static = parts.static[part].copy()
+        static = parts.static[part]
         history = ContactHistory(
             0,
             local,
             basis.rule,
             static,
             parts.force[part] - static,
-            parts.approach[part].copy(),
-            parts.rate[part].copy(),
-            parts.delta[part].copy(),
+            parts.approach[part],
+            parts.rate[part],
+            parts.closing[part],
+            parts.delta[part],
             work=float(parts.work[part]),
             dissipated=float(parts.dissipated[part]),
             separation_loss=float(parts.separation_loss[part]),
@@ -154,6 +156,7 @@ def _room(number: int, elements: int) -> records.Parts:
         force=np.empty((_PARTS, nodes)),
         approach=np.empty((_PARTS, nodes + 1)),
         rate=np.empty((_PARTS, nodes + 1)),
+        closing=np.empty((_PARTS, nodes + 1)),
         delta=np.empty((_PARTS, nodes + 1)),
         work=np.empty(_PARTS),
         dissipated=np.empty(_PARTS),

@@ -328,7 +328,7 @@ class March:
         for place, (contact, history, trend) in enumerate(zip(pushing, stretch.contacts, stretch.trend.tolist(), strict=True)):
             record_peaks(contact.impact, stretch, place, self.time, stretch.indentations(place))
             contact.delta, contact.force, contact.trend = float(history.delta[-1]), float(history.force[-1]), trend
-            contact.fresh, contact.closing = False, float(stretch.closing_rates(place)[-1]) if contact.local.law.memories() else np.inf
+            contact.fresh, contact.closing = False, float(history.closing[-1]) if contact.local.law.memories() else np.inf
         end, lost = stretch.end, stretch.lost
         for contact in self.active.values():
             if not contact.pushes:  # recoiling contacts, which are not part of the stretch

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vibroimpact.arrays import Floats
+from vibroimpact.dynamics.core.peak import nodal_value_between
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.vibrating.free_motion import FreePhase
 from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
@@ -145,7 +146,7 @@ class _Neighbour:
             return float("nan")
         stretch, force_difference = visit.strongest
         top, force = stretch.peak_force()
-        force_change = float(stretch.rule.interpolate(np.array([top]), force_difference)[0]) / force
+        force_change = nodal_value_between(stretch.basis.basis, force_difference, top) / force
         speed_change = float(stretch.system.rigid_motion(self.difference)[1][0]) / max(abs(speed), _SLOW * visit.speed)
         return max(abs(visit.closing) / visit.speed, abs(force_change), abs(speed_change))
 
@@ -168,7 +169,7 @@ class _Neighbour:
         """Shift the difference to the separation of each drop, if they come from a stretch."""
         if self.last_stretch is not None:
             excess = float(self.last_stretch.system.approach(self.difference)[0])
-            self.shift_to_event(self.last_stretch, excess, float(self.last_stretch.closing_rates()[-1]))
+            self.shift_to_event(self.last_stretch, excess, float(self.last_stretch.contacts[0].closing[-1]))
         self.last_stretch = None
 
     def update_memory(self, stretch: VibratingStretch) -> None:
@@ -180,7 +181,7 @@ class _Neighbour:
         if self.force_jumps(stretch):
             x = np.array([1.0 - _STEP, 1.0])
             closing, time = (
-                self.last_stretch.rule.weights(x).T @ self.last_stretch.closing_rates(),
+                self.last_stretch.rule.weights(x).T @ self.last_stretch.contacts[0].closing,
                 self.last_stretch.length * self.last_stretch.rule.map_time(x),
             )
             excess = float(system.rates(self.difference)[0]) - system.mobility.sum() * self.force_difference

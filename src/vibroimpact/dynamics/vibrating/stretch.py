@@ -131,13 +131,6 @@ class VibratingStretch:
         """State at the end."""
         return self.motion.end
 
-    def closing_rates(self, contact: int = 0) -> Floats:
-        """Return the rate of the approach at a contact, with coordinates inside the contact [m/s], at the start and the nodes (N + 1,)."""
-        rate, inner = self.contacts[contact].rate, self.system.inner_shape[self.view.contacts[contact]]
-        if not self.view.modes.inside:
-            return rate
-        return np.asarray(rate + np.concatenate([self.start.velocity[None], self.velocities]) @ inner)
-
     def state(self, time: Floats) -> State:
         """Return the state at times since the start [s] (T,)."""
         start, h, across, load = self.start, self.length, np.asarray(time)[:, None], self.system.load
