@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.arrays import Complex, Floats
+from vibroimpact.arrays import Complex, Floats, Integers
 from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.records import Basis, Motion, Start, Surfaces
 
@@ -77,32 +77,47 @@ def write_slopes(surfaces: Surfaces, sigma: float, sigma_imaginary: float, admit
         slopes[1, mode] = -(slope * squared_imaginary + slope_imaginary * squared)
 
 
-@compiled(lambda t: t.tuple(t.real, t.real)(t.vector, t.matrix))
-def weighted_sum(weights: Floats, values: Floats) -> tuple[float, float]:
-    """Return the sums of real and imaginary parts of all modes (2, m), times their weights (m,).
+@compiled(lambda t: t.tuple(t.integers, t.integers)(t.matrix))
+def extents(weights: Floats) -> tuple[Integers, Integers]:
+    """Return the first mode that has a weight in each row (W, m), and the one after the last: the modes of the other body have none."""
+    first = np.zeros(len(weights), dtype=np.int64)
+    last = np.zeros(len(weights), dtype=np.int64)
+    for row in range(len(weights)):
+        last[row] = weights.shape[1]
+        while first[row] < last[row] and weights[row, first[row]] == 0.0:
+            first[row] += 1
+        while first[row] < last[row] and weights[row, last[row] - 1] == 0.0:
+            last[row] -= 1
+    return first, last
 
-    Modes without a weight at either end, as those of the other body, are left out; two sums side by side wait less for one another.
-    """
-    first = 0
-    last = len(weights)
-    while first < last and weights[first] == 0.0:
-        first += 1
-    while first < last and weights[last - 1] == 0.0:
-        last -= 1
-    real = 0.0
-    imaginary = 0.0
-    if (last - first) % 2:
-        last -= 1
-        real = weights[last] * values[0, last]
-        imaginary = weights[last] * values[1, last]
-    other_real = 0.0
+
+@compiled(lambda t: t.tuple(t.real, t.real)(t.vector, t.vector, t.vector))
+def weighted_sum(weights: Floats, real: Floats, imaginary: Floats) -> tuple[float, float]:
+    """Return the sums of real and imaginary parts, times their weights; two sums of each side by side wait less for one another."""
+    pairs = len(weights) // 2 * 2
+    total = 0.0
+    total_imaginary = 0.0
+    other = 0.0
     other_imaginary = 0.0
-    for mode in range(first, last, 2):
-        real += weights[mode] * values[0, mode]
-        imaginary += weights[mode] * values[1, mode]
-        other_real += weights[mode + 1] * values[0, mode + 1]
-        other_imaginary += weights[mode + 1] * values[1, mode + 1]
-    return real + other_real, imaginary + other_imaginary
+    for mode in range(0, pairs, 2):
+        total += weights[mode] * real[mode]
+        total_imaginary += weights[mode] * imaginary[mode]
+        other += weights[mode + 1] * real[mode + 1]
+        other_imaginary += weights[mode + 1] * imaginary[mode + 1]
+    for mode in range(pairs, len(weights)):
+        total += weights[mode] * real[mode]
+        total_imaginary += weights[mode] * imaginary[mode]
+    return total + other, total_imaginary + other_imaginary
+
+
+@compiled(lambda t: t.void(t.matrix, t.integers, t.integers, t.matrix, t.integer, t.cube))
+def write_sums(weights: Floats, first: Integers, last: Integers, values: Floats, k: int, sums: Floats) -> None:
+    """Write the sums of values of all modes (2, m), times their weights in each row within its extent, into `sums` (2, W, H) at k."""
+    for row in range(len(weights)):
+        within = weights[row, first[row] : last[row]]
+        real, imaginary = weighted_sum(within, values[0, first[row] : last[row]], values[1, first[row] : last[row]])
+        sums[0, row, k] = real
+        sums[1, row, k] = imaginary
 
 
 @compiled(lambda t: t.cube(t.of(Surfaces), t.matrix, t.matrix, t.real))
@@ -110,11 +125,11 @@ def modal_sums(surfaces: Surfaces, weights: Floats, eigenvalues: Floats, length:
     """Return the weighted sums over the modes of 1/(1 + d sigma + w^2 sigma^2) at all eigenvalues, as parts (2, W, H)."""
     number = eigenvalues.shape[1]
     sums = np.empty((2, len(weights), number))
+    first, last = extents(weights)
     admittances = np.empty((2, len(surfaces.damping)))
     for k in range(number):
         write_admittances(surfaces, length * eigenvalues[0, k], length * eigenvalues[1, k], admittances)
-        for row in range(len(weights)):
-            sums[0, row, k], sums[1, row, k] = weighted_sum(weights[row], admittances)
+        write_sums(weights, first, last, admittances, k, sums)
     return sums
 
 
@@ -123,6 +138,7 @@ def modal_slopes(surfaces: Surfaces, weights: Floats, eigenvalues: Floats, lengt
     """Return the derivatives of the sums of `modal_sums` by sigma (2, W, H)."""
     number = eigenvalues.shape[1]
     sums = np.empty((2, len(weights), number))
+    first, last = extents(weights)
     admittances = np.empty((2, len(surfaces.damping)))
     slopes = np.empty((2, len(surfaces.damping)))
     for k in range(number):
@@ -130,8 +146,7 @@ def modal_slopes(surfaces: Surfaces, weights: Floats, eigenvalues: Floats, lengt
         sigma_imaginary = length * eigenvalues[1, k]
         write_admittances(surfaces, sigma, sigma_imaginary, admittances)
         write_slopes(surfaces, sigma, sigma_imaginary, admittances, slopes)
-        for row in range(len(weights)):
-            sums[0, row, k], sums[1, row, k] = weighted_sum(weights[row], slopes)
+        write_sums(weights, first, last, slopes, k, sums)
     return sums
 
 
