@@ -6,22 +6,27 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled, force_at
-from vibroimpact.dynamics.core.attempt import weights_at
 from vibroimpact.dynamics.core.records import Basis, Contacts
 
 _POINTS = 33
 _ROUNDS = 3  # each narrows the search to a sixteenth
 
 
-@compiled(lambda t: t.real(t.of(Basis), t.vector, t.real))
-def value_between(basis: Basis, values: Floats, x: float) -> float:
-    """Return the value at x in [0, 1] of a quantity with values at the start and the nodes (N + 1,)."""
-    weights = np.empty(len(values))
-    weights_at(basis, x, weights)
+@compiled(lambda t: t.tuple(t.real, t.real)(t.of(Basis), t.vector, t.vector, t.real))
+def values_between(basis: Basis, values: Floats, others: Floats, x: float) -> tuple[float, float]:
+    """Return the values at x in [0, 1] of two quantities with values at the start and the nodes (N + 1,)."""
+    total = 0.0
     value = 0.0
+    other = 0.0
     for point in range(len(values)):
-        value += weights[point] * values[point]
-    return value
+        distance = x - basis.places[point]
+        if distance == 0.0:
+            return float(values[point]), float(others[point])
+        weight = basis.barycentric[point] / distance
+        total += weight
+        value += weight * values[point]
+        other += weight * others[point]
+    return value / total, other / total
 
 
 @compiled(lambda t: t.real(t.of(Basis), t.vector, t.real))
@@ -43,8 +48,8 @@ def nodal_value_between(basis: Basis, values: Floats, x: float) -> float:
 @compiled(lambda t: t.real(t.of(Basis), t.of(Contacts), t.vector, t.vector, t.real))
 def force_between(basis: Basis, law: Contacts, delta: Floats, rate: Floats, x: float) -> float:
     """Return the force of a law [N] at x in [0, 1], from its indentation and its rate at the start and the nodes (N + 1,)."""
-    reached = max(value_between(basis, delta, x), law.release[0])
-    static, dissipative = force_at(law.laws[0])(reached, value_between(basis, rate, x), law.speed[0], law.coefficients[0])
+    reached, speed = values_between(basis, delta, rate, x)
+    static, dissipative = force_at(law.laws[0])(max(reached, law.release[0]), speed, law.speed[0], law.coefficients[0])
     return float(static + dissipative)
 
 
@@ -57,9 +62,9 @@ def peak_of(basis: Basis, values: Floats) -> tuple[float, float]:
     x = 0.0
     for _ in range(_ROUNDS):
         for point in range(_POINTS):
-            sampled[point] = value_between(basis, values, low + (high - low) * point / (_POINTS - 1))
+            sampled[point], _ = values_between(basis, values, values, low + (high - low) * point / (_POINTS - 1))
         x, low, high = narrowed(sampled, low, high)
-    return x, value_between(basis, values, x)
+    return x, values_between(basis, values, values, x)[0]
 
 
 @compiled(lambda t: t.tuple(t.real, t.real)(t.of(Basis), t.of(Contacts), t.vector, t.vector))

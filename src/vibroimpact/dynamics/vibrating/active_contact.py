@@ -138,17 +138,18 @@ def closing_speed(system: LinearSystem, state: State, number: int) -> float:
 def motion_speed(system: LinearSystem, number: int, law: CompliantLaw, closing: float) -> float:
     """Return the speed scale of the motion in a contact [m/s]: the closing speed, or the speed that gravity adds at a soft touch."""
     mass, gravity = float(system.mass[number]), max(float(system.gravity[number]), 0.0)
+    if gravity and float(law.forces(closing**2 / gravity, 0.0, closing)[0]) >= mass * gravity:
+        return closing  # the sphere sinks in by less than the height of a fall to this speed
     sag = float(static_indentation(law, np.array([mass * gravity]))[0]) if gravity else 0.0
     return max(closing, float(np.sqrt(gravity * sag)))
 
 
-def record_peaks(impact: Impact, stretch: VibratingStretch, place: int, start: float, indentations: Floats) -> None:
-    """Add the peaks of force and indentation of one contact within a stretch to its impact, and its impulse.
+def record_peaks(impact: Impact, stretch: VibratingStretch, place: int, start: float, force: float, indentations: Floats) -> None:
+    """Add the peaks of force and indentation of one contact within a stretch to its impact.
 
-    `start`: time at which the stretch begins [s]. `indentations`: of the centre above, at the start and the nodes [m] (N + 1,).
+    `start`: time at which the stretch begins [s]. `force`: the largest at a node [N]. `indentations`: of the centre above, at the start and
+    the nodes [m] (N + 1,).
     """
-    rule, contact = stretch.rule, stretch.contacts[place]
-    force = float(contact.force.max()) if contact.local.law.tension == "kept" else max(float(contact.force.max()), 0.0)
-    impact.force.add(force, start, stretch, partial(stretch.peak_force, place))
-    impact.indentation.add(float(indentations[1:].max()), start, stretch, partial(peak_of, stretch.basis.basis, indentations))
-    impact.impulse += stretch.length * float(rule.integral[-1] @ contact.force)
+    law = stretch.contacts[place].local.law
+    impact.force.add(force if law.tension == "kept" else max(force, 0.0), start, stretch, partial(stretch.peak_force, place))
+    impact.indentation.add(max(indentations[1:].tolist()), start, stretch, partial(peak_of, stretch.basis.basis, indentations))

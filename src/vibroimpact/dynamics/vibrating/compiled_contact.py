@@ -104,6 +104,7 @@ class CompiledContact:
             march.plastic += float(before.law.plastic_work(turned_at))
             self.locals.append(before.after_indentation(turned_at))
         written = records.Parts._make(values[:count].copy() for values in parts)
+        largest = written.force.max(axis=1).tolist()
         for part in range(count):
             local = self.locals[written.memories[part]]
             start = float(written.start[part])
@@ -114,7 +115,7 @@ class CompiledContact:
                 continue
             stretch = self._stretch(written, part, local, begun)
             march.parts.append(MotionPart(start, stretch))
-            record_peaks(self.active.impact, stretch, 0, start, written.indentation[part])
+            record_peaks(self.active.impact, stretch, 0, start, largest[part], written.indentation[part])
             end = State(*self.state)
             if part + 1 < count:
                 end = State(written.displacement[part + 1], written.velocity[part + 1], written.local[part + 1])

@@ -326,7 +326,8 @@ class March:
     def accept(self, pushing: list[ActiveContact], stretch: VibratingStretch) -> None:
         """Append a stretch to the history, and update the contacts at its end."""
         for place, (contact, history, trend) in enumerate(zip(pushing, stretch.contacts, stretch.trend.tolist(), strict=True)):
-            record_peaks(contact.impact, stretch, place, self.time, stretch.indentations(place))
+            record_peaks(contact.impact, stretch, place, self.time, float(history.force.max()), stretch.indentations(place))
+            contact.impact.impulse += stretch.length * float(stretch.rule.integral[-1] @ history.force)
             contact.delta, contact.force, contact.trend = float(history.delta[-1]), float(history.force[-1]), trend
             contact.fresh, contact.closing = False, float(history.closing[-1]) if contact.local.law.memories() else np.inf
         end, lost = stretch.end, stretch.lost
