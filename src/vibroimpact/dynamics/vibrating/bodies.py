@@ -232,7 +232,7 @@ class VibratingBodies:
     def pass_flight(self, drops: Drops, motions: Motions, elapsed: Floats) -> None:
         """Advance the coordinates of drops by free motion."""
         for drop, motion, time in zip(drops, motions, elapsed, strict=True):
-            state = motion.state(time)
+            state = motion.state_after(float(time))
             self.lost[drop] += motion.lost_at(state)
             self.place(drop, state)
 

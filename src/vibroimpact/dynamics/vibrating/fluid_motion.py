@@ -26,9 +26,13 @@ class FluidMotion(FreeMotion):
         displacement[..., 0], speed[..., 0] = -root * gap, -root * velocity
         return replace(vibrating, displacement=displacement, velocity=speed)
 
+    def state_after(self, time: float) -> State:
+        """Return the state at one time since the start [s]."""
+        return self.state(np.array(time))
+
     def after(self, time: float) -> FluidMotion:
         """Return the motion from a time on [s]."""
-        return FluidMotion(self.system, self.state(np.array(time)), self.flight.after(self._when(np.array(time))))
+        return FluidMotion(self.system, self.state_after(time), self.flight.after(self._when(np.array(time))))
 
     def pull(self, time: float) -> float:
         """Return a bound of the acceleration of the approach by what acts on the sphere [m/s^2], from a time on [s].

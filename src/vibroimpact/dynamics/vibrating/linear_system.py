@@ -27,6 +27,7 @@ import numpy as np
 
 from vibroimpact.arrays import Bools, Floats, Indices
 from vibroimpact.dynamics.core import records
+from vibroimpact.dynamics.core.flight import state_after
 from vibroimpact.dynamics.vibrating.oscillators import Oscillators
 
 _ALIKE = 1e-12  # of the sum of the magnitudes of the terms of an acceleration: smaller sums are rounding errors
@@ -287,9 +288,13 @@ class FreeMotion:
             start.local * np.exp(-system.rate * later),
         )
 
+    def state_after(self, time: float) -> State:
+        """Return the state at one time since the start [s], without the arrays of many times."""
+        return State(*state_after(self.system.record_of(0), self.start.record, time))
+
     def after(self, time: float) -> FreeMotion:
         """Return the motion from a time on [s]."""
-        return FreeMotion(self.system, self.state(np.array(time)))
+        return FreeMotion(self.system, self.state_after(time))
 
     def lost_by(self, time: Floats) -> Floats:
         """Return the energy lost since the start [J], (..., n + 1): in each coordinate, and last in the massless elements."""

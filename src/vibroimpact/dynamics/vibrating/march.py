@@ -168,7 +168,8 @@ class March:
         """Append a free motion of a length [s] to the history."""
         motion = FreePhase(free, length, tuple((number, contact.local) for number, contact in self.active.items()))
         self.rubbing = None if self.rubbing is None else self.rubbing.flown(length)
-        self.append_motion(motion, free.state(np.array(length)), motion.lost_by(np.array(length)))
+        state = free.state_after(length)
+        self.append_motion(motion, state, motion.lost_at(state))
 
     def end_recoil(self, contact: ActiveContact, *, parts: bool) -> None:
         """End the recoil of a contact, which separates or pushes again."""

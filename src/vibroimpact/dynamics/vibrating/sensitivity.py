@@ -19,6 +19,7 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.core.peak import nodal_value_between
 from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.vibrating.contact_view import contact_view
 from vibroimpact.dynamics.vibrating.free_motion import FreePhase
 from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.vibrating.local import LocalContact
@@ -105,10 +106,8 @@ class _Neighbour:
         """Propagate through free motion, in recoil (`inside`) or between contacts."""
         if not inside:
             self.separate()
-        system, before = motion.system, self.difference
-        cosine, sine = system.transition(np.array(length)).swapaxes(0, 1)
-        place, speed = cosine * before.displacement + sine * before.velocity
-        self.difference = State(place, speed, before.local * np.exp(-system.rate * length))
+        free = contact_view(motion.system, (0,)).without_load.system
+        self.difference = FreeMotion(free, self.difference).state_after(length)
         self.separated, self.last_stretch = not inside, None
 
     def pass_visit(self, motions: Sequence[VibratingStretch | FreePhase]) -> None:
