@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -20,15 +20,18 @@ class FluidMotion(FreeMotion):
 
     def state(self, time: Floats) -> State:
         """Return the state at times since the start [s] (...)."""
-        vibrating, root = super().state(time), 1.0 / self.system.shape[0, 0]
-        gap, velocity = (part[..., 0] for part in self.flight.at(self._when(time)))
-        displacement, speed = vibrating.displacement.copy(), vibrating.velocity.copy()
-        displacement[..., 0], speed[..., 0] = -root * gap, -root * velocity
-        return replace(vibrating, displacement=displacement, velocity=speed)
+        return self._with_sphere(super().state(time), time)
 
     def state_after(self, time: float) -> State:
         """Return the state at one time since the start [s]."""
-        return self.state(np.array(time))
+        return self._with_sphere(super().state_after(time), np.array(time))
+
+    def _with_sphere(self, vibrating: State, time: Floats) -> State:
+        """Return states, which are changed, with the sphere where it flies."""
+        root = 1.0 / self.system.shape[0, 0]
+        gap, velocity = (part[..., 0] for part in self.flight.at(self._when(time)))
+        vibrating.displacement[..., 0], vibrating.velocity[..., 0] = -root * gap, -root * velocity
+        return vibrating
 
     def after(self, time: float) -> FluidMotion:
         """Return the motion from a time on [s]."""

@@ -46,7 +46,7 @@ def time_to_separation(motion: FreeMotion, level: float, contact: int = 0) -> fl
 
 
 def _approach(motion: FluidMotion, time: float) -> Approach:
-    return touch.approach_in(motion.system.record_of(0), motion.state(np.array(time)).record)
+    return touch.approach_in(motion.system.record_of(0), motion.state_after(time).record)
 
 
 def _next_touch_in_fluid(motion: FluidMotion, level: float, until: float) -> float:
