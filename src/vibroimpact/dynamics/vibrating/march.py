@@ -168,7 +168,8 @@ class March:
         """Append a free motion of a length [s] to the history."""
         motion = FreePhase(free, length, tuple((number, contact.local) for number, contact in self.active.items()))
         self.rubbing = None if self.rubbing is None else self.rubbing.flown(length)
-        self.append_motion(motion, free.state(np.array(length)), motion.lost_by(np.array(length)))
+        state = free.state_after(length)
+        self.append_motion(motion, state, motion.lost_at(state))
 
     def end_recoil(self, contact: ActiveContact, *, parts: bool) -> None:
         """End the recoil of a contact, which separates or pushes again."""
@@ -328,9 +329,10 @@ class March:
     def accept(self, pushing: list[ActiveContact], stretch: VibratingStretch) -> None:
         """Append a stretch to the history, and update the contacts at its end."""
         for place, (contact, history, trend) in enumerate(zip(pushing, stretch.contacts, stretch.trend.tolist(), strict=True)):
-            record_peaks(contact.impact, stretch, place, self.time, stretch.indentations(place))
+            record_peaks(contact.impact, stretch, place, self.time, float(history.force.max()), stretch.indentations(place))
+            contact.impact.impulse += stretch.length * float(stretch.rule.integral[-1] @ history.force)
             contact.delta, contact.force, contact.trend = float(history.delta[-1]), float(history.force[-1]), trend
-            contact.fresh, contact.closing = False, float(stretch.closing_rates(place)[-1]) if contact.local.law.memories() else np.inf
+            contact.fresh, contact.closing = False, float(history.closing[-1]) if contact.local.law.memories() else np.inf
         end, lost = stretch.end, stretch.lost
         for contact in self.active.values():
             if not contact.pushes:  # recoiling contacts, which are not part of the stretch
