@@ -131,7 +131,7 @@ class FluidFlight(Flight):
     def acceleration(self, time: Floats) -> Floats:
         """Return the upward acceleration at times [s] (..., B) [m/s^2]."""
         velocity = self._moving(time).velocity
-        drops, flat = self._drops(velocity[0]), velocity.reshape(len(velocity), -1)
+        drops, flat = self._drops(velocity[0]), np.ascontiguousarray(velocity.reshape(len(velocity), -1))
         return np.asarray(fall.accelerations(self._falling, drops, flat)[-1].reshape(velocity.shape[1:]))
 
     def carry(self, sphere: Sphere, state: State, time: Floats) -> State:
@@ -148,14 +148,17 @@ class FluidFlight(Flight):
             drag=fluid.drag_by_square(self.radius, self.density) * alike,
             coefficient=(np.nan if constant is None else constant) * alike,
             inertia=fluid.inertia(self.density) * alike,
-            gravity=np.concatenate([self.along[1], -self.gravity[None]]),
+            gravity=np.ascontiguousarray(np.concatenate([self.along[1], -self.gravity[None]])),  # in the order that the core takes
         )
 
     @cached_property
     def _rises(self) -> list[Moving]:
         """Motion at the start of the flight, at the end of each piece up to the top, and there."""
-        velocity, none = np.concatenate([self.along[0], self.velocity[None]]), np.zeros(len(self.start))
-        found = [Moving(none, np.concatenate([np.zeros_like(self.along[0]), self.gap[None]]), velocity, none)]
+        velocity = np.ascontiguousarray(np.concatenate([self.along[0], self.velocity[None]]))
+        place = np.zeros(velocity.shape)
+        place[-1] = self.gap
+        none = np.zeros(len(self.start))
+        found = [Moving(none, place, velocity, none)]
         while (rising := np.flatnonzero((found[-1].velocity[-1] > 0.0) & (self.gravity > 0.0))).size:
             higher = fall.rise(_rules().rising, _falling_of(self._falling, rising), _taken(found[-1], rising))
             found.append(_put(found[-1], rising, higher))
