@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.contact.friction.turning_points import TurningPoints
+from vibroimpact.dynamics.core.turning_points import add_rim, begin_at_rim, end_slip, held_at, new_curve
 
 
 def by_turning_points(depth: Floats, displacement: Floats) -> Floats:
@@ -13,25 +15,32 @@ def by_turning_points(depth: Floats, displacement: Floats) -> Floats:
 
     `depth`, `displacement`: in the same unit, the latter over kappa (T,).
     """
-    curves, one, slips, known, integral, found = TurningPoints(1), np.array([0]), 0.0, None, np.zeros(1), [0.0]
-    for before, deep, start, moved in zip(depth, depth[1:, None], displacement, displacement[1:, None], strict=False):
-        fallen = [sign for sign in (1.0, -1.0) if deep - before < sign * (moved - start)]
-        if slips and slips not in fallen:
-            curves.turn(one, np.array([slips]), known, (np.array([before]), np.array([start]), integral))
-        if not fallen:
-            inner, outer = np.sqrt(before), np.sqrt(deep)
-            integral = integral + (moved - start) * 2.0 / 3.0 * (inner + outer - inner * outer / (inner + outer))
-            curves.push(one, deep, moved, integral)
-            slips = 0.0
+    curve = new_curve(2 * len(depth) + 2)
+    direction = 0.0
+    held = 0.0
+    front = 0.0
+    integral = 0.0
+    integrals = [0.0]
+    path = list(zip(depth.tolist(), displacement.tolist(), strict=True))
+    for (before, start), (deep, moved) in itertools.pairwise(path):
+        directions = [sign for sign in (1.0, -1.0) if deep - before < sign * (moved - start)]
+        if direction and direction not in directions:
+            end_slip(curve, direction, held, front, before, start, integral)
+        if not directions:
+            inner = before**0.5
+            outer = deep**0.5
+            integral += (moved - start) * 2.0 / 3.0 * (inner + outer - inner * outer / (inner + outer))
+            add_rim(curve, deep, moved, integral)
+            direction = 0.0
         else:
-            if slips not in fallen:  # it begins to slip, where both directions may: in that in which it slips deeper
-                tried = {}
-                for sign in fallen:
-                    curves.begin(one)
-                    tried[sign] = curves.held(one, np.array([sign]), deep - sign * moved)[1][0]
-                slips = min(tried, key=lambda sign: tried[sign])
-                curves.begin(one)
-            known = curves.held(one, np.array([slips]), deep - slips * moved)
-            integral = slips * (2.0 / 3.0 * deep**1.5 - known[0])
-        found.append(float(integral[0]))
-    return np.array(found)
+            if direction not in directions:  # it begins to slip, where both directions may: in that in which it slips deeper
+                fronts = {}
+                for sign in directions:
+                    begin_at_rim(curve)
+                    fronts[sign] = held_at(curve, sign, deep - sign * moved)[1]
+                direction = min(fronts, key=lambda sign: fronts[sign])
+                begin_at_rim(curve)
+            held, front = held_at(curve, direction, deep - direction * moved)
+            integral = direction * (2.0 / 3.0 * deep**1.5 - held)
+        integrals.append(integral)
+    return np.array(integrals)

@@ -19,10 +19,3 @@ Drops = Indices
 
 Array = Any
 """A float, or an array of any library that supports NumPy's operators and ufuncs."""
-
-
-def put(array: Floats, columns: Indices, values: Floats) -> None:
-    """Write values (..., b) into columns of an array (..., B): row by row, which NumPy does several times faster than all at once."""
-    if columns.size:
-        for row, value in zip(array.reshape(-1, array.shape[-1]), values.reshape(-1, columns.size), strict=True):
-            row[columns] = value

@@ -12,6 +12,8 @@ from support import one_in
 from turning_history import by_turning_points
 from vibroimpact.arrays import Floats
 from vibroimpact.contact.friction.laws.mdr import Mdr
+from vibroimpact.dynamics.core.tangential_history import history_after
+from vibroimpact.dynamics.oblique.tangential_history import tangential_history
 from vibroimpact.dynamics.vibrating.rubbing import lost_in_microslip
 
 AGAINST = Against(
@@ -225,11 +227,11 @@ def test_a_cycle_of_tangential_force_is_lost_in_microslip(agrees: Agrees, share:
     contact = np.cbrt(0.75 * force * radius / modulus)
     way = MU * modulus / shear * contact**2 / radius * (1.0 - (1.0 - share) ** (2.0 / 3.0))
     moved = np.stack([way * np.diff(np.sin(np.linspace(0.0, 2.5 * np.pi, 1001))), np.zeros(1000)], axis=1)
-    history, friction = law.history(force).after(force, np.zeros(2))
-    frictions, slid = [friction], [history.slid]
+    history = history_after(tangential_history(law, force), force, 0.0, 0.0)
+    frictions, slid = [history.force], [history.slid]
     for step in moved:
-        history, friction = history.after(force, step)
-        frictions.append(friction)
+        history = history_after(history, force, *step)
+        frictions.append(history.force)
         slid.append(history.slid)
     assert np.max(frictions) == pytest.approx(share * MU * force, rel=1e-3)
     assert not np.any(slid)

@@ -13,6 +13,8 @@ from scipy.integrate import solve_ivp
 import vibroimpact as vi
 from agreement import Against, Agrees
 from turning_history import by_turning_points
+from vibroimpact.dynamics.core.tangential_history import history_after
+from vibroimpact.dynamics.oblique.tangential_history import tangential_history
 from vibroimpact.dynamics.vibrating.bodies import slices_of
 from vibroimpact.structures.modal_model import ModalBasis
 
@@ -354,10 +356,11 @@ def test_springs_follow_the_turning_points() -> None:
     ratio = 0.1 * MODULUS / SHEAR
     curve = 2.0 * SHEAR * RADIUS**0.5 * ratio * by_turning_points(depth, moved / ratio)
     force = STIFFNESS * depth[::20] ** 1.5
-    springs: Any = friction("mdr", 0.1).history(float(force.max()))
+    springs = tangential_history(friction("mdr", 0.1), float(force.max()))
     for point in range(1, steps + 1):
         way = (moved[20 * point] - moved[20 * point - 20]) * np.array([0.6, 0.8])
-        springs, rub = springs.after(float(force[point]), way)
+        springs = history_after(springs, float(force[point]), *way)
+        rub = springs.force
         assert rub @ [0.6, 0.8] == pytest.approx(curve[20 * point], abs=1e-4 * 0.1 * force.max())
         assert abs(rub @ [0.8, -0.6]) < 1e-12 * force.max()
 

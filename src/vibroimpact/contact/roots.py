@@ -144,24 +144,3 @@ def solve_monotonic(
     place = find_root(lambda value: function(value) - wanted, low, high, close=_RESIDUAL)
     discontinuous = ~(np.abs(function(place) - wanted) <= _JUMP)
     return MonotonicRoots(np.where(missed | discontinuous, np.nan, place), least, most)
-
-
-def locate_maximum(values: Callable[[Array], Array]) -> float:
-    """Return the argument in [0, 1] at which a smooth function is largest, to 1e-6.
-
-    Examples
-    --------
-    >>> round(locate_maximum(lambda x: x * (0.8 - x)), 5)
-    0.4
-    """
-    low, high = 0.0, 1.0
-    for _ in range(3):
-        x = np.linspace(low, high, 33)
-        found = values(x)
-        best = int(found.argmax())
-        low, high = x[max(best - 1, 0)], x[min(best + 1, 32)]
-    if 0 < best < 32:  # vertex of the parabola through three points, insensitive to rounding
-        before, top, after = found[best - 1 : best + 2]
-        bend = 2.0 * top - before - after
-        return float(x[best] + 0.25 * (high - low) * (after - before) / bend) if bend > 0.0 else float(x[best])
-    return float(x[best])

@@ -46,9 +46,10 @@ class Air(Fluid):
     viscosity: Array = AIR_VISCOSITY
     drag_coefficient: Array | None = None
 
-    def coefficient(self, reynolds: Array) -> Array:
-        """Return the drag coefficient at a Reynolds number: that of a smooth sphere, or the constant one that was given."""
-        return super().coefficient(reynolds) if self.drag_coefficient is None else self.drag_coefficient
+    @property
+    def constant_coefficient(self) -> Array | None:
+        """The constant drag coefficient that was given, or None."""
+        return self.drag_coefficient
 
 
 def check_thin(density: Array, of_sphere: Array, key: str = "") -> None:

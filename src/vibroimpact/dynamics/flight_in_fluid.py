@@ -14,126 +14,47 @@ keeps it.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
-from typing import Literal
+from functools import cache, cached_property
 
 import numpy as np
 
 from vibroimpact.arrays import Bools, Drops, Floats
 from vibroimpact.bodies.ball import mean_density
 from vibroimpact.dynamics.collocation import collocation_rule
+from vibroimpact.dynamics.core import fall
+from vibroimpact.dynamics.core.fall_records import Corners, Falling, FallRule, FallRules, Moving
 from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.fluid import Fluid
 from vibroimpact.dynamics.oblique.state import Sphere, State
 from vibroimpact.dynamics.problem import Problem
 
 _NODES, _ROOT = 12, 2
-_LONGEST = 0.25  # of the time constant of the drag: length of a piece
-_SWEEPS = 60
-_CLOSE = 1e-13  # of the speeds: change by the last sweep, which is 10 times the error that is left
-_STEADY = 1e-14  # of gravity: an acceleration that counts as none
-_STILL = 1e-30  # m/s
 
 
-@dataclass(frozen=True)
-class Moving:
-    """Motion of b spheres.
-
-    `time`: since the start of the flight [s] (b,). `place` [m], `velocity` [m/s]: (C, b), the last component along the normal. `lost`:
-    energy per mass of the sphere that drag has taken since the start [J/kg] (b,).
-    """
-
-    time: Floats
-    place: Floats
-    velocity: Floats
-    lost: Floats
-
-    def take(self, which: Drops | Bools) -> Moving:
-        """Return the motion of some of them."""
-        return Moving(self.time[which], self.place[:, which], self.velocity[:, which], self.lost[which])
-
-    def put(self, which: Drops | Bools, others: Moving) -> Moving:
-        """Return the motion with that of some of them replaced."""
-        found = Moving(self.time.copy(), self.place.copy(), self.velocity.copy(), self.lost.copy())
-        for name, values in vars(found).items():
-            values[..., which] = getattr(others, name)
-        return found
+def _taken(moving: Moving, which: Drops | Bools) -> Moving:
+    """Return the motion of some of the spheres."""
+    return Moving(*(np.ascontiguousarray(part[..., which]) for part in moving))
 
 
-Length = Callable[[Floats, Floats], Floats]
-"""Length of a piece [s] (b,), from the velocity and the displacement at its end that the acceleration makes, over the length and over its
-square (C, b)."""
+def _put(moving: Moving, which: Drops | Bools, others: Moving) -> Moving:
+    """Return the motion with that of some of the spheres replaced."""
+    found = Moving(*(part.copy() for part in moving))
+    for part, values in zip(found, others, strict=True):
+        part[..., which] = values
+    return found
 
 
-@dataclass(frozen=True)
-class Falling:
-    """What spheres fall through, and how they are pulled: `radius` [m], `density` [kg/m^3] (b,), `gravity` without drag [m/s^2] (C, b)."""
+def _falling_of(falling: Falling, which: Drops) -> Falling:
+    """Return what some of the spheres fall through."""
+    return Falling(*(np.ascontiguousarray(part[..., which]) for part in falling))
 
-    fluid: Fluid
-    radius: Floats
-    density: Floats
-    gravity: Floats
 
-    def take(self, which: Drops | Bools) -> Falling:
-        """Return those of some of them."""
-        return Falling(self.fluid.take(which), self.radius[which], self.density[which], self.gravity[:, which])
-
-    def acceleration(self, velocity: Floats) -> tuple[Floats, Floats]:
-        """Return accelerations (..., C, b), and powers per mass that drag takes [W/kg] (..., b), at velocities (..., C, b)."""
-        speed = np.sqrt((velocity**2).sum(axis=-2))
-        drag = self.fluid.drag(speed, self.radius, self.density)
-        return self.gravity - (drag / np.maximum(speed, _STILL))[..., None, :] * velocity, drag * speed * self.fluid.inertia(self.density)
-
-    def longest(self, velocity: Floats) -> Floats:
-        """Return the longest piece from given velocities [s] (b,); infinite where the velocity stays."""
-        speed, pull = (np.sqrt((part**2).sum(axis=0)) for part in (velocity, self.gravity))
-
-        def constant(speed: Floats) -> Floats:
-            some = np.maximum(speed, _STILL)
-            return np.asarray(some / self.fluid.drag(some, self.radius, self.density))
-
-        time = constant(speed)
-        for _ in range(6):  # the constant that belongs to the speed after it
-            time = np.sqrt(time * constant(speed + pull * time))
-        return np.where(self.keeps(velocity), np.inf, 0.5 * _LONGEST * time)
-
-    def keeps(self, velocity: Floats) -> Bools:
-        """Return which velocities (C, b) are kept: the terminal velocity, or rest without gravity."""
-        left, pull, speed = (np.sqrt((part**2).sum(axis=0)) for part in (self.acceleration(velocity)[0], self.gravity, velocity))
-        return np.asarray(np.where(pull > 0.0, left <= _STEADY * pull, speed <= _STILL))
-
-    def advance(self, begin: Moving, time_map: Literal["touch", "release"], length: Length) -> Moving:
-        """Return the motion at the end of a piece."""
-        rule, (now, power) = collocation_rule(_NODES, time_map, _ROOT), self.acceleration(begin.velocity)
-        steady, shape = self.keeps(begin.velocity), (_NODES, *now.shape)
-        now = np.where(steady, 0.0, np.broadcast_to(now, shape))
-        for _ in range(_SWEEPS):
-            gained = (rule.integral @ now.reshape(_NODES, -1)).reshape(shape)
-            time = length(gained[-1], (rule.integral_twice[-1] @ now.reshape(_NODES, -1)).reshape(now.shape[1:]))
-            velocity = begin.velocity + time * gained
-            before, (now, power) = now, self.acceleration(velocity)
-            now = np.where(steady, 0.0, now)
-            change = time * np.abs(now - before).max(axis=(0, 1))
-            if not np.any(change > _CLOSE * np.sqrt((velocity**2).sum(axis=1)).max(axis=0)):
-                break
-        flat = now.reshape(_NODES, -1)
-        gained, moved = ((part[-1] @ flat).reshape(now.shape[1:]) for part in (rule.integral, rule.integral_twice))
-        return Moving(
-            begin.time + time,
-            begin.place + time * (begin.velocity + time * moved),
-            begin.velocity + time * gained,
-            begin.lost + time * (rule.integral[-1] @ power),
-        )
-
-    def rise(self, begin: Moving) -> Moving:
-        """Return the motion at the end of a piece upwards, which the top of the flight ends at the latest."""
-        up, longest = begin.velocity[-1], self.longest(begin.velocity)
-        ends = up <= -self.acceleration(begin.velocity)[0][-1] * longest
-        found = self.advance(begin, "release", lambda gained, _: np.where(ends, -up / gained[-1], longest))
-        found.velocity[-1, ends] = 0.0
-        return found
+@cache
+def _rules() -> FallRules:
+    """Return the rules of pieces up to the top of a flight, and down from there."""
+    rules = [collocation_rule(_NODES, time_map, _ROOT) for time_map in ("release", "touch")]
+    return FallRules(*(FallRule(np.ascontiguousarray(rule.integral), rule.integral_twice[-1].copy()) for rule in rules))
 
 
 @dataclass(frozen=True)
@@ -176,14 +97,15 @@ class FluidFlight(Flight):
             begin = self._falls[0]
             for corner in self._falls[1:]:
                 above = corner.place[-1] >= level
-                begin = begin.put(above, corner.take(above))
+                begin = _put(begin, above, _taken(corner, above))
             height, down = np.maximum(begin.place[-1] - level, 0.0), -begin.velocity[-1]
             front = begin.time == self._falls[-1].time
-            further = falls & front & (_time_to_fall(height, down, 0.5 * self.gravity) > self._falling.longest(begin.velocity))
+            further = falls & front & (_time_to_fall(height, down, 0.5 * self.gravity) > fall.longest_pieces(self._falling, begin.velocity))
             if not further.any():
                 break
             self._fall_on(np.flatnonzero(further))
-        found = self._falling.advance(begin, "touch", lambda _, moved: np.where(falls, _time_to_fall(height, down, -moved[-1]), 0.0))
+        ends = np.where(falls, fall.AT_GAP, fall.GIVEN_TIME)
+        found = fall.follow_pieces(_rules().falling, self._falling, begin, ends, np.where(falls, height, 0.0), down)
         touch = np.where(falls, self.start + found.time, np.inf)
         self._known[:] = [(touch, found)]
         return touch, -found.velocity[-1]
@@ -208,7 +130,9 @@ class FluidFlight(Flight):
 
     def acceleration(self, time: Floats) -> Floats:
         """Return the upward acceleration at times [s] (..., B) [m/s^2]."""
-        return np.asarray(self._falling.acceleration(np.moveaxis(self._moving(time).velocity, 0, -2))[0][..., -1, :])
+        velocity = self._moving(time).velocity
+        drops, flat = self._drops(velocity[0]), np.ascontiguousarray(velocity.reshape(len(velocity), -1))
+        return np.asarray(fall.accelerations(self._falling, drops, flat)[-1].reshape(velocity.shape[1:]))
 
     def carry(self, sphere: Sphere, state: State, time: Floats) -> State:
         """Return the state along the plate at times [s] (..., B), from that at the start of the flight."""
@@ -217,15 +141,27 @@ class FluidFlight(Flight):
 
     @cached_property
     def _falling(self) -> Falling:
-        return Falling(self.fluid, self.radius, self.density, np.concatenate([self.along[1], -self.gravity[None]]))
+        fluid, alike = self.fluid, np.ones(len(self.start))
+        constant = fluid.constant_coefficient
+        return Falling(
+            reynolds=fluid.reynolds_number(alike, self.radius),
+            drag=fluid.drag_by_square(self.radius, self.density) * alike,
+            coefficient=(np.nan if constant is None else constant) * alike,
+            inertia=fluid.inertia(self.density) * alike,
+            gravity=np.ascontiguousarray(np.concatenate([self.along[1], -self.gravity[None]])),  # in the order that the core takes
+        )
 
     @cached_property
     def _rises(self) -> list[Moving]:
         """Motion at the start of the flight, at the end of each piece up to the top, and there."""
-        velocity, none = np.concatenate([self.along[0], self.velocity[None]]), np.zeros(len(self.start))
-        found = [Moving(none, np.concatenate([np.zeros_like(self.along[0]), self.gap[None]]), velocity, none)]
+        velocity = np.ascontiguousarray(np.concatenate([self.along[0], self.velocity[None]]))
+        place = np.zeros(velocity.shape)
+        place[-1] = self.gap
+        none = np.zeros(len(self.start))
+        found = [Moving(none, place, velocity, none)]
         while (rising := np.flatnonzero((found[-1].velocity[-1] > 0.0) & (self.gravity > 0.0))).size:
-            found.append(found[-1].put(rising, self._falling.take(rising).rise(found[-1].take(rising))))
+            higher = fall.rise(_rules().rising, _falling_of(self._falling, rising), _taken(found[-1], rising))
+            found.append(_put(found[-1], rising, higher))
         return found
 
     @cached_property
@@ -235,9 +171,9 @@ class FluidFlight(Flight):
 
     def _fall_on(self, drops: Drops) -> None:
         """Add a piece to the falls of drops."""
-        begin, falling = self._falls[-1].take(drops), self._falling.take(drops)
-        longest = falling.longest(begin.velocity)
-        self._falls.append(self._falls[-1].put(drops, falling.advance(begin, "touch", lambda *_: longest)))
+        begin, falling = _taken(self._falls[-1], drops), _falling_of(self._falling, drops)
+        longest, given = fall.longest_pieces(falling, begin.velocity), np.full(len(drops), fall.GIVEN_TIME)
+        self._falls.append(_put(self._falls[-1], drops, fall.follow_pieces(_rules().falling, falling, begin, given, longest, longest)))
 
     def _moving(self, time: Floats) -> Moving:
         """Return the motion at times [s] (..., B): its arrays are (..., B) and (C, ..., B)."""
@@ -245,26 +181,34 @@ class FluidFlight(Flight):
             if np.array_equal(time, known):
                 return moving
         elapsed = np.where(np.isinf(time), np.nan, time - self.start)
-        drop, flat = np.broadcast_to(np.arange(len(self.start)), elapsed.shape).ravel(), elapsed.ravel()
+        drops = self._drops(elapsed)
         while (short := self._short(elapsed)).size:
             self._fall_on(short)
-        begin, top = self._rises[0].take(drop), self._falls[0].time[drop]
-        for corner in (*self._rises[1:], *self._falls[1:]):
-            passed = corner.time[drop] <= flat
-            begin = begin.put(passed, corner.take(drop[passed]))
-        moving, falling, since = begin, self._falling.take(drop), flat - begin.time
-        rising = flat < top
-        if rising.any():
-            moving = moving.put(rising, falling.take(rising).advance(begin.take(rising), "release", lambda *_: since[rising]))
-        if not rising.all():
-            fall = ~rising
-            moving = moving.put(fall, falling.take(fall).advance(begin.take(fall), "touch", lambda *_: since[fall]))
-        return Moving(*(part.reshape(*part.shape[:-1], *elapsed.shape) for part in vars(moving).values()))
+        moving = fall.motion_at(_rules(), self._falling, self._corners, drops, elapsed.ravel())
+        return Moving(*(part.reshape(*part.shape[:-1], *elapsed.shape) for part in moving))
+
+    def _drops(self, times: Floats) -> Drops:
+        """Return the drops that times (..., B) belong to, of all times in order."""
+        return np.tile(np.arange(len(self.start)), times.size // len(self.start))
+
+    @property
+    def _corners(self) -> Corners:
+        """Motion at the start and at the ends of all pieces that have been asked for."""
+        pieces = [*self._rises, *self._falls[1:]]
+        if len(self._stacked) != 1 or len(self._stacked[0].time) != len(pieces):
+            time, place, velocity, lost = (np.stack(parts) for parts in zip(*pieces, strict=True))
+            self._stacked[:] = [Corners(time, place, velocity, lost, len(self._rises) - 1)]
+        return self._stacked[0]
+
+    @cached_property
+    def _stacked(self) -> list[Corners]:
+        """Cache of `_corners`."""
+        return []
 
     def _short(self, elapsed: Floats) -> Drops:
         """Return the drops whose falls have to be followed further to reach some times since the start of the flight (..., B)."""
         front, last = self._falls[-1], np.fmax.reduce(elapsed.reshape(-1, len(self.start)))
-        return np.flatnonzero(last - front.time > self._falling.longest(front.velocity))
+        return np.flatnonzero(last - front.time > fall.longest_pieces(self._falling, front.velocity))
 
     @cached_property
     def _known(self) -> list[tuple[Floats, Moving]]:

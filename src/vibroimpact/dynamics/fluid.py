@@ -9,31 +9,13 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 from vibroimpact.arrays import Array, Bools, Drops
+from vibroimpact.dynamics.core.fall import drag_coefficient
 from vibroimpact.errors import InputError
 
 HIGHEST_REYNOLDS = 3e5
 """Reynolds number up to which `drag_coefficient` holds; the boundary layer of a smooth sphere becomes turbulent above it."""
 
 _STILL = 1e-30  # m/s, for a speed of zero, at which Stokes' drag is none
-
-
-def drag_coefficient(reynolds: Array) -> Array:
-    r"""Return the drag coefficient of a smooth sphere at a Reynolds number.
-
-    .. math:: C_d = \frac{24}{Re}\left(1 + 0.15\,Re^{0.687}\right) + \frac{0.42}{1 + 42500\,Re^{-1.16}}
-
-    Within 6 % of measurements up to a Reynolds number of 3e5.
-
-    References
-    ----------
-    Clift, R. and Gauvin, W. H. (1970). The motion of particles in turbulent gas streams. Proc. Chemeca '70, 1, 14-28.
-
-    Examples
-    --------
-    >>> round(float(drag_coefficient(1e4)), 2)
-    0.42
-    """
-    return 24.0 / reynolds * (1.0 + 0.15 * reynolds**0.687) + 0.42 / (1.0 + 42500.0 * reynolds**-1.16)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -81,9 +63,10 @@ class Fluid:
             return self
         return type(self)(**{name: value if np.ndim(value) == 0 else np.asarray(value)[drops] for name, value in self._given()})
 
-    def coefficient(self, reynolds: Array) -> Array:
-        """Return the drag coefficient of a smooth sphere at a Reynolds number."""
-        return drag_coefficient(reynolds)
+    @property
+    def constant_coefficient(self) -> Array | None:
+        """A constant drag coefficient, or None where it follows from the Reynolds number."""
+        return None
 
     def inertia(self, density: Array) -> Array:
         """Return the mass that is accelerated in flight over that of the sphere [-], from its density [kg/m^3]."""
@@ -108,5 +91,14 @@ class Fluid:
             Of the sphere [m], [kg/m^3].
         """
         fast = np.maximum(speed, _STILL)
-        coefficient = self.coefficient(self.density * fast * 2.0 * radius / self.viscosity)
-        return 0.375 * self.density / (density * self.inertia(density)) * coefficient * fast**2 / radius
+        constant = self.constant_coefficient
+        coefficient = drag_coefficient(self.reynolds_number(fast, radius)) if constant is None else constant
+        return self.drag_by_square(radius, density) * coefficient * fast**2
+
+    def reynolds_number(self, speed: Array, radius: Array) -> Array:
+        """Return the Reynolds number of a sphere of a radius [m] at a speed [m/s]."""
+        return self.density * speed * 2.0 * radius / self.viscosity
+
+    def drag_by_square(self, radius: Array, density: Array) -> Array:
+        """Return the deceleration of a sphere over its drag coefficient and the square of its speed [1/m]."""
+        return 0.375 * self.density / (density * self.inertia(density)) / radius

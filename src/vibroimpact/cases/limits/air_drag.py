@@ -10,7 +10,7 @@ from vibroimpact.arrays import Array
 from vibroimpact.cases.conditions import Conditions
 from vibroimpact.cases.limit import Limit, percent_less
 from vibroimpact.dynamics.air import AIR_DENSITY, AIR_VISCOSITY
-from vibroimpact.dynamics.fluid import drag_coefficient
+from vibroimpact.dynamics.core.fall import drag_coefficient
 
 _ROUNDS = 2  # fixed-point iterations of speed and drag coefficient; each reduces the error of the speed by a factor of 20
 

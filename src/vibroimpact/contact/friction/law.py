@@ -4,18 +4,18 @@ A law is a frozen dataclass in a file of its own under `vibroimpact.contact.fric
 `equation` and `source`, its parameters as contact laws do, and is one of
 
 * `ImpulsiveFriction`, whose slip velocity follows from the normal impulse so far;
-* `CompliantFriction`, whose force depends on the tangential displacement and its history: along one direction by the turning points of
-  this, or by a single spring; in two directions by the `TangentialHistory` of one contact.
+* `CompliantFriction`, whose force depends on the tangential displacement and its history: by the turning points of this along one
+  direction, and a row of springs in two, or by a single spring.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Protocol
+from typing import ClassVar
 
 import numpy as np
 
-from vibroimpact.arrays import Array, Bools, Floats
+from vibroimpact.arrays import Array, Floats
 from vibroimpact.contact.parameters import Parameters, parameter
 
 _TWISTING = 3.0 * np.pi / 16.0
@@ -155,14 +155,6 @@ class CompliantFriction(FrictionLaw):
         "effective radius R", "m", detail="Effective radius :math:`R`.", above=0, from_pair="effective_radius"
     )
 
-    def least_rate(self, grows: Bools) -> Floats:
-        """Return the rate of the displacement above which all of a contact slides on, over that of the depth [-].
-
-        `grows`: whether the contact grows, or shrinks.
-        """
-        growing, shrinking = self.stretching
-        return np.where(grows, 1.0 - growing / 3.0, 1.0 - shrinking / 3.0)
-
     def contact_radius(self, force: Floats) -> Floats:
         """Return the radius of Hertz's contact under a normal force [m]."""
         return np.asarray(np.cbrt(0.75 * force * self.effective_radius / self.effective_modulus))
@@ -175,27 +167,3 @@ class CompliantFriction(FrictionLaw):
         depth = np.cbrt(0.75 * force / (self.effective_modulus * np.sqrt(self.effective_radius))) ** 2
         kappa = self.coefficient * self.effective_modulus / self.effective_shear_modulus
         return np.asarray(self.sliding_energy * self.coefficient * force * kappa * depth)
-
-    def history(self, largest_force: float) -> TangentialHistory:
-        """Return the history of one contact before first touch, whose normal force will come to about `largest_force` [N]."""
-        raise NotImplementedError
-
-
-class TangentialHistory(Protocol):
-    """Tangential displacements of one contact under way in two directions; it does not change, so that a way may be tried."""
-
-    @property
-    def slid(self) -> float:
-        """How far all of the contact slid on the way to here [m]; nothing if a part of it sticks."""
-
-    def after(self, force: float, moved: Floats) -> tuple[TangentialHistory, Floats]:
-        """Return the history at another normal force [N], and the friction force [N] (2,).
-
-        Parameters
-        ----------
-        force : float
-            Normal force [N].
-        moved : array, shape (2,)
-            Displacement of the surfaces past each other on the way, along x and y [m].
-        """
-        ...

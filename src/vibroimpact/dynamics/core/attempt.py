@@ -8,11 +8,13 @@ from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled, force_at
 from vibroimpact.dynamics.core.events import BREAKPOINT, NO_EVENT, NO_PUSH, PARTED, TURN, first_event
 from vibroimpact.dynamics.core.flight import approach_of
+from vibroimpact.dynamics.core.histories import contact_histories
 from vibroimpact.dynamics.core.law import static_work
 from vibroimpact.dynamics.core.path import stretch_path
 from vibroimpact.dynamics.core.receptance import surface_motion
 from vibroimpact.dynamics.core.records import (
     Attempt,
+    Balance,
     Bases,
     Basis,
     Beginning,
@@ -33,7 +35,6 @@ from vibroimpact.dynamics.core.stretch import (
     AT_TURN,
     GIVEN_LENGTH,
     begun_indentations,
-    contact_histories,
     first_guess,
     solve_stretch,
 )
@@ -140,7 +141,6 @@ def attempt(
     """
     system = bodies.system
     surfaces = bodies.surfaces
-    state = beginning.state
     start = beginning.start
     contacts = beginning.contacts
     begun = beginning.delta
@@ -157,30 +157,29 @@ def attempt(
         ends = AT_TURN
     nodes, motion, length, solved = solve_stretch(basis, surfaces, contacts, start, guess, motion, length, ends, event.level, 0)
     contact = contact_histories(basis, surfaces, contacts, start, begun, nodes, motion, length)
-    path = stretch_path(
-        basis, surfaces, bodies.coordinates, state.displacement, state.velocity, state.local, length, nodes.force, nodes.static
-    )
-    number = len(basis.time)
-    closing = contact.rate[0].copy()
-    if surfaces.shapes.shape[0] == 2:
-        for mode in range(surfaces.shapes.shape[2]):
-            shape = surfaces.shapes[1, 0, mode]
-            closing[0] += shape * state.velocity[system.rigid + mode]
-            for node in range(number):
-                closing[node + 1] += shape * path.velocity[system.rigid + mode, node]
     seen = Event(NO_EVENT, 0.0, np.inf)
-    resolved = False
-    work = 0.0
     if solved:
-        seen = first_event(basis, system, law, manner.tension, contact, nodes, closing, manner.motion_speed, manner.span)
-        work = static_work(law, contact.delta[0, number]) - static_work(law, contact.delta[0, 0])
-        imbalance = path.energies[0] + work + contact.dissipated[0]
-        for coordinate in range(len(path.lost)):
-            imbalance += path.lost[coordinate]
-        energy = 0.5 * system.mass * manner.motion_speed * manner.motion_speed
-        smooth = contact.roughness * contact.roughness <= 0.1 * manner.tolerance
-        resolved = smooth and abs(imbalance) <= 0.06 * manner.tolerance * energy + path.energies[1]
-    return Attempt(nodes, contact, path, closing, length, work, solved, resolved, seen)
+        seen = first_event(basis, system, law, manner.tension, contact, nodes, manner.motion_speed, manner.span)
+    return Attempt(nodes, contact, length, solved, seen)
+
+
+@compiled(lambda t: t.of(Balance)(t.of(Basis), t.of(Bodies), t.of(Law), t.of(Manner), t.of(State), t.of(Attempt)))
+def balance_of(basis: Basis, bodies: Bodies, law: Law, manner: Manner, state: State, tried: Attempt) -> Balance:
+    """Return the motion of all coordinates through a stretch from a state, and whether it is resolved by two measures of its error."""
+    system = bodies.system
+    contact = tried.contact
+    nodes = tried.nodes
+    path = stretch_path(basis, bodies.surfaces, bodies.coordinates, state, tried.length, nodes.force, nodes.static, False)
+    work = 0.0
+    if tried.solved:
+        work = static_work(law, contact.delta[0, len(basis.time)]) - static_work(law, contact.delta[0, 0])
+    imbalance = path.energies[0] + work + contact.dissipated[0]
+    for coordinate in range(len(path.lost)):
+        imbalance += path.lost[coordinate]
+    energy = 0.5 * system.mass * manner.motion_speed * manner.motion_speed
+    smooth = contact.roughness * contact.roughness <= 0.1 * manner.tolerance
+    balanced = abs(imbalance) <= 0.06 * manner.tolerance * energy + path.energies[1]
+    return Balance(path, work, tried.solved and smooth and balanced)
 
 
 @compiled(lambda t: t.of(Nodes)(t.of(Basis), t.of(Basis), t.of(Law), t.of(Attempt), t.real))
@@ -241,6 +240,6 @@ def up_to_event(
         if not ended.solved or not 0.0 < ended.length <= (1.0 + _AT_END) * source.length:
             break
         if ended.event.kind == NO_EVENT or ended.event.x > _BEFORE_END:
-            return ended.resolved, ended, time_map, seen
+            return True, ended, time_map, seen
         seen = ended.event
     return False, ended, time_map, seen

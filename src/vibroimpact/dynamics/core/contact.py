@@ -13,14 +13,15 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled
-from vibroimpact.dynamics.core.attempt import attempt, basis_of, beginning_of, time_at, up_to_event
+from vibroimpact.dynamics.core.attempt import attempt, balance_of, basis_of, beginning_of, time_at, up_to_event
 from vibroimpact.dynamics.core.events import ENDS_AT_NO_FORCE, NO_EVENT, NO_PUSH, PARTED, TENSION_CUT, TURN
-from vibroimpact.dynamics.core.flight import approach_of, lost_in_flight, state_after, time_to_separation
+from vibroimpact.dynamics.core.flight import approach_of, lost_in_flight, state_after
 from vibroimpact.dynamics.core.law import law_after, law_indentation, stored_energy
 from vibroimpact.dynamics.core.parts import lose_at_end, write_part, write_stretch
 from vibroimpact.dynamics.core.recoil import end_of_recoil
 from vibroimpact.dynamics.core.records import Bases, Bodies, Event, Law, Manner, Nodes, Parts, Progress, State, System
 from vibroimpact.dynamics.core.rest import is_captured, is_near_rest
+from vibroimpact.dynamics.core.touch import time_to_separation
 
 RELEASED, CAPTURED, RIDES, TOO_STIFF, NEAR_REST, FULL = 0, 1, 2, 3, 4, 5
 """How a contact goes on: released; too little energy to leave; in contact at the end of the time or of the steps; not to be integrated;
@@ -173,31 +174,35 @@ def follow_contact(
         if tried.event.kind != NO_EVENT:
             # also tried if the stretch is not resolved, as the event may be the only reason
             success, ended, ended_map, seen = up_to_event(bases, bodies, law, manner, beginning, tried, time_map)
-            if not success:
-                near = max(tried.event.x, 1.0 / (len(bases.inside.grid) - 1)) if tried.resolved else 1.0
+            balance = balance_of(basis_of(bases, ended_map), bodies, law, manner, state, ended)
+            if not (success and balance.resolved):
+                balance = balance_of(basis_of(bases, time_map), bodies, law, manner, state, tried)
+                near = max(tried.event.x, 1.0 / (len(bases.inside.grid) - 1)) if balance.resolved else 1.0
                 next_length = 0.5 * min(next_length, tried.length * time_at(basis_of(bases, time_map), near))
                 continue
             tried = ended
             time_map = ended_map
             event = seen
-        elif not tried.resolved:
-            next_length *= 0.5
-            continue
+        else:
+            balance = balance_of(basis_of(bases, time_map), bodies, law, manner, state, tried)
+            if not balance.resolved:
+                next_length *= 0.5
+                continue
 
         # the stretch is accepted
         write_part(parts, part, time, state, memories)
         basis = basis_of(bases, time_map)
-        write_stretch(parts, part, basis, system, tried, state)
+        write_stretch(parts, part, basis, system, tried, balance, state)
         part += 1
         number = len(basis.time)
         for coordinate in range(len(lost)):
-            lost[coordinate] += tried.path.lost[coordinate]
+            lost[coordinate] += balance.path.lost[coordinate]
         lost[elements] += tried.contact.dissipated[0]
-        state = State(tried.path.displacement, tried.path.speed, tried.path.local)
+        state = State(balance.path.displacement, balance.path.speed, balance.path.local)
         time += tried.length
         delta = tried.contact.delta[0, number]
         force = tried.nodes.force[number - 1]
-        closing = tried.closing[number]
+        closing = tried.contact.closing[0, number]
         trend = 0.0
         for node in range(number):
             trend += basis.at_end[node] * tried.nodes.force[node] / tried.length

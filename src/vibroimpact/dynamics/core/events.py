@@ -42,14 +42,9 @@ def crossing(values: Floats, reached: Bools) -> tuple[float, bool]:
     return 1.0, False
 
 
-@compiled(lambda t: t.of(Event)(t.of(Basis), t.of(System), t.of(Law), t.integer, t.of(Histories), t.of(Nodes), t.vector, t.real, t.real))
-def first_event(
-    basis: Basis, system: System, law: Law, tension: int, contact: Histories, nodes: Nodes, closing: Floats, speed: float, span: float
-) -> Event:
-    """Return the first event in a stretch of a contact of about a speed [m/s] and a duration [s].
-
-    `closing`: the whole rate of the approach at the start and the nodes [m/s] (N + 1,).
-    """
+@compiled(lambda t: t.of(Event)(t.of(Basis), t.of(System), t.of(Law), t.integer, t.of(Histories), t.of(Nodes), t.real, t.real))
+def first_event(basis: Basis, system: System, law: Law, tension: int, contact: Histories, nodes: Nodes, speed: float, span: float) -> Event:
+    """Return the first event in a stretch of a contact of about a speed [m/s] and a duration [s]."""
     delta = product(basis.grid, contact.delta[0])
     rate = product(basis.grid, contact.rate[0])
     points = len(delta)
@@ -94,7 +89,7 @@ def first_event(
             first = Event(BREAKPOINT, level, x)
 
     if deepest > law.memory_level:
-        rates = product(basis.grid, closing)
+        rates = product(basis.grid, contact.closing[0])
         fastest = -np.inf
         for point in range(points):
             fastest = max(fastest, rates[point])

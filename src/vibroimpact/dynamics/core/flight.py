@@ -8,15 +8,15 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled
-from vibroimpact.dynamics.core.records import State, System
+from vibroimpact.dynamics.core.records import Flight, State, System
 
 
-@compiled(lambda t: t.of(State)(t.of(System), t.of(State), t.real))
-def state_after(system: System, state: State, time: float) -> State:
-    """Return the state after free motion for a time [s], for any damping ratio."""
-    number = len(state.displacement)
-    displacement = np.empty(number)
-    velocity = np.empty(number)
+@compiled(lambda t: t.of(Flight)(t.of(System), t.real))
+def flight_of(system: System, time: float) -> Flight:
+    """Return what a free motion of some time [s] does to any state, for any damping ratio."""
+    number = len(system.frequency)
+    by_displacement = np.empty(number)
+    by_velocity = np.empty(number)
     for coordinate in range(number):
         frequency = system.frequency[coordinate]
         ratio = system.ratio[coordinate]
@@ -34,17 +34,36 @@ def state_after(system: System, state: State, time: float) -> State:
             slow = math.exp((root - decay) * time)
             sine = slow * -math.expm1(-2.0 * root * time) / (2.0 * root)
             cosine = 0.5 * slow * (1.0 + math.exp(-2.0 * root * time))
-        cosine += decay * sine
+        by_displacement[coordinate] = cosine + decay * sine
+        by_velocity[coordinate] = sine
+    fading = np.exp(-system.rate * time)
+    return Flight(time, by_displacement, by_velocity, fading)
+
+
+@compiled(lambda t: t.of(State)(t.of(System), t.of(State), t.of(Flight)))
+def flown(system: System, state: State, flight: Flight) -> State:
+    """Return the state after a flight from a state on."""
+    number = len(state.displacement)
+    time = flight.time
+    displacement = np.empty(number)
+    velocity = np.empty(number)
+    for coordinate in range(number):
+        cosine = flight.by_displacement[coordinate]
+        sine = flight.by_velocity[coordinate]
         place = state.displacement[coordinate]
         speed = state.velocity[coordinate]
         load = system.load[coordinate]
+        frequency = system.frequency[coordinate]
         displacement[coordinate] = cosine * place + sine * speed + 0.5 * load * time * time
         slowed = (cosine - system.damping[coordinate] * sine) * speed
         velocity[coordinate] = slowed - frequency * frequency * sine * place + load * time
-    local = np.empty(len(state.local))
-    for element in range(len(local)):
-        local[element] = state.local[element] * math.exp(-system.rate[element] * time)
-    return State(displacement, velocity, local)
+    return State(displacement, velocity, state.local * flight.fading)
+
+
+@compiled(lambda t: t.of(State)(t.of(System), t.of(State), t.real))
+def state_after(system: System, state: State, time: float) -> State:
+    """Return the state after free motion for a time [s]."""
+    return flown(system, state, flight_of(system, time))
 
 
 @compiled(lambda t: t.tuple(t.real, t.real)(t.of(System), t.of(State)))
@@ -126,41 +145,3 @@ def greatest_vibration(system: System, state: State) -> float:
     for element in range(len(state.local)):
         reach += abs(state.local[element])
     return reach
-
-
-_MOST_HORIZONS = 10_000
-_SAMPLES = 32
-_ROUNDING = 4e-16  # of the sum of the magnitudes of the terms of an approach: a smaller overlap is a rounding error
-
-
-@compiled(lambda t: t.real(t.of(System), t.of(State), t.real))
-def time_to_separation(system: System, state: State, level: float) -> float:
-    """Return when surfaces that overlap beyond a level separate to it [s]; 0 if they do not overlap, infinite if they never separate."""
-    time = 0.0
-    now = state
-    for _ in range(_MOST_HORIZONS):
-        approach, rate = approach_of(system, now)
-        terms = abs(system.offset)
-        rigid_approach = system.offset
-        rigid_rate = 0.0
-        for coordinate in range(len(now.displacement)):
-            term = system.shape[coordinate] * now.displacement[coordinate]
-            terms += abs(term)
-            if coordinate < system.rigid:
-                rigid_approach += term
-                rigid_rate += system.shape[coordinate] * now.velocity[coordinate]
-        slack = _ROUNDING * terms if rate < 0.0 else 0.0
-        if approach <= level + slack:
-            return time
-        if system.gravity >= 0.0 and rigid_rate >= 0.0 and rigid_approach - greatest_vibration(system, now) > level:
-            return np.inf  # the rigid motion closes beyond the range of the vibration: they never separate
-        horizon = 2.0 * (approach - level) / abs(rate) if rate != 0.0 else 1e-6
-        before = time
-        for sample in range(1, _SAMPLES + 1):
-            time = before + horizon * sample / _SAMPLES
-            now = state_after(system, state, time)
-            if approach_of(system, now)[0] <= level:
-                break
-        if time == before:  # the time step is below rounding
-            return time
-    return np.inf

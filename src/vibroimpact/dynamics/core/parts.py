@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled
-from vibroimpact.dynamics.core.records import Attempt, Basis, Parts, State, System
+from vibroimpact.dynamics.core.linear import product
+from vibroimpact.dynamics.core.records import Attempt, Balance, Basis, Parts, State, System
 
 
 @compiled(lambda t: t.void(t.of(Parts), t.integer, t.real, t.of(State), t.integer))
@@ -30,9 +29,10 @@ def lose_at_end(parts: Parts, part: int, lost: Floats, energy: float) -> None:
         parts.late_loss[0] += energy
 
 
-@compiled(lambda t: t.void(t.of(Parts), t.integer, t.of(Basis), t.of(System), t.of(Attempt), t.of(State)))
-def write_stretch(parts: Parts, part: int, basis: Basis, system: System, solved: Attempt, begun: State) -> None:
+@compiled(lambda t: t.void(t.of(Parts), t.integer, t.of(Basis), t.of(System), t.of(Attempt), t.of(Balance), t.of(State)))
+def write_stretch(parts: Parts, part: int, basis: Basis, system: System, solved: Attempt, balance: Balance, begun: State) -> None:
     """Write a solved stretch."""
+    path = balance.path
     number = len(basis.time)
     parts.kind[part] = 1
     parts.time_map[part] = basis.time_map
@@ -41,20 +41,16 @@ def write_stretch(parts: Parts, part: int, basis: Basis, system: System, solved:
     parts.force[part] = solved.nodes.force
     parts.approach[part] = solved.contact.approach[0]
     parts.rate[part] = solved.contact.rate[0]
+    parts.closing[part] = solved.contact.closing[0]
     parts.delta[part] = solved.contact.delta[0]
-    parts.work[part] = solved.work
+    parts.work[part] = balance.work
     parts.dissipated[part] = solved.contact.dissipated[0]
     parts.roughness[part] = solved.contact.roughness
     depth = system.offset
     for coordinate in range(len(begun.displacement)):
         depth += system.indentation_shape[coordinate] * begun.displacement[coordinate]
     parts.indentation[part, 0] = depth
-    speeds = np.zeros(number)
-    for coordinate in range(len(begun.displacement)):
-        shape = system.indentation_shape[coordinate]
-        if shape != 0.0:
-            for node in range(number):
-                speeds[node] += shape * solved.path.velocity[coordinate, node]
+    speeds = product(path.velocity, system.indentation_shape)
     for node in range(number):
         moved = 0.0
         for other in range(number):

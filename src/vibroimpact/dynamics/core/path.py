@@ -7,32 +7,77 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.receptance import add_at_nodes, to_eigenbasis
-from vibroimpact.dynamics.core.records import Basis, Coordinates, Path, Surfaces
+from vibroimpact.dynamics.core.records import Basis, Coordinates, Path, State, Surfaces
 
 
-@compiled(lambda t: t.of(Path)(t.of(Basis), t.of(Surfaces), t.of(Coordinates), t.vector, t.vector, t.vector, t.real, t.vector, t.vector))
+@compiled(lambda t: t.void(t.of(Surfaces), t.vector, t.vector, t.complex, t.complex, t.matrix))
+def write_springs(surfaces: Surfaces, displacement: Floats, velocity: Floats, one: complex, clock: complex, of_modes: Floats) -> None:
+    """Write the accelerations by the springs and dampers of all modes at the start, going on at the speeds then, into `of_modes` (2, m)."""
+    for mode in range(len(displacement)):
+        frequency_squared = surfaces.frequency_squared[mode]
+        spring = surfaces.damping[mode] * velocity[mode] + frequency_squared * displacement[mode]
+        spring_rate = frequency_squared * velocity[mode]
+        of_modes[0, mode] = spring * one.real + spring_rate * clock.real
+        of_modes[1, mode] = spring * one.imag + spring_rate * clock.imag
+
+
+@compiled(lambda t: t.void(t.vector, t.complex, t.matrix))
+def add_product(shapes: Floats, factor: complex, of_modes: Floats) -> None:
+    """Add the product of real numbers of all modes (m,) and a complex one to `of_modes`, real and imaginary parts (2, m)."""
+    for mode in range(len(shapes)):
+        of_modes[0, mode] += shapes[mode] * factor.real
+        of_modes[1, mode] += shapes[mode] * factor.imag
+
+
+@compiled(lambda t: t.void(t.of(Surfaces), t.real, t.real, t.matrix))
+def divide_by_impedances(surfaces: Surfaces, sigma: float, sigma_imaginary: float, of_modes: Floats) -> None:
+    """Divide real and imaginary parts of all modes (2, m) by 1 + d sigma + w^2 sigma^2."""
+    square = sigma * sigma - sigma_imaginary * sigma_imaginary
+    square_imaginary = 2.0 * sigma * sigma_imaginary
+    for mode in range(len(surfaces.damping)):
+        impedance = 1.0 + surfaces.damping[mode] * sigma + surfaces.frequency_squared[mode] * square
+        impedance_imaginary = surfaces.damping[mode] * sigma_imaginary + surfaces.frequency_squared[mode] * square_imaginary
+        inverse = 1.0 / (impedance * impedance + impedance_imaginary * impedance_imaginary)
+        real = of_modes[0, mode]
+        imaginary = of_modes[1, mode]
+        of_modes[0, mode] = (real * impedance + imaginary * impedance_imaginary) * inverse
+        of_modes[1, mode] = (imaginary * impedance - real * impedance_imaginary) * inverse
+
+
+@compiled(lambda t: t.void(t.real, t.real, t.matrix, t.vector))
+def subtract_real_part(real: float, imaginary: float, of_modes: Floats, values: Floats) -> None:
+    """Subtract what coefficients in the eigenbasis (2, m) are at a node from `values` (m,)."""
+    for mode in range(len(values)):
+        values[mode] -= real * of_modes[0, mode] + imaginary * of_modes[1, mode]
+
+
+@compiled(lambda t: t.of(Path)(t.of(Basis), t.of(Surfaces), t.of(Coordinates), t.of(State), t.real, t.vector, t.vector, t.boolean))
 def stretch_path(
     basis: Basis,
     surfaces: Surfaces,
     coordinates: Coordinates,
-    displacement: Floats,
-    velocity: Floats,
-    local: Floats,
+    start: State,
     length: float,
     force: Floats,
     static: Floats,
+    accelerated: bool,
 ) -> Path:
     """Return the motion of all coordinates through a stretch.
 
     Parameters
     ----------
-    displacement, velocity, local : array, shape (n,), (n,), (k,)
+    start : State
         State at the start.
     length : float
         Length of the stretch [s].
     force, static : array, shape (c N,)
         Contact forces at the nodes of all contacts, and their static parts [N].
+    accelerated : bool
+        Are the accelerations at the nodes asked for as well?
     """
+    displacement = start.displacement
+    velocity = start.velocity
+    local = start.local
     parts, contacts, modes = surfaces.shapes.shape
     nodes = len(basis.time)
     number = len(displacement)
@@ -46,39 +91,39 @@ def stretch_path(
         if parts == 2:
             to_eigenbasis(basis.forward, static, k, pushed[1, k])
 
-    acceleration = np.zeros((number, nodes))
+    speeds = np.empty((nodes, number))
+    for node in range(nodes):
+        speeds[node] = velocity
+    acceleration = np.zeros((nodes if accelerated else 0, number))
     for coordinate in range(rigid):
         for node in range(nodes):
             value = coordinates.load[coordinate]
             for contact in range(contacts):
                 value -= coordinates.rigid_shapes[contact, coordinate] * force[contact * nodes + node]
-            acceleration[coordinate, node] = value
-    for mode in range(modes):
-        coordinate = rigid + mode
-        frequency_squared = surfaces.frequency_squared[mode]
-        damping = surfaces.damping[mode]
-        spring = damping * velocity[coordinate] + frequency_squared * displacement[coordinate]
-        spring_rate = frequency_squared * velocity[coordinate] * length
-        for k in range(pairs):
-            real = spring * basis.one[0, k] + spring_rate * basis.clock[0, k]
-            imaginary = spring * basis.one[1, k] + spring_rate * basis.clock[1, k]
-            for part in range(parts):
-                for contact in range(contacts):
-                    shape = surfaces.shapes[part, contact, mode]
-                    real += shape * pushed[part, k, contact].real
-                    imaginary += shape * pushed[part, k, contact].imag
-            sigma = length * basis.eigenvalues[0, k]
-            sigma_imaginary = length * basis.eigenvalues[1, k]
-            square = sigma * sigma - sigma_imaginary * sigma_imaginary
-            square_imaginary = 2.0 * sigma * sigma_imaginary
-            impedance = 1.0 + damping * sigma + frequency_squared * square
-            impedance_imaginary = damping * sigma_imaginary + frequency_squared * square_imaginary
-            inverse = -1.0 / (impedance * impedance + impedance_imaginary * impedance_imaginary)
-            of_mode = (real * impedance + imaginary * impedance_imaginary) * inverse
-            of_mode_imaginary = (imaginary * impedance - real * impedance_imaginary) * inverse
-            for node in range(nodes):
-                change = basis.backward[2 * k, node] * of_mode + basis.backward[2 * k + 1, node] * of_mode_imaginary
-                acceleration[coordinate, node] += change
+            if accelerated:
+                acceleration[node, coordinate] = value
+            for later in range(nodes):
+                speeds[later, coordinate] += length * basis.integral[later, node] * value
+    of_modes = np.empty((2, modes))
+    for k in range(pairs):
+        sigma = length * basis.eigenvalues[0, k]
+        sigma_imaginary = length * basis.eigenvalues[1, k]
+        one = complex(basis.one[0, k], basis.one[1, k])
+        clock = length * complex(basis.clock[0, k], basis.clock[1, k])
+        write_springs(surfaces, displacement[rigid:], velocity[rigid:], one, clock, of_modes)
+        for part in range(parts):
+            for contact in range(contacts):
+                add_product(surfaces.shapes[part, contact], pushed[part, k, contact], of_modes)
+        divide_by_impedances(surfaces, sigma, sigma_imaginary, of_modes)
+        for node in range(nodes):
+            real = basis.backward[2 * k, node]
+            imaginary = basis.backward[2 * k + 1, node]
+            if accelerated:
+                subtract_real_part(real, imaginary, of_modes, acceleration[node, rigid:])
+            # times sigma, which integrates over time
+            integrated = real * sigma + imaginary * sigma_imaginary
+            integrated_imaginary = imaginary * sigma - real * sigma_imaginary
+            subtract_real_part(integrated, integrated_imaginary, of_modes, speeds[node, rigid:])
 
     massless = np.zeros((elements, nodes))
     local_end = local.copy()
@@ -92,23 +137,14 @@ def stretch_path(
         for node in range(nodes):
             local_end[element] += length * basis.integral[nodes - 1, node] * massless[element, node]
 
-    speeds = np.empty((number, nodes))
-    displacement_end = displacement.copy()
+    moved = np.zeros(number)
     lost = np.zeros(number + 1)
-    for coordinate in range(number):
-        for node in range(nodes):
-            gained = 0.0
-            for other in range(nodes):
-                gained += basis.integral[node, other] * acceleration[coordinate, other]
-            speeds[coordinate, node] = velocity[coordinate] + length * gained
-        moved = 0.0
-        squares = 0.0
-        for node in range(nodes):
-            weight = basis.integral[nodes - 1, node]
-            moved += weight * speeds[coordinate, node]
-            squares += weight * speeds[coordinate, node] * speeds[coordinate, node]
-        displacement_end[coordinate] += length * moved
-        lost[coordinate] = coordinates.damping[coordinate] * squares * length
+    for node in range(nodes):
+        weight = length * basis.integral[nodes - 1, node]
+        for coordinate in range(number):
+            moved[coordinate] += weight * speeds[node, coordinate]
+            lost[coordinate] += weight * coordinates.damping[coordinate] * speeds[node, coordinate] * speeds[node, coordinate]
+    displacement_end = displacement + moved
     for element in range(elements):
         for node in range(nodes):
             power = massless[element, node] * massless[element, node] / coordinates.mobility[element]
@@ -119,11 +155,10 @@ def stretch_path(
     rounding = 0.0
     driven = coordinates.driven_shapes.shape[1]
     for coordinate in range(number - driven):
-        faster = speeds[coordinate, nodes - 1] - velocity[coordinate]
-        further = displacement_end[coordinate] - displacement[coordinate]
+        faster = speeds[nodes - 1, coordinate] - velocity[coordinate]
         spring = 0.5 * coordinates.frequency[coordinate] * coordinates.frequency[coordinate]
-        gain += 0.5 * faster * (speeds[coordinate, nodes - 1] + velocity[coordinate])
-        gain += further * (spring * (displacement_end[coordinate] + displacement[coordinate]) - coordinates.load[coordinate])
+        gain += 0.5 * faster * (speeds[nodes - 1, coordinate] + velocity[coordinate])
+        gain += moved[coordinate] * (spring * (displacement_end[coordinate] + displacement[coordinate]) - coordinates.load[coordinate])
         held = spring * displacement[coordinate] * displacement[coordinate]
         rounding += coordinates.rounding[coordinate] * (0.5 * velocity[coordinate] * velocity[coordinate] + held)
     for element in range(elements):
@@ -136,8 +171,8 @@ def stretch_path(
             push = 0.0
             for contact in range(contacts):
                 push += coordinates.driven_shapes[contact, number_driven] * force[contact * nodes + node]
-            work += basis.integral[nodes - 1, node] * push * speeds[coordinate, node]
+            work += basis.integral[nodes - 1, node] * push * speeds[node, coordinate]
         lost[coordinate] = -length * work
-    end_speed = speeds[:, nodes - 1].copy()
+    end_speed = speeds[nodes - 1].copy()
     energies = np.array([gain, rounding])
     return Path(acceleration, speeds, massless, displacement_end, end_speed, local_end, lost, energies)

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.arrays import Complex, Floats
+from vibroimpact.arrays import Complex, Floats, Integers
 from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.records import Basis, Motion, Start, Surfaces
 
@@ -50,60 +50,104 @@ def modal_weights(surfaces: Surfaces, start: Start) -> Floats:
     return weights
 
 
-@compiled(lambda t: t.void(t.of(Surfaces), t.integer, t.matrix, t.real, t.matrix))
-def write_admittances(surfaces: Surfaces, mode: int, eigenvalues: Floats, length: float, admittances: Floats) -> None:
-    """Write 1/(1 + d sigma + w^2 sigma^2) of a mode at all eigenvalues, as real and imaginary parts (2, H), into `admittances`."""
-    frequency_squared = surfaces.frequency_squared[mode]
-    damping = surfaces.damping[mode]
-    for k in range(eigenvalues.shape[1]):
-        sigma = length * eigenvalues[0, k]
-        sigma_imaginary = length * eigenvalues[1, k]
-        square = sigma * sigma - sigma_imaginary * sigma_imaginary
-        square_imaginary = 2.0 * sigma * sigma_imaginary
+@compiled(lambda t: t.void(t.of(Surfaces), t.real, t.real, t.matrix))
+def write_admittances(surfaces: Surfaces, sigma: float, sigma_imaginary: float, admittances: Floats) -> None:
+    """Write 1/(1 + d sigma + w^2 sigma^2) of all modes, as real and imaginary parts (2, m), into `admittances`."""
+    square = sigma * sigma - sigma_imaginary * sigma_imaginary
+    square_imaginary = 2.0 * sigma * sigma_imaginary
+    for mode in range(len(surfaces.damping)):
+        frequency_squared = surfaces.frequency_squared[mode]
+        damping = surfaces.damping[mode]
         impedance = 1.0 + damping * sigma + frequency_squared * square
         impedance_imaginary = damping * sigma_imaginary + frequency_squared * square_imaginary
         inverse = 1.0 / (impedance * impedance + impedance_imaginary * impedance_imaginary)
-        admittances[0, k] = impedance * inverse
-        admittances[1, k] = -impedance_imaginary * inverse
+        admittances[0, mode] = impedance * inverse
+        admittances[1, mode] = -impedance_imaginary * inverse
 
 
-@compiled(lambda t: t.void(t.matrix, t.integer, t.matrix, t.cube))
-def add_weighted(weights: Floats, mode: int, values: Floats, sums: Floats) -> None:
-    """Add values of a mode (2, H), times its weight in each row, to `sums` (2, W, H)."""
+@compiled(lambda t: t.void(t.of(Surfaces), t.real, t.real, t.matrix, t.matrix))
+def write_slopes(surfaces: Surfaces, sigma: float, sigma_imaginary: float, admittances: Floats, slopes: Floats) -> None:
+    """Write the derivatives of the admittances of `write_admittances` by sigma into `slopes` (2, m)."""
+    for mode in range(len(surfaces.damping)):
+        slope = surfaces.damping[mode] + 2.0 * surfaces.frequency_squared[mode] * sigma
+        slope_imaginary = 2.0 * surfaces.frequency_squared[mode] * sigma_imaginary
+        squared = admittances[0, mode] * admittances[0, mode] - admittances[1, mode] * admittances[1, mode]
+        squared_imaginary = 2.0 * admittances[0, mode] * admittances[1, mode]
+        slopes[0, mode] = -(slope * squared - slope_imaginary * squared_imaginary)
+        slopes[1, mode] = -(slope * squared_imaginary + slope_imaginary * squared)
+
+
+@compiled(lambda t: t.tuple(t.integers, t.integers)(t.matrix))
+def extents(weights: Floats) -> tuple[Integers, Integers]:
+    """Return the first mode that has a weight in each row (W, m), and the one after the last: the modes of the other body have none."""
+    first = np.zeros(len(weights), dtype=np.int64)
+    last = np.zeros(len(weights), dtype=np.int64)
     for row in range(len(weights)):
-        weight = weights[row, mode]
-        for k in range(values.shape[1]):
-            sums[0, row, k] += weight * values[0, k]
-            sums[1, row, k] += weight * values[1, k]
+        last[row] = weights.shape[1]
+        while first[row] < last[row] and weights[row, first[row]] == 0.0:
+            first[row] += 1
+        while first[row] < last[row] and weights[row, last[row] - 1] == 0.0:
+            last[row] -= 1
+    return first, last
 
 
-@compiled(lambda t: t.void(t.of(Surfaces), t.matrix, t.matrix, t.real, t.cube))
-def modal_sums(surfaces: Surfaces, weights: Floats, eigenvalues: Floats, length: float, sums: Floats) -> None:
-    """Write the weighted sums over the modes of 1/(1 + d sigma + w^2 sigma^2) at all eigenvalues, as parts (2, W, H), into `sums`."""
-    admittances = np.empty((2, eigenvalues.shape[1]))
-    sums[:] = 0.0
-    for mode in range(len(surfaces.damping)):
-        write_admittances(surfaces, mode, eigenvalues, length, admittances)
-        add_weighted(weights, mode, admittances, sums)
+@compiled(lambda t: t.tuple(t.real, t.real)(t.vector, t.vector, t.vector))
+def weighted_sum(weights: Floats, real: Floats, imaginary: Floats) -> tuple[float, float]:
+    """Return the sums of real and imaginary parts, times their weights; two sums of each side by side wait less for one another."""
+    pairs = len(weights) // 2 * 2
+    total = 0.0
+    total_imaginary = 0.0
+    other = 0.0
+    other_imaginary = 0.0
+    for mode in range(0, pairs, 2):
+        total += weights[mode] * real[mode]
+        total_imaginary += weights[mode] * imaginary[mode]
+        other += weights[mode + 1] * real[mode + 1]
+        other_imaginary += weights[mode + 1] * imaginary[mode + 1]
+    for mode in range(pairs, len(weights)):
+        total += weights[mode] * real[mode]
+        total_imaginary += weights[mode] * imaginary[mode]
+    return total + other, total_imaginary + other_imaginary
 
 
-@compiled(lambda t: t.void(t.of(Surfaces), t.matrix, t.matrix, t.real, t.cube))
-def modal_slopes(surfaces: Surfaces, weights: Floats, eigenvalues: Floats, length: float, sums: Floats) -> None:
-    """Write the derivatives of the sums of `modal_sums` by sigma into `sums`."""
+@compiled(lambda t: t.void(t.matrix, t.integers, t.integers, t.matrix, t.integer, t.cube))
+def write_sums(weights: Floats, first: Integers, last: Integers, values: Floats, k: int, sums: Floats) -> None:
+    """Write the sums of values of all modes (2, m), times their weights in each row within its extent, into `sums` (2, W, H) at k."""
+    for row in range(len(weights)):
+        within = weights[row, first[row] : last[row]]
+        real, imaginary = weighted_sum(within, values[0, first[row] : last[row]], values[1, first[row] : last[row]])
+        sums[0, row, k] = real
+        sums[1, row, k] = imaginary
+
+
+@compiled(lambda t: t.cube(t.of(Surfaces), t.matrix, t.matrix, t.real))
+def modal_sums(surfaces: Surfaces, weights: Floats, eigenvalues: Floats, length: float) -> Floats:
+    """Return the weighted sums over the modes of 1/(1 + d sigma + w^2 sigma^2) at all eigenvalues, as parts (2, W, H)."""
     number = eigenvalues.shape[1]
-    admittances = np.empty((2, number))
-    slopes = np.empty((2, number))
-    sums[:] = 0.0
-    for mode in range(len(surfaces.damping)):
-        write_admittances(surfaces, mode, eigenvalues, length, admittances)
-        for k in range(number):
-            slope = surfaces.damping[mode] + 2.0 * surfaces.frequency_squared[mode] * (length * eigenvalues[0, k])
-            slope_imaginary = 2.0 * surfaces.frequency_squared[mode] * (length * eigenvalues[1, k])
-            squared = admittances[0, k] * admittances[0, k] - admittances[1, k] * admittances[1, k]
-            squared_imaginary = 2.0 * admittances[0, k] * admittances[1, k]
-            slopes[0, k] = -(slope * squared - slope_imaginary * squared_imaginary)
-            slopes[1, k] = -(slope * squared_imaginary + slope_imaginary * squared)
-        add_weighted(weights, mode, slopes, sums)
+    sums = np.empty((2, len(weights), number))
+    first, last = extents(weights)
+    admittances = np.empty((2, len(surfaces.damping)))
+    for k in range(number):
+        write_admittances(surfaces, length * eigenvalues[0, k], length * eigenvalues[1, k], admittances)
+        write_sums(weights, first, last, admittances, k, sums)
+    return sums
+
+
+@compiled(lambda t: t.cube(t.of(Surfaces), t.matrix, t.matrix, t.real))
+def modal_slopes(surfaces: Surfaces, weights: Floats, eigenvalues: Floats, length: float) -> Floats:
+    """Return the derivatives of the sums of `modal_sums` by sigma (2, W, H)."""
+    number = eigenvalues.shape[1]
+    sums = np.empty((2, len(weights), number))
+    first, last = extents(weights)
+    admittances = np.empty((2, len(surfaces.damping)))
+    slopes = np.empty((2, len(surfaces.damping)))
+    for k in range(number):
+        sigma = length * eigenvalues[0, k]
+        sigma_imaginary = length * eigenvalues[1, k]
+        write_admittances(surfaces, sigma, sigma_imaginary, admittances)
+        write_slopes(surfaces, sigma, sigma_imaginary, admittances, slopes)
+        write_sums(weights, first, last, slopes, k, sums)
+    return sums
 
 
 @compiled(lambda t: t.void(t.matrix, t.integer, t.complex, t.vector))
@@ -113,15 +157,19 @@ def add_at_nodes(backward: Floats, k: int, coefficient: complex, values: Floats)
         values[node] += backward[2 * k, node] * coefficient.real + backward[2 * k + 1, node] * coefficient.imag
 
 
-@compiled(lambda t: t.void(t.matrix, t.integer, t.complex, t.matrix, t.integer, t.integer))
-def add_matrix(filters: Floats, k: int, operator: complex, matrix: Floats, row: int, column: int) -> None:
-    """Add the matrix on the nodes of an operator in the eigenbasis to the block of `matrix` that begins at a row and a column."""
-    nodes = int(np.sqrt(filters.shape[1]) + 0.5)
+@compiled(lambda t: t.void(t.matrix, t.complexes, t.matrix, t.integer, t.integer))
+def write_matrix(filters: Floats, operators: Complex, matrix: Floats, row: int, column: int) -> None:
+    """Write the matrix on the nodes of an operator in the eigenbasis (H,) into the block of `matrix` that begins at a row and a column."""
+    entries = np.zeros(filters.shape[1])
+    for k in range(len(operators)):
+        real = operators[k].real
+        imaginary = operators[k].imag
+        for entry in range(len(entries)):
+            entries[entry] += filters[2 * k, entry] * real + filters[2 * k + 1, entry] * imaginary
+    nodes = int(np.sqrt(len(entries)) + 0.5)
     for node in range(nodes):
         for other in range(nodes):
-            entry = node * nodes + other
-            change = filters[2 * k, entry] * operator.real + filters[2 * k + 1, entry] * operator.imag
-            matrix[row + node, column + other] += change
+            matrix[row + node, column + other] = entries[node * nodes + other]
 
 
 @compiled(lambda t: t.of(Motion)(t.of(Basis), t.of(Surfaces), t.of(Start), t.real))
@@ -133,17 +181,13 @@ def surface_motion(basis: Basis, surfaces: Surfaces, start: Start, length: float
     elements = len(surfaces.rate)
     size = contacts * nodes
     weights = modal_weights(surfaces, start)
-    sums = np.empty((2, len(weights), number))
-    modal_sums(surfaces, weights, basis.eigenvalues, length, sums)
+    sums = modal_sums(surfaces, weights, basis.eigenvalues, length)
 
     outer = np.zeros((contacts, nodes))
     inner = np.zeros((contacts, nodes))
     moved = np.zeros((contacts, nodes))
-    approach_by_force = np.zeros((size, size))
-    rate_by_force = np.zeros((size, size))
-    inside = size if parts == 2 else 0
-    approach_by_static = np.zeros((inside, inside))
-    closing_by_static = np.zeros((inside, inside))
+    mobility = np.empty((parts, contacts, contacts, number), dtype=np.complex128)
+    receptance = np.empty((parts, contacts, contacts, number), dtype=np.complex128)
     springs = parts * contacts * contacts
     spring_rates = springs + parts * contacts
     for k in range(number):
@@ -166,21 +210,30 @@ def surface_motion(basis: Basis, surfaces: Surfaces, start: Start, length: float
                     add_at_nodes(basis.backward, k, of_part, inner[contact])
                 rate += of_part
             add_at_nodes(basis.backward, k, sigma * rate, moved[contact])
-            for other in range(contacts):
-                pair = contact * contacts + other
-                mobility = sigma * complex(sums[0, pair, k], sums[1, pair, k])
-                if contact == other:
-                    for element in range(elements):
-                        mobility += surfaces.mobility[contact, element] / (1.0 + surfaces.rate[element] * sigma)
-                row = contact * nodes
-                column = other * nodes
-                add_matrix(basis.filters, k, sigma * mobility, approach_by_force, row, column)
-                add_matrix(basis.filters, k, mobility, rate_by_force, row, column)
-                if parts == 2:
-                    pair += contacts * contacts
-                    within = sigma * complex(sums[0, pair, k], sums[1, pair, k])
-                    add_matrix(basis.filters, k, sigma * within, approach_by_static, row, column)
-                    add_matrix(basis.filters, k, within, closing_by_static, row, column)
+            for part in range(parts):
+                for other in range(contacts):
+                    pair = (part * contacts + contact) * contacts + other
+                    between = sigma * complex(sums[0, pair, k], sums[1, pair, k])
+                    if part == 0 and contact == other:
+                        for element in range(elements):
+                            between += surfaces.mobility[contact, element] / (1.0 + surfaces.rate[element] * sigma)
+                    mobility[part, contact, other, k] = between
+                    receptance[part, contact, other, k] = sigma * between
+
+    approach_by_force = np.empty((size, size))
+    rate_by_force = np.empty((size, size))
+    inside = size if parts == 2 else 0
+    approach_by_static = np.empty((inside, inside))
+    closing_by_static = np.empty((inside, inside))
+    for contact in range(contacts):
+        for other in range(contacts):
+            row = contact * nodes
+            column = other * nodes
+            write_matrix(basis.filters, receptance[0, contact, other], approach_by_force, row, column)
+            write_matrix(basis.filters, mobility[0, contact, other], rate_by_force, row, column)
+            if parts == 2:
+                write_matrix(basis.filters, receptance[1, contact, other], approach_by_static, row, column)
+                write_matrix(basis.filters, mobility[1, contact, other], closing_by_static, row, column)
 
     approach = np.empty(size)
     rate_of_approach = np.empty(size)
@@ -200,7 +253,9 @@ def surface_motion(basis: Basis, surfaces: Surfaces, start: Start, length: float
                     column = other * nodes + force_node
                     approach_by_force[row, column] += rigid * length * length * basis.integral_twice[node, force_node]
                     rate_by_force[row, column] += rigid * length * basis.integral[node, force_node]
-    return Motion(approach, rate_of_approach, closing, approach_by_force, rate_by_force, approach_by_static, closing_by_static)
+    return Motion(
+        approach, rate_of_approach, closing, approach_by_force, rate_by_force, approach_by_static, closing_by_static, weights, sums
+    )
 
 
 @compiled(lambda t: t.void(t.matrix, t.vector, t.integer, t.complexes))
@@ -217,21 +272,20 @@ def to_eigenbasis(forward: Floats, values: Floats, k: int, coefficients: Complex
         coefficients[contact] = complex(real, imaginary)
 
 
-@compiled(lambda t: t.matrix(t.of(Basis), t.of(Surfaces), t.of(Start), t.real, t.vector, t.vector))
-def motion_by_length(basis: Basis, surfaces: Surfaces, start: Start, length: float, force: Floats, static: Floats) -> Floats:
+@compiled(lambda t: t.matrix(t.of(Basis), t.of(Surfaces), t.of(Start), t.of(Motion), t.real, t.vector, t.vector))
+def motion_by_length(
+    basis: Basis, surfaces: Surfaces, start: Start, motion: Motion, length: float, force: Floats, static: Floats
+) -> Floats:
     """Return the derivatives of approach, rate and closing rate at the nodes by the length of a stretch (3, M).
 
-    `force`, `static`: forces and their static parts at the nodes [N] (M,).
+    `motion`: through that length. `force`, `static`: forces and their static parts at the nodes [N] (M,).
     """
     parts, contacts, _ = surfaces.shapes.shape
     nodes = len(basis.time)
     number = basis.eigenvalues.shape[1]
     elements = len(surfaces.rate)
-    weights = modal_weights(surfaces, start)
-    sums = np.empty((2, len(weights), number))
-    slopes = np.empty((2, len(weights), number))
-    modal_sums(surfaces, weights, basis.eigenvalues, length, sums)
-    modal_slopes(surfaces, weights, basis.eigenvalues, length, slopes)
+    sums = motion.sums
+    slopes = modal_slopes(surfaces, motion.weights, basis.eigenvalues, length)
 
     outer = np.zeros((contacts, nodes))
     inner = np.zeros((contacts, nodes))

@@ -62,6 +62,18 @@ class State(NamedTuple):
     local: Vector
 
 
+class Flight(NamedTuple):
+    """A free motion of some time [s]: displacements of the coordinates after it by displacements and by velocities [s] at its start (n,).
+
+    fading (k,): what it leaves of the deformations of the massless elements.
+    """
+
+    time: Real
+    by_displacement: Vector
+    by_velocity: Vector
+    fading: Vector
+
+
 class System(NamedTuple):
     """A linear system with one contact: n coordinates of unit mass, rigid motions first, driven ones last, and k massless elements.
 
@@ -88,6 +100,22 @@ class System(NamedTuple):
     flexibility: Real
     rigid: Integer
     driven: Integer
+
+
+class Approach(NamedTuple):
+    """Approach of the surfaces of one contact in free motion [m], and its rate [m/s].
+
+    rigid, rigid_rate: what the rigid motions contribute. Of vibration and massless elements from then on, reach: a bound of the
+    displacement [m], and fastest: of the acceleration [m/s^2]. terms: sum of the magnitudes of what the approach is the sum of [m].
+    """
+
+    approach: Real
+    rate: Real
+    rigid: Real
+    rigid_rate: Real
+    reach: Real
+    fastest: Real
+    terms: Real
 
 
 class Law(NamedTuple):
@@ -185,7 +213,8 @@ class Motion(NamedTuple):
 
     Without contact forces (M,): approach [m], its rate by coordinates outside the contacts and closing, its whole rate [m/s]. To be
     subtracted, per force at the nodes (M, M): approach_by_force, rate_by_force, and, of the static forces on coordinates within the
-    contacts, approach_by_static and closing_by_static; the latter are (0, 0) where there are none.
+    contacts, approach_by_static and closing_by_static; the latter are (0, 0) where there are none. weights (W, m), sums (2, W, H): the sums
+    over the modes that it consists of, as `receptance.modal_sums` gives them.
     """
 
     approach: Vector
@@ -195,18 +224,21 @@ class Motion(NamedTuple):
     rate_by_force: Matrix
     approach_by_static: Matrix
     closing_by_static: Matrix
+    weights: Matrix
+    sums: Cube
 
 
 class Histories(NamedTuple):
     """Motion and energy of c contacts through a stretch.
 
-    At the start and the nodes (c, N + 1): approach of the surfaces [m], its rate at the dashpots [m/s], and delta, the indentation of the
-    laws [m]. dissipated (c,): work of the dissipative forces [J]. roughness: the last Legendre coefficients of the forces, relative to
-    their scale.
+    At the start and the nodes (c, N + 1): approach of the surfaces [m], its rate at the dashpots and closing, its whole rate [m/s], and
+    delta, the indentation of the laws [m]. dissipated (c,): work of the dissipative forces [J]. roughness: the last Legendre coefficients
+    of the forces, relative to their scale.
     """
 
     approach: Matrix
     rate: Matrix
+    closing: Matrix
     delta: Matrix
     dissipated: Vector
     roughness: Real
@@ -233,10 +265,10 @@ class Coordinates(NamedTuple):
 class Path(NamedTuple):
     """Motion of all coordinates through a stretch.
 
-    At the nodes: acceleration, velocity of the coordinates (n, N), and rates of the massless elements, massless (k, N). At the end:
-    displacement, speed (n,) and local (k,). lost (n + 1,): energy lost by the damping of each coordinate, and last in the massless elements
-    [J]; of a driven coordinate minus the work of its drive. energies (2,): increase of the energy of coordinates and massless elements, and
-    its rounding error [J].
+    At the nodes: velocity of the coordinates (N, n), their acceleration (N, n), or (0, n) where it is not asked for, and rates of the
+    massless elements, massless (k, N). At the end: displacement, speed (n,) and local (k,). lost (n + 1,): energy lost by the damping of
+    each coordinate, and last in the massless elements [J]; of a driven coordinate minus the work of its drive. energies (2,): increase of
+    the energy of coordinates and massless elements, and its rounding error [J].
     """
 
     acceleration: Matrix
@@ -275,22 +307,40 @@ class Beginning(NamedTuple):
 
 
 class Attempt(NamedTuple):
-    """A solved stretch of one contact.
+    """A stretch of one contact as Newton's method leaves it.
 
-    nodes, contact, path: its forces, histories, and the motion of all coordinates. closing: the whole rate of the approach at the start and
-    the nodes [m/s] (N + 1,). length [s]. work: increase of the energy stored by the law and of the plastic work [J]. solved: did Newton's
-    method converge? resolved: is it solved with an error within the tolerance? event: the first one within it.
+    nodes, contact: its forces and histories. length [s]. solved: did Newton's method converge? event: the first one within it.
     """
 
     nodes: Nodes
     contact: Histories
-    path: Path
-    closing: Vector
     length: Real
-    work: Real
     solved: Boolean
-    resolved: Boolean
     event: Event
+
+
+class Solved(NamedTuple):
+    """Solved stretches of one contact, one after the other.
+
+    time_map (P,): their maps of time, in `MAPS`. length (P,) [s]. At the start and the nodes (P, N + 1): delta, indentation of the law [m],
+    and rate of the approach at its dashpot [m/s].
+    """
+
+    time_map: Integers
+    length: Vector
+    delta: Matrix
+    rate: Matrix
+
+
+class Balance(NamedTuple):
+    """Motion of all coordinates through a solved stretch of one contact, and its balance of energy.
+
+    work: increase of the energy stored by the law and of the plastic work [J]. resolved: is it solved with an error within the tolerance?
+    """
+
+    path: Path
+    work: Real
+    resolved: Boolean
 
 
 class Manner(NamedTuple):
@@ -338,10 +388,10 @@ class Parts(NamedTuple):
     """Room for P parts of the motion through a contact: stretches (kind 1) and recoils (kind 0).
 
     kind, time_map (P,). start, length [s] (P,). displacement, velocity (P, n), local (P, k): state at the start. memories (P,): changes of
-    the law's memory before it. Of stretches, as in `Nodes`, `Histories` and `Attempt`: static, force (P, N), approach, rate, delta
-    (P, N + 1), work, dissipated, roughness (P,). separation_loss (P,): stored energy that is lost at the end [J]. indentation (P, N + 1):
-    of the surface by the centre above [m]. turned_at (P,): indentations of the law at the changes of its memory [m]. late_loss (1,): stored
-    energy lost at the end of the last part of the call before [J].
+    the law's memory before it. Of stretches, as in `Nodes`, `Histories` and `Attempt`: static, force (P, N), approach, rate, closing,
+    delta (P, N + 1), work, dissipated, roughness (P,). separation_loss (P,): stored energy that is lost at the end [J]. indentation
+    (P, N + 1): of the surface by the centre above [m]. turned_at (P,): indentations of the law at the changes of its memory [m]. late_loss
+    (1,): stored energy lost at the end of the last part of the call before [J].
     """
 
     kind: Integers
@@ -356,6 +406,7 @@ class Parts(NamedTuple):
     force: Matrix
     approach: Matrix
     rate: Matrix
+    closing: Matrix
     delta: Matrix
     work: Vector
     dissipated: Vector

@@ -13,7 +13,7 @@ from vibroimpact.compiled import compiled, force_at
 from vibroimpact.dynamics.core.law import indentation_at, is_in_series, linearise
 from vibroimpact.dynamics.core.linear import product, solve_in_place
 from vibroimpact.dynamics.core.receptance import motion_by_length, surface_motion
-from vibroimpact.dynamics.core.records import Basis, Contacts, Histories, Motion, Nodes, Start, Surfaces
+from vibroimpact.dynamics.core.records import Basis, Contacts, Motion, Nodes, Start, Surfaces
 
 GIVEN_LENGTH, AT_LEVEL, AT_NO_FORCE, AT_TURN = 0, 1, 2, 3
 """What ends a stretch: a given length; an indentation of a law; no force of a law; no rate of an approach."""
@@ -203,7 +203,7 @@ def newton_step(
         missing += product(motion.approach_by_static, linear[0])
     by_length = np.zeros((3, size))
     if event != GIVEN_LENGTH:
-        by_length = motion_by_length(basis, surfaces, start, length, now.force, linear[0])
+        by_length = motion_by_length(basis, surfaces, start, motion, length, now.force, linear[0])
     for row in range(size):
         for column in range(size):
             columns[row, column] = motion.approach_by_force[row, column]
@@ -365,50 +365,3 @@ def solve_stretch(
         if is_converged(size, last_size):
             return now, motion, length, True
     return now, motion, length, False
-
-
-@compiled(lambda t: t.of(Histories)(t.of(Basis), t.of(Surfaces), t.of(Contacts), t.of(Start), t.vector, t.of(Nodes), t.of(Motion), t.real))
-def contact_histories(
-    basis: Basis, surfaces: Surfaces, contacts: Contacts, start: Start, begun: Floats, found: Nodes, motion: Motion, length: float
-) -> Histories:
-    """Return motion and energy of the contacts through a solved stretch; `begun`: indentations of the laws at the start [m] (c,)."""
-    nodes = len(basis.time)
-    number = len(begun)
-    approaches = motion.approach - product(motion.approach_by_force, found.force)
-    if len(motion.approach_by_static):
-        approaches -= product(motion.approach_by_static, found.static)
-    rates = motion.rate - product(motion.rate_by_force, found.force)
-    approach = np.empty((number, nodes + 1))
-    rate = np.empty((number, nodes + 1))
-    delta = np.empty((number, nodes + 1))
-    dissipated = np.zeros(number)
-    roughness = 0.0
-    for contact in range(number):
-        first = contact * nodes
-        approach[contact, 0] = max(start.approach[contact], contacts.release_level[contact])
-        delta[contact, 0] = begun[contact]
-        first_rate = begun_rate(surfaces, start, contact)
-        if surfaces.incidence[contact].any():  # the rate of a massless element jumps with the force
-            first_rate = 0.0
-            for node in range(nodes):
-                first_rate += basis.at_start[node] * rates[first + node]
-        rate[contact, 0] = first_rate
-        fastest = abs(first_rate)
-        for node in range(nodes):
-            approach[contact, node + 1] = approaches[first + node]
-            rate[contact, node + 1] = rates[first + node]
-            delta[contact, node + 1] = found.delta[first + node]
-            fastest = max(fastest, abs(rates[first + node]))
-            power = (found.force[first + node] - found.static[first + node]) * rates[first + node]
-            dissipated[contact] += length * basis.integral[nodes - 1, node] * power
-        largest = surfaces.mass[contact] * fastest / length
-        last = 0.0
-        for order in range(nodes):
-            coefficient = 0.0
-            for node in range(nodes):
-                coefficient += basis.spectrum[order, node] * found.force[first + node]
-            largest = max(largest, abs(coefficient))
-            if order >= nodes - 2:
-                last = max(last, abs(coefficient))
-        roughness = max(roughness, last / largest)
-    return Histories(approach, rate, delta, dissipated, roughness)

@@ -1,4 +1,8 @@
-"""Small differences of the motion through a stretch of contact, by the linearised equations at its nodes."""
+"""Small differences of the motion through stretches of contact, by the linearised equations at their nodes.
+
+The forces at the nodes solve equations whose Jacobian is known, and all other quantities are linear in the forces. A difference of the
+state at the start gives that at the end by one more linear solve. Differences are taken at equal times.
+"""
 
 from __future__ import annotations
 
@@ -6,9 +10,12 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled
+from vibroimpact.dynamics.core.attempt import basis_of, surface_start
 from vibroimpact.dynamics.core.linear import product, solve_in_place
-from vibroimpact.dynamics.core.records import Motion
-from vibroimpact.dynamics.core.stretch import indentations_by, write_force_jacobian
+from vibroimpact.dynamics.core.path import stretch_path
+from vibroimpact.dynamics.core.receptance import surface_motion
+from vibroimpact.dynamics.core.records import Bases, Bodies, Contacts, Motion, Solved, State
+from vibroimpact.dynamics.core.stretch import indentations_by, linearise_contact, write_force_jacobian
 
 
 @compiled(lambda t: t.tuple(t.vector, t.vector)(t.of(Motion), t.matrix, t.vector, t.vector, t.vector))
@@ -50,3 +57,46 @@ def force_differences(motion: Motion, linear: Floats, approach: Floats, static: 
             deeper -= by[row, column] * force[column]
         static_difference[row] = static[row] + linear[4, row] * deeper
     return force, static_difference
+
+
+@compiled(lambda t: t.tuple(t.of(State), t.matrix)(t.of(Bases), t.of(Bodies), t.of(Contacts), t.vector, t.of(Solved), t.of(State)))
+def propagate(bases: Bases, bodies: Bodies, laws: Contacts, weights: Floats, solved: Solved, difference: State) -> tuple[State, Floats]:
+    """Return the difference of the state at the end of stretches of one contact, and of the contact force at their nodes [N] (P, N).
+
+    Parameters
+    ----------
+    bases : Bases
+        The Radau rule under the three maps of time.
+    bodies : Bodies
+        The linear system without gravity and gap.
+    laws : Contacts
+        The law, and laws with the closing speed or a memory varied (1 + v).
+    weights : array, shape (v,)
+        By what the change of the force of each varied law counts.
+    solved : Solved
+        The stretches, one after the other.
+    difference : State
+        Difference of the state at their start between a neighbouring motion and that one, to first order.
+    """
+    number, points = solved.delta.shape
+    nodes = points - 1
+    forces = np.empty((number, nodes))
+    linear = np.empty((7, nodes))
+    varied = np.empty((7, nodes))
+    for stretch in range(number):
+        basis = basis_of(bases, solved.time_map[stretch])
+        length = solved.length[stretch]
+        delta = solved.delta[stretch, 1:]
+        rate = solved.rate[stretch, 1:]
+        linearise_contact(laws, 0, delta, rate, linear)
+        # a varied closing speed or memory changes the forces of the law and its approach at fixed indentations and rates
+        change = np.zeros((3, nodes))
+        for variation in range(len(weights)):
+            linearise_contact(laws, 1 + variation, delta, rate, varied)
+            change += weights[variation] * (varied[:3] - linear[:3])
+        motion = surface_motion(basis, bodies.surfaces, surface_start(bodies.system, bodies.surfaces, difference), length)
+        force, static = force_differences(motion, linear, change[2], change[0], change[1])
+        path = stretch_path(basis, bodies.surfaces, bodies.coordinates, difference, length, force, static, False)
+        difference = State(path.displacement, path.speed, path.local)
+        forces[stretch] = force
+    return difference, forces

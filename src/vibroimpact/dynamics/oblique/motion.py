@@ -33,7 +33,7 @@ from vibroimpact.dynamics.shaken.statement import PlateMotion
 
 _PARTS = 8  # of a step for twisting, whose moment grows steeply where a slip ends
 
-_STEPS = 16  # of each phase of a contact at the default tolerance: the slip velocity at its end is within 1e-4 of that at first touch
+_STEPS = 16  # of each phase of a contact at the default tolerance: the slip velocity at its end is within 2e-4 of that at first touch
 _DEFAULT_TOLERANCE = 1e-9
 _ORDER = 4  # of the error, in the steps
 _ROUNDING = 1e-9

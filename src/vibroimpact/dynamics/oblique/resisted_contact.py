@@ -1,16 +1,4 @@
-r"""Contacts of rigid bodies in which rolling is resisted while friction is elastic, marched in time.
-
-With the slip s of the contact point, of which the spin makes the part w, the friction Q that the law makes of the way of the slip, the
-normal force F, and the moment M of rolling resistance
-
-.. math:: m \dot v = m g - Q,\qquad I \dot w = -R^2 Q - R M,\qquad s = v + w
-
-M is :math:`\mu_r R F` against w, and where w is zero what keeps it so, up to that. Friction and moment act together: a spin that the moment
-holds leaves friction the whole mass to slow, one that it does not hold only the effective mass of the contact point.
-
-Each step is half a kick, a drift and half a kick (leapfrog, of order two). Each kick takes from w what the moment can take of it, and no
-more, so that w ends at zero and stays there without a special case.
-"""
+"""Contacts of rigid bodies in which rolling is resisted while friction is elastic, marched by the core."""
 
 from __future__ import annotations
 
@@ -19,11 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.contact.friction.cubics import cubic_at
 from vibroimpact.contact.friction.law import CompliantFriction
+from vibroimpact.dynamics.core.resisted_contact import RollingSphere, march_resisted
 from vibroimpact.dynamics.oblique.microslip import lost_in_microslip
 from vibroimpact.dynamics.oblique.normal_motion import NormalMotion
 from vibroimpact.dynamics.oblique.state import Sphere, State, energy_taken
+from vibroimpact.dynamics.oblique.tangential_history import tangential_history
 from vibroimpact.dynamics.oblique.twisting import slowed_spins
 
 _PARTS = 16
@@ -91,39 +80,22 @@ def resisted_contact(law: CompliantFriction, normal: NormalMotion, sphere: Spher
         Its state at first touch.
     """
     time, force, impulse = _refined(normal, _parts(law, normal, sphere))
-    history = law.history(float(force.max()))
-    mass = float(sphere.mass[0])
-    turn = float(sphere.radius[0] ** 2 / sphere.inertia[0])
-    gravity = sphere.gravity[:, 0]
-    elapsed = np.diff(time)
-    pressed = np.diff(impulse)
-    mean = 0.5 * (force[1:] + force[:-1])
-    # half a step, such that a friction of a constant part of the normal force has exactly that part of its impulse
-    rubbing = 0.5 * np.divide(pressed, mean, out=elapsed.copy(), where=mean > 0.0)
-    resisted = 0.5 * turn * float(law.rolling_coefficient) * pressed
-    velocity = before.velocity[:, 0]
-    turning = sphere.turning(before)[:, 0]
-    friction = np.zeros(2)
+    rolling = RollingSphere(
+        mass=float(sphere.mass[0]),
+        turn=float(sphere.radius[0] ** 2 / sphere.inertia[0]),
+        rolling_coefficient=float(law.rolling_coefficient),
+        gravity=sphere.gravity[:, 0].copy(),
+    )
     velocities = np.empty((len(time), 2))
     turnings = np.empty((len(time), 2))
     frictions = np.zeros((len(time), 2))
-    moved = np.empty((len(elapsed), 2))
+    moved = np.empty((len(time) - 1, 2))
     slid = np.zeros(len(time))
-    velocities[0] = velocity
-    turnings[0] = turning
-    steps = zip(elapsed.tolist(), rubbing.tolist(), force[1:].tolist(), resisted.tolist(), strict=True)
-    for step, (length, rubs, pressing, most) in enumerate(steps):
-        pulled = 0.5 * length * gravity
-        velocity = velocity + pulled - rubs / mass * friction
-        turning, unused = _slowed(turning - rubs * turn * friction, most)
-        moved[step] = length * (velocity + turning)
-        history, friction = history.after(pressing, moved[step])
-        velocity = velocity + pulled - rubs / mass * friction
-        turning, _ = _slowed(turning - rubs * turn * friction, most + unused)
-        velocities[step + 1] = velocity
-        turnings[step + 1] = turning
-        frictions[step + 1] = friction
-        slid[step + 1] = history.slid
+    velocities[0] = before.velocity[:, 0]
+    turnings[0] = sphere.turning(before)[:, 0]
+    history = tangential_history(law, float(force.max()))
+    march_resisted(rolling, history, time, force, impulse, velocities, turnings, frictions, moved, slid)
+    elapsed = np.diff(time)
     position = np.zeros_like(velocities)
     np.cumsum(0.5 * elapsed[:, None] * (velocities[1:] + velocities[:-1]), axis=0, out=position[1:])
     slips = np.hypot(*(velocities + turnings).T)
@@ -135,14 +107,6 @@ def resisted_contact(law: CompliantFriction, normal: NormalMotion, sphere: Spher
     )
     microslip = lost_in_microslip(law, force, frictions, moved, slid)
     return ResistedContact(sphere, before, time, states, -frictions.T, np.array([microslip]))
-
-
-def _slowed(turning: Floats, most: float) -> tuple[Floats, float]:
-    """Return what a moment leaves of w that can take `most` of it [m/s], and how much more it could have taken."""
-    speed = float(np.hypot(turning[0], turning[1]))
-    if speed > most:
-        return turning * (1.0 - most / speed), 0.0
-    return np.zeros(2), most - speed
 
 
 def _parts(law: CompliantFriction, normal: NormalMotion, sphere: Sphere) -> int:
@@ -159,8 +123,10 @@ def _refined(normal: NormalMotion, parts: int) -> tuple[Floats, Floats, Floats]:
     place = np.arange(1, parts + 1)[:, None] / parts
 
     def at(values: Floats, slopes: Floats) -> Floats:
-        ends = np.array([values[:-1, 0], slopes[:-1, 0], values[1:, 0], slopes[1:, 0]])
-        between, _ = cubic_at(ends, place)
+        change = values[1:, 0] - values[:-1, 0]
+        bend = 3.0 * change - 2.0 * slopes[:-1, 0] - slopes[1:, 0]
+        twist = slopes[:-1, 0] + slopes[1:, 0] - 2.0 * change
+        between = values[:-1, 0] + place * (slopes[:-1, 0] + place * (bend + place * twist))
         return np.append(values[0, 0], np.where(inside, between, values[1:, 0]).T.ravel())
 
     time = np.maximum.accumulate(at(normal.time, normal.pace))

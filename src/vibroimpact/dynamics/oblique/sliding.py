@@ -6,9 +6,11 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.contact.friction.law import CompliantFriction, FrictionLaw, ImpulsiveFriction
-from vibroimpact.dynamics.oblique.compliant import slide_compliant
 from vibroimpact.dynamics.oblique.normal_motion import NormalMotion
 from vibroimpact.dynamics.oblique.state import Sliding
+
+_ROUNDING = 1e-5
+"""Error of the rate of the depth at release, as a part of the largest."""
 
 
 def slide(law: FrictionLaw | None, normal: NormalMotion, slip: Floats, mass: Floats, pull: Floats) -> Sliding:
@@ -28,7 +30,7 @@ def slide(law: FrictionLaw | None, normal: NormalMotion, slip: Floats, mass: Flo
         Accelerations along the direction [m/s^2].
     """
     if isinstance(law, CompliantFriction):
-        return Sliding(normal.time, *slide_compliant(law, normal, slip, mass, pull))
+        return _slide_compliant(law, normal, slip, mass, pull)
     free, none = slip + pull * normal.time, np.zeros_like(slip)
     if not isinstance(law, ImpulsiveFriction):
         return Sliding(normal.time, free, slip * normal.time + 0.5 * pull * normal.time**2, np.zeros_like(free), none)
@@ -36,3 +38,40 @@ def slide(law: FrictionLaw | None, normal: NormalMotion, slip: Floats, mass: Flo
     left = law.slip_after(free, pressed, pressed[-1], mass)
     force = law.force(left, normal.force)
     return Sliding(normal.time, left, normal.integrals(left, normal.pace * (pull - force / mass)), force, none)
+
+
+def _slide_compliant(law: CompliantFriction, normal: NormalMotion, slip: Floats, mass: Floats, pull: Floats) -> Sliding:
+    """Return the sliding of contacts under a law with tangential compliance, each followed by the core.
+
+    Parameters
+    ----------
+    law : CompliantFriction
+        The law, of B contacts.
+    normal : NormalMotion
+        Their normal motion.
+    slip : array, shape (B,)
+        Slip velocities at first touch [m/s].
+    mass : array, shape (B,)
+        Effective masses of the tangential motion [kg].
+    pull : array, shape (B,)
+        Accelerations along the direction [m/s^2].
+    """
+    from vibroimpact.dynamics.core.sliding_paths import slide_contacts  # a drop without such friction does not load the compiler
+
+    size = len(slip)
+    points = len(normal.steps) + 1
+    contacts = np.empty((size, 7))
+    parameters = (law.effective_modulus, law.effective_shear_modulus, law.effective_radius, law.coefficient)
+    for column, values in enumerate((*parameters, slip, mass, pull)):
+        contacts[:, column] = values
+    normals = np.empty((size, 6, points))
+    motion = (normal.time, normal.pace, normal.pace_slope, normal.force, normal.force_slope, normal.impulse)
+    for row, values in enumerate(motion):
+        normals[:, row] = values.T
+    paths = np.empty((size, 3, points))
+    microslips = np.empty(size)
+    growing, shrinking = law.stretching
+    of_law = (float(growing), float(shrinking), law.slips_at_rim, law.sliding_energy)
+    slide_contacts(*of_law, _ROUNDING, contacts, normals, normal.steps, paths, microslips)
+    velocity, displacement, force = paths.transpose(1, 2, 0)
+    return Sliding(normal.time, velocity, displacement, force, microslips)

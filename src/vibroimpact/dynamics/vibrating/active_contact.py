@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.quasi_static import QuasiStatic
-from vibroimpact.contact.roots import locate_maximum
 from vibroimpact.contact.static import static_indentation
+from vibroimpact.dynamics.core.attempt import time_at
+from vibroimpact.dynamics.core.law import law_indentation
+from vibroimpact.dynamics.core.peak import peak_of
 from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State
 from vibroimpact.dynamics.vibrating.local import LocalContact
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
@@ -37,22 +40,22 @@ class ContactPeak:
 
     def __init__(self) -> None:
         self.nodal_max = 0.0
-        self._candidates: list[tuple[float, float, VibratingStretch, Callable[[Floats], Floats]]] = []
+        self._candidates: list[tuple[float, float, VibratingStretch, Callable[[], tuple[float, float]]]] = []
 
-    def add(self, nodal_max: float, start: float, stretch: VibratingStretch, values: Callable[[Floats], Floats]) -> None:
-        """Add a stretch that starts at a time [s], with its largest nodal value, and its values as a function of x in [0, 1]."""
+    def add(self, nodal_max: float, start: float, stretch: VibratingStretch, peak: Callable[[], tuple[float, float]]) -> None:
+        """Add a stretch that starts at a time [s], with its largest nodal value; `peak` returns the x of the largest one, and that."""
         if nodal_max >= _PEAK * self.nodal_max:
-            self._candidates.append((nodal_max, start, stretch, values))
+            self._candidates.append((nodal_max, start, stretch, peak))
             self.nodal_max = max(self.nodal_max, nodal_max)
 
     def locate(self) -> tuple[float, float]:
         """Return the largest value and its time [s]; zeros if there is none."""
         found = (0.0, 0.0)
-        for nodal_max, start, stretch, values in self._candidates:
+        for nodal_max, start, stretch, peak in self._candidates:
             if nodal_max >= _PEAK * self.nodal_max:
-                x = np.array([locate_maximum(values)])
-                if (value := float(values(x)[0])) > found[0]:
-                    found = value, start + stretch.length * float(stretch.rule.map_time(x)[0])
+                x, value = peak()
+                if value > found[0]:
+                    found = value, start + stretch.length * time_at(stretch.basis.basis, x)
         return found
 
 
@@ -111,7 +114,7 @@ class ActiveContact:
 
     def law_indentation(self, system: LinearSystem, state: State) -> float:
         """Return the indentation of its law in a state [m]."""
-        return float(self.local.indentation_at(self.overlap(system, state) + self.local.release_level))
+        return law_indentation(self.local.with_levels, self.overlap(system, state) + self.local.release_level)
 
     def plastic_work(self, system: LinearSystem, state: State) -> float:
         """Return the plastic work since the last update of the law's memory [J], in a state."""
@@ -135,17 +138,18 @@ def closing_speed(system: LinearSystem, state: State, number: int) -> float:
 def motion_speed(system: LinearSystem, number: int, law: CompliantLaw, closing: float) -> float:
     """Return the speed scale of the motion in a contact [m/s]: the closing speed, or the speed that gravity adds at a soft touch."""
     mass, gravity = float(system.mass[number]), max(float(system.gravity[number]), 0.0)
+    if gravity and float(law.forces(closing**2 / gravity, 0.0, closing)[0]) >= mass * gravity:
+        return closing  # the sphere sinks in by less than the height of a fall to this speed
     sag = float(static_indentation(law, np.array([mass * gravity]))[0]) if gravity else 0.0
     return max(closing, float(np.sqrt(gravity * sag)))
 
 
-def record_peaks(impact: Impact, stretch: VibratingStretch, place: int, start: float, indentations: Floats) -> None:
-    """Add the peaks of force and indentation of one contact within a stretch to its impact, and its impulse.
+def record_peaks(impact: Impact, stretch: VibratingStretch, place: int, start: float, force: float, indentations: Floats) -> None:
+    """Add the peaks of force and indentation of one contact within a stretch to its impact.
 
-    `start`: time at which the stretch begins [s]. `indentations`: of the centre above, at the start and the nodes [m] (N + 1,).
+    `start`: time at which the stretch begins [s]. `force`: the largest at a node [N]. `indentations`: of the centre above, at the start and
+    the nodes [m] (N + 1,).
     """
-    rule, contact = stretch.rule, stretch.contacts[place]
-    force = float(contact.force.max()) if contact.local.law.tension == "kept" else max(float(contact.force.max()), 0.0)
-    impact.force.add(force, start, stretch, contact.force_at)
-    impact.indentation.add(float(indentations[1:].max()), start, stretch, lambda x: np.asarray(rule.weights(x).T @ indentations))
-    impact.impulse += stretch.length * float(rule.integral[-1] @ contact.force)
+    law = stretch.contacts[place].local.law
+    impact.force.add(force if law.tension == "kept" else max(force, 0.0), start, stretch, partial(stretch.peak_force, place))
+    impact.indentation.add(max(indentations[1:].tolist()), start, stretch, partial(peak_of, stretch.basis.basis, indentations))

@@ -232,8 +232,9 @@ class VibratingBodies:
     def pass_flight(self, drops: Drops, motions: Motions, elapsed: Floats) -> None:
         """Advance the coordinates of drops by free motion."""
         for drop, motion, time in zip(drops, motions, elapsed, strict=True):
-            self.lost[drop] += motion.lost_by(time)
-            self.place(drop, motion.state(time))
+            state = motion.state_after(float(time))
+            self.lost[drop] += motion.lost_at(state)
+            self.place(drop, state)
 
     def closing_speed(self, drops: Drops, speed: Floats, velocity: Floats) -> Floats:
         """Return the closing speed of the surfaces, with the vibration outside the contact [m/s]."""

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cache
 
 import numpy as np
 
-from vibroimpact.compiled import law_addresses, law_coefficients
 from vibroimpact.dynamics.core import contact as core
 from vibroimpact.dynamics.core import records
 from vibroimpact.dynamics.core.events import ENDS, TENSIONS
-from vibroimpact.dynamics.core.law import law_at_touch
 from vibroimpact.dynamics.vibrating.active_contact import ActiveContact, record_peaks
 from vibroimpact.dynamics.vibrating.contact_history import ContactHistory
 from vibroimpact.dynamics.vibrating.contact_view import contact_view
@@ -19,7 +16,7 @@ from vibroimpact.dynamics.vibrating.free_motion import FreePhase
 from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, State
 from vibroimpact.dynamics.vibrating.local import LocalContact
 from vibroimpact.dynamics.vibrating.march import March, MotionPart
-from vibroimpact.dynamics.vibrating.radau_eigenbasis import NODES_PER_STRETCH, RadauEigenbasis, radau_eigenbasis
+from vibroimpact.dynamics.vibrating.radau_eigenbasis import NODES_PER_STRETCH, bases_of, radau_eigenbasis
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 from vibroimpact.dynamics.vibrating.stretch_end import with_separation_loss
 
@@ -43,9 +40,7 @@ class CompiledContact:
         self.active = active
         law = active.local.law
         self.view = contact_view(march.system, (0,))
-        self.rules = _rules(law.root)
-        self.bases = records.Bases(*(rule.basis for rule in self.rules))
-        self.bodies = records.Bodies(march.system.record, self.view.surfaces, self.view.coordinates)
+        self.root = law.root
         self.manner = records.Manner(
             tension=TENSIONS.index(law.tension),
             contact_end=ENDS.index(law.contact_end),
@@ -57,8 +52,7 @@ class CompiledContact:
             longest=limits.longest,
             most_steps=limits.most_steps,
         )
-        series = active.local.record.series[0]
-        self.law = law_at_touch(law_addresses(type(law)), law_coefficients(law), series, float(active.local.approach_speed))
+        self.law = active.local.with_levels
         self.progress = records.Progress(
             time=march.time,
             next_length=march.next_length,
@@ -73,7 +67,7 @@ class CompiledContact:
             largest_force=0.0,
             deepest=0.0,
         )
-        self.state = records.State(march.state.displacement, march.state.velocity, march.state.local)
+        self.state = march.state.record
         self.parts = _room(march.system.number, len(march.system.rate))
         self.locals = [active.local]
 
@@ -87,7 +81,7 @@ class CompiledContact:
         march, outcome = self.march, core.FULL
         while outcome == core.FULL:
             outcome, count, self.progress, self.state, self.law = core.follow_contact(
-                self.bases, self.bodies, self.manner, self.law, self.state, self.progress, march.lost, self.parts
+                bases_of(self.root), self.view.bodies, self.manner, self.law, self.state, self.progress, march.lost, self.parts
             )
             self._read(count)
         active, progress = self.active, self.progress
@@ -109,43 +103,42 @@ class CompiledContact:
             before = self.locals[-1]
             march.plastic += float(before.law.plastic_work(turned_at))
             self.locals.append(before.after_indentation(turned_at))
+        written = records.Parts._make(values[:count].copy() for values in parts)
+        largest = written.force.max(axis=1).tolist()
         for part in range(count):
-            local = self.locals[parts.memories[part]]
-            start = float(parts.start[part])
-            begun = State(parts.displacement[part].copy(), parts.velocity[part].copy(), parts.local[part].copy())
-            if parts.kind[part] == 0:
-                length = float(parts.length[part])
+            local = self.locals[written.memories[part]]
+            start = float(written.start[part])
+            begun = State(written.displacement[part], written.velocity[part], written.local[part])
+            if written.kind[part] == 0:
+                length = float(written.length[part])
                 march.parts.append(MotionPart(start, FreePhase(FreeMotion(march.system, begun), length, ((0, local),))))
                 continue
-            stretch = self._stretch(part, local, begun)
+            stretch = self._stretch(written, part, local, begun)
             march.parts.append(MotionPart(start, stretch))
-            record_peaks(self.active.impact, stretch, 0, start, parts.indentation[part].copy())
+            record_peaks(self.active.impact, stretch, 0, start, largest[part], written.indentation[part])
+            end = State(*self.state)
+            if part + 1 < count:
+                end = State(written.displacement[part + 1], written.velocity[part + 1], written.local[part + 1])
+            stretch.__dict__["end"] = end  # which it would compute anew
 
-    def _stretch(self, part: int, local: LocalContact, begun: State) -> VibratingStretch:
-        parts = self.parts
-        basis = self.rules[parts.time_map[part]]
-        static = parts.static[part].copy()
+    def _stretch(self, parts: records.Parts, part: int, local: LocalContact, begun: State) -> VibratingStretch:
+        basis = radau_eigenbasis(records.MAPS[parts.time_map[part]], self.root)
+        static = parts.static[part]
         history = ContactHistory(
             0,
             local,
             basis.rule,
             static,
             parts.force[part] - static,
-            parts.approach[part].copy(),
-            parts.rate[part].copy(),
-            parts.delta[part].copy(),
+            parts.approach[part],
+            parts.rate[part],
+            parts.closing[part],
+            parts.delta[part],
             work=float(parts.work[part]),
             dissipated=float(parts.dissipated[part]),
             separation_loss=float(parts.separation_loss[part]),
         )
         return VibratingStretch(self.view, basis, float(parts.length[part]), begun, (history,), True, float(parts.roughness[part]))
-
-
-@cache
-def _rules(root: int) -> tuple[RadauEigenbasis, RadauEigenbasis, RadauEigenbasis]:
-    """Return the Radau rule under the maps of time of the core, in their order."""
-    touch, inside, release = (radau_eigenbasis(time_map, root) for time_map in ("touch", "inside", "release"))
-    return touch, inside, release
 
 
 def _room(number: int, elements: int) -> records.Parts:
@@ -164,6 +157,7 @@ def _room(number: int, elements: int) -> records.Parts:
         force=np.empty((_PARTS, nodes)),
         approach=np.empty((_PARTS, nodes + 1)),
         rate=np.empty((_PARTS, nodes + 1)),
+        closing=np.empty((_PARTS, nodes + 1)),
         delta=np.empty((_PARTS, nodes + 1)),
         work=np.empty(_PARTS),
         dissipated=np.empty(_PARTS),

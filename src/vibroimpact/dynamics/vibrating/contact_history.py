@@ -16,7 +16,8 @@ class ContactHistory:
     """Forces and motion of one contact through a stretch.
 
     `number`: number of the contact in the system. `static`, `dissipative`: parts of its force at the nodes [N] (N,). At the start and at
-    the nodes (N + 1,): `approach` of the surfaces [m], `rate` at the dashpot of the law [m/s], and `delta`, the indentation of the law [m].
+    the nodes (N + 1,): `approach` of the surfaces [m], `rate` at the dashpot of the law and `closing`, the whole rate of the approach
+    [m/s], and `delta`, the indentation of the law [m].
     `work`: increase of the energy stored by the law and of the plastic work [J]. `dissipated`: work of the dissipative force [J].
     `separation_loss`: stored energy that is lost at the end, as when a sticking contact breaks [J].
     """
@@ -28,6 +29,7 @@ class ContactHistory:
     dissipative: Floats
     approach: Floats
     rate: Floats
+    closing: Floats
     delta: Floats
     work: float
     dissipated: float

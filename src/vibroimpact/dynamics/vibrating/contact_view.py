@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from vibroimpact.arrays import Bools, Floats
-from vibroimpact.dynamics.core.records import Coordinates, Start, Surfaces
+from vibroimpact.dynamics.core.records import Bodies, Coordinates, Start, Surfaces
 from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State
 
 _RIGID_ROUNDING = 2e-15  # relative rounding error of the kinetic energy of the rigid motions that move the contacts
@@ -87,6 +87,11 @@ class ContactView:
             mobility=system.mobility,
             rounding=np.where(system.rigid, _RIGID_ROUNDING * self.active_rigid, _ROUNDING),
         )
+
+    @cached_property
+    def bodies(self) -> Bodies:
+        """The system, of one contact, as the core takes it."""
+        return Bodies(self.system.record_of(self.contacts[0]), self.surfaces, self.coordinates)
 
     @cached_property
     def without_load(self) -> ContactView:

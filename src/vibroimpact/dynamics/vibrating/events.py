@@ -69,7 +69,7 @@ def _events(stretch: VibratingStretch, place: int, weights: Floats, speed: float
         beyond = beyond * np.sign(beyond[1] if on_it else beyond[0])
         events.append((EndCondition("breakpoint", level, place), beyond, beyond < 0.0))
     if local.updates_memory(float(delta.max())):
-        closing = weights @ stretch.closing_rates(place)
+        closing = weights @ contact.closing
         events.append((EndCondition("turn", 0.0, place), closing, (closing < 0.0) & (np.maximum.accumulate(closing) > ZERO_RATE * speed)))
     return [Event(condition, _crossing(values, reached)) for condition, values, reached in events if reached[1:].any()]
 

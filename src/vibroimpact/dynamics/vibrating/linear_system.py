@@ -26,7 +26,8 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.arrays import Bools, Floats, Indices
-from vibroimpact.dynamics.core.records import System
+from vibroimpact.dynamics.core import records
+from vibroimpact.dynamics.core.flight import state_after
 from vibroimpact.dynamics.vibrating.oscillators import Oscillators
 
 _ALIKE = 1e-12  # of the sum of the magnitudes of the terms of an acceleration: smaller sums are rounding errors
@@ -42,6 +43,11 @@ class State:
     displacement: Floats
     velocity: Floats
     local: Floats
+
+    @property
+    def record(self) -> records.State:
+        """The state as the core takes it."""
+        return records.State(self.displacement, self.velocity, self.local)
 
     def take(self, index: int) -> State:
         """Return one state along the leading axis."""
@@ -101,26 +107,32 @@ class LinearSystem(Oscillators):
         return {}
 
     @cached_property
-    def record(self) -> System:
-        """The system as the core takes it, of one contact."""
-        return System(
-            frequency=self.angular_frequency,
-            ratio=self.damping_ratio,
-            damping=self.damping,
-            load=self.load,
-            shape=np.ascontiguousarray(self.shape[0]),
-            outer_shape=np.ascontiguousarray(self.outer_shape[0]),
-            indentation_shape=np.ascontiguousarray(self.indentation_shape[0]),
-            rate=self.rate,
-            mobility=self.mobility,
-            offset=float(self.offset[0]),
-            gravity=float(self.gravity[0]),
-            mass=float(self.mass[0]),
-            compliance=float(self.compliance[0]),
-            flexibility=float(self.flexibility.sum()),
-            rigid=int(self.rigid.sum()),
-            driven=self.driven,
-        )
+    def _records(self) -> dict[int, records.System]:
+        """Cache of `record_of`, by the contacts."""
+        return {}
+
+    def record_of(self, contact: int) -> records.System:
+        """Return the system with one of its contacts, as the core takes it."""
+        if contact not in self._records:
+            self._records[contact] = records.System(
+                frequency=self.angular_frequency,
+                ratio=self.damping_ratio,
+                damping=self.damping,
+                load=self.load,
+                shape=np.ascontiguousarray(self.shape[contact]),
+                outer_shape=np.ascontiguousarray(self.outer_shape[contact]),
+                indentation_shape=np.ascontiguousarray(self.indentation_shape[contact]),
+                rate=self.rate,
+                mobility=self.mobility,
+                offset=float(self.offset[contact]),
+                gravity=float(self.gravity[contact]),
+                mass=float(self.mass[contact]),
+                compliance=float(self.compliance[contact]),
+                flexibility=float(self.flexibility.sum()),
+                rigid=int(self.rigid.sum()),
+                driven=self.driven,
+            )
+        return self._records[contact]
 
     def with_sphere(self, shape: float, load: float) -> LinearSystem:
         """Return the same system with a sphere of another mass and weight, whose fall is the first coordinate."""
@@ -276,9 +288,13 @@ class FreeMotion:
             start.local * np.exp(-system.rate * later),
         )
 
+    def state_after(self, time: float) -> State:
+        """Return the state at one time since the start [s], without the arrays of many times."""
+        return State(*state_after(self.system.record_of(0), self.start.record, time))
+
     def after(self, time: float) -> FreeMotion:
         """Return the motion from a time on [s]."""
-        return FreeMotion(self.system, self.state(np.array(time)))
+        return FreeMotion(self.system, self.state_after(time))
 
     def lost_by(self, time: Floats) -> Floats:
         """Return the energy lost since the start [J], (..., n + 1): in each coordinate, and last in the massless elements."""
@@ -290,10 +306,6 @@ class FreeMotion:
         coordinates = np.where(system.rigid, 0.0, sum(system.energies(self.start)) - sum(system.energies(state)))
         massless = system.local_energy(self.start) - system.local_energy(state)
         return np.concatenate([coordinates, massless[..., None]], axis=-1)
-
-    def pull(self, time: float) -> Floats:
-        """Return a bound of the acceleration of the approach by what acts on the sphere [m/s^2] (contacts,), from a time on [s]."""
-        return self.system.gravity
 
     def motion(self, time: Floats) -> tuple[Floats, Floats]:
         """Return the approach of the surfaces [m] and its rate [m/s] at times since the start [s], (..., contacts)."""

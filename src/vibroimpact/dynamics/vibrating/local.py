@@ -13,13 +13,13 @@ from vibroimpact.arrays import Array
 from vibroimpact.compiled import law_addresses, law_coefficients
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.quasi_static import QuasiStatic
-from vibroimpact.dynamics.core.records import Contacts
+from vibroimpact.dynamics.core.law import law_at_touch
+from vibroimpact.dynamics.core.records import Contacts, Law
 
 _MOST_ITERATIONS = 40
 _STEP = 1e-7  # relative step of finite differences
 _CONVERGED = 1e-8  # relative Newton step, after which the next would be below rounding
 _TABLE_ROWS = 200
-_TENSILE_POINTS, _LEAST_SLOPE = 2000, 0.05  # of the approach by the indentation; at zero a contact snaps off, with 1e-4 less energy lost
 
 
 @dataclass(frozen=True)
@@ -48,17 +48,28 @@ class LocalContact:
         """Return the static and the dissipative force [N], before clipping, at the approach y [m] and its rate [m/s]."""
         return self.law.forces(self.indentation_at(approach), rate, self.approach_speed)
 
+    def __getstate__(self) -> dict[str, object]:
+        """Return what is pickled: not the addresses of machine code, which are those of this process."""
+        return {"law": self.law, "series": self.series, "approach_speed": self.approach_speed}
+
+    @cached_property
+    def with_levels(self) -> Law:
+        """The law with the levels and the energy that follow from it and the compliance in series, as the core finds them."""
+        series = self.series
+        numbers = np.array([series.linear, series.unit, *series.factors, series.force], dtype=float)
+        return law_at_touch(law_addresses(type(self.law)), law_coefficients(self.law), numbers, float(self.approach_speed))
+
     @cached_property
     def record(self) -> Contacts:
         """The contact as the core takes it."""
-        series = self.series
+        law = self.with_levels
         return Contacts(
-            laws=law_addresses(type(self.law))[:1],
-            coefficients=law_coefficients(self.law)[None],
-            speed=np.array([float(self.approach_speed)]),
-            release=np.array([self.release_indentation]),
-            release_level=np.array([self.release_level]),
-            series=np.array([[series.linear, series.unit, *series.factors, series.force]], dtype=float),
+            laws=law.addresses[:1],
+            coefficients=law.coefficients[None],
+            speed=np.array([law.speed]),
+            release=np.array([law.release]),
+            release_level=np.array([law.release_level]),
+            series=law.series[None],
         )
 
     # in terms of the indentation of the law ---------------------------------------------------------
@@ -140,32 +151,23 @@ class LocalContact:
 
     # levels and energies in terms of the approach ---------------------------------------------------
 
-    @cached_property
+    @property
     def energy_of_jump(self) -> float:
         """Energy that an adhesive law and the compliance in series store as they jump into contact, relative to the law alone [J], <= 0.
 
         Energies are those since touch, as those of the law are, so that this one is a part of what is lost at release.
         """
-        touch = np.asarray(self.law.touch_level, dtype=float)
-        if not self._static(touch):
-            return 0.0
-        delta = self.indentation_at(touch)
-        return float(self.law.elastic_energy(delta) + self.series.energy(self._static(delta)))
+        return self.with_levels.jump
 
-    @cached_property
+    @property
     def release_level(self) -> float:
         """Approach at release [m]."""
-        return float(self.approach_at(np.asarray(self.release_indentation)))
+        return self.with_levels.release_level
 
-    @cached_property
+    @property
     def release_indentation(self) -> float:
         """Indentation of the law at release [m]; with a compliance in series a sticking contact may snap off before the law releases."""
-        least, touch = float(self.law.release_level), float(self.law.touch_level)
-        if not self.series or not least < touch:
-            return least
-        delta = least + (touch - least) * np.linspace(0.0, 1.0, _TENSILE_POINTS) ** 6  # graded towards release
-        torn = np.flatnonzero(np.gradient(self.approach_at(delta), delta) < _LEAST_SLOPE)
-        return float(delta[torn[-1]]) if torn.size else least
+        return self.with_levels.release
 
     def elastic_energy(self, approach: Array) -> Array:
         """Return the energy stored since touch by the law and in series with it [J], at an approach [m]."""

@@ -33,7 +33,7 @@ from vibroimpact.dynamics.vibrating.local import LocalContact
 from vibroimpact.dynamics.vibrating.next_touch import next_touch, time_to_separation
 from vibroimpact.dynamics.vibrating.radau_eigenbasis import GRID
 from vibroimpact.dynamics.vibrating.recoil import end_of_recoil, recoil_end_value
-from vibroimpact.dynamics.vibrating.rubbing import Rubbing
+from vibroimpact.dynamics.vibrating.rubbing import Rubbing, longest_with_friction
 from vibroimpact.dynamics.vibrating.solve_stretch import StretchProblem
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 from vibroimpact.dynamics.vibrating.stretch_end import (
@@ -168,7 +168,8 @@ class March:
         """Append a free motion of a length [s] to the history."""
         motion = FreePhase(free, length, tuple((number, contact.local) for number, contact in self.active.items()))
         self.rubbing = None if self.rubbing is None else self.rubbing.flown(length)
-        self.append_motion(motion, free.state(np.array(length)), motion.lost_by(np.array(length)))
+        state = free.state_after(length)
+        self.append_motion(motion, state, motion.lost_at(state))
 
     def end_recoil(self, contact: ActiveContact, *, parts: bool) -> None:
         """End the recoil of a contact, which separates or pushes again."""
@@ -234,6 +235,8 @@ class March:
                 self.update_memory(contact)
         span, speed = min(contact.span for contact in pushing), max(contact.speed for contact in self.active.values())
         energy = max(contact.energy for contact in pushing)
+        if self.rubbing is not None:
+            longest = min(longest, longest_with_friction(self.tolerance) * span)
         if self.next_length < 1e-12 * span:
             raise NotIntegrable(f"the contact at {self.time:g} s can't be integrated to the tolerance")
         time_map: Map = "touch" if any(contact.fresh for contact in pushing) else "inside"
@@ -326,9 +329,10 @@ class March:
     def accept(self, pushing: list[ActiveContact], stretch: VibratingStretch) -> None:
         """Append a stretch to the history, and update the contacts at its end."""
         for place, (contact, history, trend) in enumerate(zip(pushing, stretch.contacts, stretch.trend.tolist(), strict=True)):
-            record_peaks(contact.impact, stretch, place, self.time, stretch.indentations(place))
+            record_peaks(contact.impact, stretch, place, self.time, float(history.force.max()), stretch.indentations(place))
+            contact.impact.impulse += stretch.length * float(stretch.rule.integral[-1] @ history.force)
             contact.delta, contact.force, contact.trend = float(history.delta[-1]), float(history.force[-1]), trend
-            contact.fresh, contact.closing = False, float(stretch.closing_rates(place)[-1]) if contact.local.law.memories() else np.inf
+            contact.fresh, contact.closing = False, float(history.closing[-1]) if contact.local.law.memories() else np.inf
         end, lost = stretch.end, stretch.lost
         for contact in self.active.values():
             if not contact.pushes:  # recoiling contacts, which are not part of the stretch

@@ -4,22 +4,20 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
+from vibroimpact.dynamics.core import touch
+from vibroimpact.dynamics.core.records import Approach
+from vibroimpact.dynamics.vibrating.fluid_motion import FluidMotion
+from vibroimpact.dynamics.vibrating.linear_system import FreeMotion
 
 _MOST_STEPS = 100_000
 _MOST_HORIZONS = 10_000
-_ROUNDING = 4e-16  # of the sum of the magnitudes of the terms of an approach: a smaller overlap is a rounding error
 _SAMPLES = np.linspace(0.0, 1.0, 33)[1:]
 
 
 def next_touch(motion: FreeMotion, level: float, until: float, contact: int = 0) -> float:
-    r"""Return when the indentation first rises to a level [s since the start]; infinite if not before `until`.
+    """Return when the indentation first rises to a level [s since the start]; infinite if not before `until`.
 
-    From an open gap no touch is stepped over. With a bound M of the acceleration from here on, a gap G that opens at the rate
-    :math:`\dot G` can't close before :math:`\tau = (\dot G + \sqrt{\dot G^2 + 2 M G}) / M`, so the search advances by these bounds;
-    near the touch they converge as fast as Newton's method. Far away, the displacement of the vibrating surface is bounded by its
-    energy, and the parabola of the rigid motion gives the time until it is that near.
+    From an open gap no touch is stepped over.
 
     Parameters
     ----------
@@ -32,84 +30,61 @@ def next_touch(motion: FreeMotion, level: float, until: float, contact: int = 0)
     contact : int, default 0
         Number of the contact in the system.
     """
-    system = motion.system
-    omega, size, local = system.angular_frequency, np.abs(system.shape[contact]), system.local_incidence[contact]
-    time = time_to_separation(motion, level, contact)
-    if not time < until:
-        return np.inf
-    for _ in range(_MOST_STEPS):
-        state, gravity = motion.state(np.array(time)), float(motion.pull(time)[contact])
-        gap, opening = level - float(system.approach(state)[contact]), -float(system.rates(state)[contact])
-        # the gap is closed to the rounding error of the time
-        if time > 0.0 and opening <= 0.0 and gap <= -4e-16 * opening * time:
-            return time
-        # the larger of two lower bounds of the time to touch: from the range of the vibration, and from the bound of the acceleration
-        peak_speeds, reach = _peak_speeds(system, state), _displacement_bound(system, state, contact)
-        approach, speed = (float(part[contact]) for part in system.rigid_motion(state))
-        far = _fall_time(approach, speed, gravity, level - reach)
-        most = (
-            float(size @ (peak_speeds * omega * (1.0 + 2.0 * system.damping_ratio)))
-            + float(np.abs(state.local) @ (local * system.rate**2))
-            + abs(gravity)
-        )
-        if most > 0.0:
-            root = np.sqrt(opening * opening + 2.0 * most * max(gap, 0.0))
-            near = (opening + root) / most if opening >= 0.0 else 2.0 * max(gap, 0.0) / (root - opening)
-        else:  # no acceleration: without gravity and vibration
-            near = gap / -opening if opening < 0.0 else np.inf
-        step = max(far, near)
-        if time + step > until or not np.isfinite(step):
-            return np.inf
-        if time + step == time:
-            return time if gap <= 1e-12 * reach or opening <= 0.0 else np.inf
-        time += step
-    return time
+    if isinstance(motion, FluidMotion):
+        return _next_touch_in_fluid(motion, level, until)
+    return float(touch.next_touch(motion.system.record_of(contact), motion.start.record, level, until))
 
 
 def time_to_separation(motion: FreeMotion, level: float, contact: int = 0) -> float:
     """Return when surfaces that overlap beyond a level separate to it [s]; 0 if they do not overlap, infinite if they never separate."""
+    if isinstance(motion, FluidMotion):
+        return _time_to_separation_in_fluid(motion, level)
+    return float(touch.time_to_separation(motion.system.record_of(contact), motion.start.record, level))
+
+
+# through a fluid, in which the sphere flies by steps that are not those of the core
+
+
+def _approach(motion: FluidMotion, time: float) -> Approach:
+    return touch.approach_in(motion.system.record_of(0), motion.state_after(time).record)
+
+
+def _next_touch_in_fluid(motion: FluidMotion, level: float, until: float) -> float:
+    time = _time_to_separation_in_fluid(motion, level)
+    if not time < until:
+        return np.inf
+    for _ in range(_MOST_STEPS):
+        now = _approach(motion, time)
+        if touch.is_touch(now, level, time):
+            return time
+        if touch.never_returns(now, level, float(motion.system.gravity[0])):
+            return np.inf
+        step = touch.time_apart(now, level, motion.pull(time))
+        if time + step > until or not np.isfinite(step):
+            return np.inf
+        if time + step == time:
+            return time if touch.is_closing(now, level) else np.inf
+        time += step
+    return time
+
+
+def _time_to_separation_in_fluid(motion: FluidMotion, level: float) -> float:
     system, time = motion.system, 0.0
     horizon, before = 0.0, np.nan
     for _ in range(_MOST_HORIZONS):
-        state = motion.state(np.array(time))
-        approach, rate = float(system.approach(state)[contact]), float(system.rates(state)[contact])
-        # twice the last one where that was too short to change anything, as below the rounding of the time of a flight
-        horizon = 2.0 * horizon if approach == before else 2.0 * (approach - level) / abs(rate) if rate else 1e-6
-        before = approach
-        terms = float(np.abs(system.shape[contact]) @ np.abs(state.displacement)) + abs(float(system.offset[contact]))
-        if approach <= level + (_ROUNDING * terms if rate < 0.0 else 0.0):
+        now = _approach(motion, time)
+        # a shorter time is lost in that of the flight
+        shortest = float(np.spacing(motion.flight.start[0] + time))
+        horizon = max(touch.next_horizon(now, level, horizon, before), shortest)
+        before = now.approach
+        if touch.is_apart(now, level):
             return time
-        rigid_approach, rigid_rate = (float(part[contact]) for part in system.rigid_motion(state))
-        if system.gravity[contact] >= 0.0 and rigid_rate >= 0.0 and rigid_approach - _displacement_bound(system, state, contact) > level:
-            return np.inf  # the rigid motion closes beyond the range of the vibration: they never separate
+        if touch.never_separates(now, level, float(system.gravity[0])):
+            return np.inf
         times = time + horizon * _SAMPLES
-        parted = motion.motion(times)[0][:, contact] <= level
+        parted = motion.motion(times)[0][:, 0] <= level
         later = float(times[parted.argmax() if parted.any() else -1])
         if later == time:  # the time step is below rounding
             return time
         time = later
     return np.inf
-
-
-def _peak_speeds(system: LinearSystem, state: State) -> Floats:
-    """Return an upper bound of the future speed of each mode, from its energy."""
-    return np.where(system.rigid, 0.0, np.sqrt(state.velocity**2 + (system.angular_frequency * state.displacement) ** 2))
-
-
-def _displacement_bound(system: LinearSystem, state: State, contact: int) -> float:
-    """Return an upper bound of the future contribution of modes and massless elements to the approach [m]."""
-    modal = np.abs(system.shape[contact]) @ (_peak_speeds(system, state) * np.sqrt(system.flexibility))
-    return float(modal + np.abs(state.local) @ system.local_incidence[contact])
-
-
-def _fall_time(approach: float, speed: float, gravity: float, level: float) -> float:
-    """Return when the rigid approach reaches a level [s] under gravity; 0 if it already has, infinite if it never will."""
-    height = level - approach
-    if height <= 0.0:
-        return 0.0
-    if speed * speed + 2.0 * gravity * height < 0.0:
-        return np.inf
-    if gravity == 0.0:
-        return height / speed if speed > 0.0 else np.inf
-    root = np.sqrt(speed * speed + 2.0 * gravity * height)
-    return float(2.0 * height / (root + speed) if speed > 0.0 else (root - speed) / gravity)

@@ -10,12 +10,14 @@ import numpy as np
 
 from vibroimpact.arrays import Complex, Floats
 from vibroimpact.dynamics.collocation import Map, Rule, collocation_rule
-from vibroimpact.dynamics.core.records import MAPS, Basis
+from vibroimpact.dynamics.core.records import MAPS, Bases, Basis
 
 NODES_PER_STRETCH = 12
 """Nodes of a stretch: with more the eigenvectors of the integration matrix are too ill-conditioned, with fewer the stretches are too short.
 """
 
+
+_MAPS: tuple[Map, ...] = ("touch", "inside", "release")
 
 GRID = np.linspace(0.0, 1.0, 33)
 """Values of x at which a stretch is searched for events."""
@@ -65,6 +67,12 @@ def radau_eigenbasis(time_map: Map, root: int) -> RadauEigenbasis:
     )
     members: Any = (np.ascontiguousarray(part) if np.ndim(part) else part for part in basis)
     return RadauEigenbasis(rule, Basis(*members))
+
+
+@cache
+def bases_of(root: int) -> Bases:
+    """Return the rule under the three maps of time, as the core takes it."""
+    return Bases(*(radau_eigenbasis(time_map, root).basis for time_map in _MAPS))
 
 
 def _parts(values: Complex | Floats) -> Floats:

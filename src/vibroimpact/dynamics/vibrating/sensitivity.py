@@ -11,13 +11,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import groupby
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.contact.roots import locate_maximum
+from vibroimpact.dynamics.core.peak import nodal_value_between
 from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.vibrating.contact_view import contact_view
 from vibroimpact.dynamics.vibrating.free_motion import FreePhase
 from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.vibrating.local import LocalContact
@@ -104,33 +106,36 @@ class _Neighbour:
         """Propagate through free motion, in recoil (`inside`) or between contacts."""
         if not inside:
             self.separate()
-        system, before = motion.system, self.difference
-        cosine, sine = system.transition(np.array(length)).swapaxes(0, 1)
-        place, speed = cosine * before.displacement + sine * before.velocity
-        self.difference = State(place, speed, before.local * np.exp(-system.rate * length))
+        free = contact_view(motion.system, (0,)).without_load.system
+        self.difference = FreeMotion(free, self.difference).state_after(length)
         self.separated, self.last_stretch = not inside, None
 
     def pass_visit(self, motions: Sequence[VibratingStretch | FreePhase]) -> None:
         """Propagate through the parts of a visit."""
-        for motion in motions:
-            if isinstance(motion, FreePhase):
-                self.fly(motion.free, motion.length, inside=motion.local is not None)
-            else:
-                self.pass_through(motion)
+        for _, parts in groupby(motions, _contact_of):
+            alike = list(parts)
+            stretches = [motion for motion in alike if isinstance(motion, VibratingStretch)]
+            if stretches:
+                self.pass_through(stretches)
+            for motion in alike:
+                if isinstance(motion, FreePhase):
+                    self.fly(motion.free, motion.length, inside=motion.local is not None)
 
-    def pass_through(self, stretch: VibratingStretch) -> None:
-        """Propagate through a stretch of contact."""
+    def pass_through(self, stretches: Sequence[VibratingStretch]) -> None:
+        """Propagate through stretches of contact under one law."""
+        first, local = stretches[0], stretches[0].contacts[0].local
         if self.separated:
-            self.begin_contact(stretch)
-        elif stretch.contacts[0].local is not self.local:
-            self.update_memory(stretch)
-        variations = _law_variations(stretch.contacts[0].local, self.law_differences)
-        self.difference, force_difference = propagate_difference(stretch, self.difference, variations)
-        self.force_difference, self.last_stretch = float(force_difference[-1]), stretch
+            self.begin_contact(first)
+        elif local is not self.local:
+            self.update_memory(first)
+        variations = _law_variations(local, self.law_differences)
+        self.difference, force_differences = propagate_difference(stretches, self.difference, variations)
+        self.force_difference, self.last_stretch = float(force_differences[-1, -1]), stretches[-1]
         assert self.visit is not None  # it has touched
-        force = float(stretch.force.max())
-        if force > self.visit.force:
-            self.visit.force, self.visit.strongest = force, (stretch, force_difference)
+        for stretch, force_difference in zip(stretches, force_differences, strict=True):
+            force = float(stretch.contacts[0].force.max())
+            if force > self.visit.force:
+                self.visit.force, self.visit.strongest = force, (stretch, force_difference)
 
     def leave(self, speed: float) -> float:
         """End a visit with a speed upwards [m/s]; return the growth of the change."""
@@ -139,9 +144,8 @@ class _Neighbour:
         if visit is None or visit.strongest is None:
             return float("nan")
         stretch, force_difference = visit.strongest
-        (contact,) = stretch.contacts
-        top = np.array([locate_maximum(contact.force_at)])
-        force_change = float(stretch.rule.interpolate(top, force_difference)[0]) / float(contact.force_at(top)[0])
+        top, force = stretch.peak_force()
+        force_change = nodal_value_between(stretch.basis.basis, force_difference, top) / force
         speed_change = float(stretch.system.rigid_motion(self.difference)[1][0]) / max(abs(speed), _SLOW * visit.speed)
         return max(abs(visit.closing) / visit.speed, abs(force_change), abs(speed_change))
 
@@ -164,7 +168,7 @@ class _Neighbour:
         """Shift the difference to the separation of each drop, if they come from a stretch."""
         if self.last_stretch is not None:
             excess = float(self.last_stretch.system.approach(self.difference)[0])
-            self.shift_to_event(self.last_stretch, excess, float(self.last_stretch.closing_rates()[-1]))
+            self.shift_to_event(self.last_stretch, excess, float(self.last_stretch.contacts[0].closing[-1]))
         self.last_stretch = None
 
     def update_memory(self, stretch: VibratingStretch) -> None:
@@ -176,7 +180,7 @@ class _Neighbour:
         if self.force_jumps(stretch):
             x = np.array([1.0 - _STEP, 1.0])
             closing, time = (
-                self.last_stretch.rule.weights(x).T @ self.last_stretch.closing_rates(),
+                self.last_stretch.rule.weights(x).T @ self.last_stretch.contacts[0].closing,
                 self.last_stretch.length * self.last_stretch.rule.map_time(x),
             )
             excess = float(system.rates(self.difference)[0]) - system.mobility.sum() * self.force_difference
@@ -210,6 +214,11 @@ class _Neighbour:
         (contact,) = stretch.contacts
         rates = _state_rates(stretch.system, stretch.end, float(contact.force[-1]), float(contact.static[-1]))
         self.difference = _shifted(self.difference, rates, -excess / rate)
+
+
+def _contact_of(motion: VibratingStretch | FreePhase) -> int:
+    """Return a number of the contact of a stretch, which stays the same until its law's memory changes; 0 for free motion."""
+    return id(motion.contacts[0].local) if isinstance(motion, VibratingStretch) else 0
 
 
 def _state_rates(system: LinearSystem, state: State, force: float, static: float) -> State:

@@ -10,6 +10,7 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.collocation import Map
+from vibroimpact.dynamics.core.histories import contact_histories
 from vibroimpact.dynamics.core.receptance import surface_motion
 from vibroimpact.dynamics.core.records import Contacts, Motion, Nodes, Start
 from vibroimpact.dynamics.core.stretch import (
@@ -19,7 +20,6 @@ from vibroimpact.dynamics.core.stretch import (
     GIVEN_LENGTH,
     MOST_ITERATIONS,
     begun_indentations,
-    contact_histories,
     first_guess,
     force_scale,
     improved,
@@ -148,6 +148,7 @@ class StretchProblem:
                 dissipative[place],
                 found.approach[place],
                 found.rate[place],
+                found.closing[place],
                 found.delta[place],
                 work=float(np.subtract(*local.work_at_indentation(found.delta[place, [-1, 0]]))),
                 dissipated=float(found.dissipated[place]),

@@ -14,6 +14,7 @@ import numpy as np
 from vibroimpact.arrays import Bools, Floats
 from vibroimpact.dynamics.collocation import Rule
 from vibroimpact.dynamics.core.path import stretch_path
+from vibroimpact.dynamics.core.peak import peak_of_force
 from vibroimpact.dynamics.vibrating.contact_history import ContactHistory
 from vibroimpact.dynamics.vibrating.contact_view import ContactView
 from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State
@@ -108,11 +109,12 @@ class VibratingStretch:
             view = rubbed_view(view)
             force = np.concatenate([force, self.rubbed.force])
             static = np.concatenate([static, np.zeros_like(self.rubbed.force)])
-        state = (self.start.displacement, self.start.velocity, self.start.local)
-        path = stretch_path(self.basis.basis, view.surfaces, view.coordinates, *state, self.length, force.ravel(), static.ravel())
+        start = self.start.record
+        bodies = (view.surfaces, view.coordinates)
+        path = stretch_path(self.basis.basis, *bodies, start, self.length, force.ravel(), static.ravel(), True)
         gain, rounding = path.energies.tolist()
         end = State(path.displacement, path.speed, path.local)
-        return StretchMotion(path.acceleration.T, path.velocity.T, path.massless.T, end, gain, rounding, path.lost)
+        return StretchMotion(path.acceleration, path.velocity, path.massless.T, end, gain, rounding, path.lost)
 
     @property
     def accelerations(self) -> Floats:
@@ -129,13 +131,6 @@ class VibratingStretch:
         """State at the end."""
         return self.motion.end
 
-    def closing_rates(self, contact: int = 0) -> Floats:
-        """Return the rate of the approach at a contact, with coordinates inside the contact [m/s], at the start and the nodes (N + 1,)."""
-        rate, inner = self.contacts[contact].rate, self.system.inner_shape[self.view.contacts[contact]]
-        if not self.view.modes.inside:
-            return rate
-        return np.asarray(rate + np.concatenate([self.start.velocity[None], self.velocities]) @ inner)
-
     def state(self, time: Floats) -> State:
         """Return the state at times since the start [s] (T,)."""
         start, h, across, load = self.start, self.length, np.asarray(time)[:, None], self.system.load
@@ -146,6 +141,12 @@ class VibratingStretch:
             start.velocity + across * load + integral @ driven,
             start.local + integral @ self.motion.massless,
         )
+
+    def peak_force(self, contact: int = 0) -> tuple[float, float]:
+        """Return the x in [0, 1] at which the force of a contact is largest, and that force [N]; zero where it pulls and may not."""
+        history = self.contacts[contact]
+        x, force = peak_of_force(self.basis.basis, history.local.record, history.delta, history.rate)
+        return x, force if history.local.law.tension == "kept" else max(force, 0.0)
 
     def indentations(self, contact: int = 0) -> Floats:
         """Return the approach of the centre above to the surface below at a contact [m], at the start and the nodes (N + 1,)."""

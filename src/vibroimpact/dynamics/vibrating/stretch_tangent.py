@@ -1,8 +1,4 @@
-"""Tangent problem of a stretch of contact: propagation of a small difference of the state by the linearised equations of motion.
-
-The nodal forces of a stretch solve equations whose Jacobian is known, and all other quantities are linear in the forces. A difference of
-the state at the start gives that at the end by one more linear solve. Differences are taken at equal times.
-"""
+"""Propagation of a small difference of the state through stretches of contact, as the core computes it."""
 
 from __future__ import annotations
 
@@ -11,50 +7,38 @@ from collections.abc import Sequence
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.core.law import linearise
-from vibroimpact.dynamics.core.path import stretch_path
-from vibroimpact.dynamics.core.receptance import surface_motion
-from vibroimpact.dynamics.core.tangent import force_differences
+from vibroimpact.dynamics.core import records
+from vibroimpact.dynamics.core.tangent import propagate
 from vibroimpact.dynamics.vibrating.linear_system import State
-from vibroimpact.dynamics.vibrating.local import LocalContact
+from vibroimpact.dynamics.vibrating.local import LocalContact, contacts_of
+from vibroimpact.dynamics.vibrating.radau_eigenbasis import bases_of
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 
 
 def propagate_difference(
-    stretch: VibratingStretch, difference: State, variations: Sequence[tuple[LocalContact, float]]
+    stretches: Sequence[VibratingStretch], difference: State, variations: Sequence[tuple[LocalContact, float]]
 ) -> tuple[State, Floats]:
-    """Return the difference of the state at the end of a stretch of one contact, and of the contact force at its nodes [N] (N,).
+    """Return the difference of the state at the end of stretches, and of the contact force at their nodes [N] (P, N).
 
     Parameters
     ----------
-    stretch : VibratingStretch
-        The solved stretch.
+    stretches : sequence of VibratingStretch
+        Solved stretches of one contact under one law, one after the other.
     difference : State
-        Difference of the state at its start between a neighbouring motion and that one, to first order.
+        Difference of the state at their start between a neighbouring motion and that one, to first order.
     variations : sequence of (LocalContact, float)
         Contacts with the law's closing speed or a memory varied, each with the factor by which the change of its force counts.
     """
-    (contact,), basis = stretch.contacts, stretch.basis.basis
-    view = stretch.view.without_load
-    delta, rate = contact.delta[1:], contact.rate[1:]
-    motion = surface_motion(basis, view.surfaces, view.start(difference), stretch.length)
-    linear = _linearised(contact.local, delta, rate)
-    # a varied closing speed or memory changes the forces of the law and its approach at fixed indentations and rates
-    static, dissipative, approach = np.zeros((3, len(delta)))
-    for varied, weight in variations:
-        change = weight * (_linearised(varied, delta, rate) - linear)
-        static += change[0]
-        dissipative += change[1]
-        approach += change[2]
-    force, static = force_differences(motion, linear, approach, static, dissipative)
-    state = (difference.displacement, difference.velocity, difference.local)
-    path = stretch_path(basis, view.surfaces, view.coordinates, *state, stretch.length, force, static)
-    return State(path.displacement, path.speed, path.local), force
-
-
-def _linearised(local: LocalContact, delta: Floats, rate: Floats) -> Floats:
-    """Return forces, approach and derivatives of a law at the nodes (7, N), as `linearise` gives them."""
-    linear = np.empty((7, len(delta)))
-    law, coefficients, speed, release, _, series = (array[0] for array in local.record)
-    linearise(law, coefficients, speed, release, series, delta, rate, linear)
-    return linear
+    first = stretches[0]
+    local = first.contacts[0].local
+    histories = [stretch.contacts[0] for stretch in stretches]
+    solved = records.Solved(
+        time_map=np.array([stretch.basis.basis.time_map for stretch in stretches]),
+        length=np.array([stretch.length for stretch in stretches]),
+        delta=np.array([history.delta for history in histories]),
+        rate=np.array([history.rate for history in histories]),
+    )
+    laws = contacts_of([local, *(varied for varied, _ in variations)])
+    weights = np.array([weight for _, weight in variations], dtype=float)
+    end, forces = propagate(bases_of(local.law.root), first.view.without_load.bodies, laws, weights, solved, difference.record)
+    return State(*end), forces

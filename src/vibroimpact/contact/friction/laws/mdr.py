@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from vibroimpact.contact.friction.law import CompliantFriction
-from vibroimpact.contact.friction.springs import ContactSprings, contact_springs
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,8 +37,3 @@ class Mdr(CompliantFriction):
     equation = "Q = G* int u dx, |u| <= mu E*/G* (D - x^2/R)"
     source = "Popov & Hess 2015, Method of Dimensionality Reduction, ch. 5"
     slips_at_rim = True
-
-    def history(self, largest_force: float) -> ContactSprings:
-        """Return springs without displacement; see `CompliantFriction`."""
-        moduli = (float(self.effective_modulus), float(self.effective_shear_modulus))
-        return contact_springs(*moduli, float(self.effective_radius), float(self.coefficient), largest_force)

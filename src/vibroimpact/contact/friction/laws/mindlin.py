@@ -4,10 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
-from vibroimpact.arrays import Floats
-from vibroimpact.contact.friction.law import CompliantFriction, TangentialHistory
+from vibroimpact.contact.friction.law import CompliantFriction
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,14 +35,6 @@ class Mindlin(CompliantFriction):
     source = "Mindlin 1949, J. Appl. Mech. 16:259; LAMMPS, granular: mindlin"
     stretching = (1, 1)
     sliding_energy = 4.0 / 15.0
-
-    def history(self, largest_force: float) -> TangentialHistory:
-        """Return a spring without displacement; see `CompliantFriction`."""
-        return OneSpring(self, 0.0, np.zeros(2))
-
-    def radius_under(self, force: float) -> float:
-        """Return the radius of the contact of one drop under a normal force [N]."""
-        return float(np.cbrt(0.75 * max(force, 0.0) * self.effective_radius / self.effective_modulus))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -100,51 +89,3 @@ class MindlinForce(Mindlin):
     source = "Mindlin & Deresiewicz 1953, J. Appl. Mech. 20:327; LAMMPS, granular: mindlin/force"
     stretching = (0, 0)
     sliding_energy = 0.4
-
-    def history(self, largest_force: float) -> TangentialHistory:
-        """Return a contact without a force; see `CompliantFriction`."""
-        return OneForce(self, 0.0, np.zeros(2))
-
-
-@dataclass(frozen=True)
-class OneSpring:
-    """Spring of one contact in two directions; see `TangentialHistory`. `radius` of the contact [m], `stretch` [m] (2,)."""
-
-    law: Mindlin
-    radius: float
-    stretch: Floats
-    slid: float = 0.0
-
-    def after(self, force: float, moved: Floats) -> tuple[OneSpring, Floats]:
-        """Stretch the spring, at most to sliding."""
-        law, radius = self.law, self.law.radius_under(force)
-        kept = (radius / self.radius) ** (law.stretching[1] - 1) if radius < self.radius else 1.0
-        stretch, stiffness = self.stretch * kept + moved * (0.5 * (1.0 + kept)), 2.0 * float(law.effective_shear_modulus) * radius
-        bounded = _kept(stiffness * stretch, float(law.coefficient) * force)
-        slid, stretch = (1.0 - bounded) * float(np.hypot(*stretch)), stretch * bounded
-        return OneSpring(law, radius, stretch, slid), stiffness * stretch
-
-
-@dataclass(frozen=True)
-class OneForce:
-    """Kept force of one contact in two directions; see `TangentialHistory`. `radius` of the contact [m], `force` [N] (2,)."""
-
-    law: Mindlin
-    radius: float
-    force: Floats
-    slid: float = 0.0
-
-    def after(self, force: float, moved: Floats) -> tuple[OneForce, Floats]:
-        """Change the force as without slip, by the mean stiffness on the way, at most to sliding."""
-        law, radius = self.law, self.law.radius_under(force)
-        stiffness = float(law.effective_shear_modulus) * (self.radius + radius)
-        pulled = self.force + stiffness * moved
-        bounded = _kept(pulled, float(law.coefficient) * force)
-        slid, pulled = (1.0 - bounded) * float(np.hypot(*pulled)) / max(stiffness, 1e-300), pulled * bounded
-        return OneForce(law, radius, pulled, slid), pulled
-
-
-def _kept(pulled: Floats, most: float) -> float:
-    """Return the part of a force that is left where its magnitude may be no more than `most` [N]."""
-    strength = float(np.hypot(*pulled))
-    return max(most, 0.0) / strength if strength > max(most, 0.0) else 1.0

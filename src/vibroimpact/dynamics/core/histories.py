@@ -1,0 +1,65 @@
+"""Motion and energy of contacts through a solved stretch."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.compiled import compiled
+from vibroimpact.dynamics.core.linear import product
+from vibroimpact.dynamics.core.records import Basis, Contacts, Histories, Motion, Nodes, Start, Surfaces
+from vibroimpact.dynamics.core.stretch import begun_rate
+
+
+@compiled(lambda t: t.of(Histories)(t.of(Basis), t.of(Surfaces), t.of(Contacts), t.of(Start), t.vector, t.of(Nodes), t.of(Motion), t.real))
+def contact_histories(
+    basis: Basis, surfaces: Surfaces, contacts: Contacts, start: Start, begun: Floats, found: Nodes, motion: Motion, length: float
+) -> Histories:
+    """Return motion and energy of the contacts through a solved stretch; `begun`: indentations of the laws at the start [m] (c,)."""
+    nodes = len(basis.time)
+    number = len(begun)
+    approaches = motion.approach - product(motion.approach_by_force, found.force)
+    if len(motion.approach_by_static):
+        approaches -= product(motion.approach_by_static, found.static)
+    slowed = product(motion.rate_by_force, found.force)
+    rates = motion.rate - slowed
+    closings = motion.closing - slowed
+    if len(motion.closing_by_static):
+        closings -= product(motion.closing_by_static, found.static)
+    approach = np.empty((number, nodes + 1))
+    rate = np.empty((number, nodes + 1))
+    closing = np.empty((number, nodes + 1))
+    delta = np.empty((number, nodes + 1))
+    dissipated = np.zeros(number)
+    roughness = 0.0
+    for contact in range(number):
+        first = contact * nodes
+        approach[contact, 0] = max(start.approach[contact], contacts.release_level[contact])
+        delta[contact, 0] = begun[contact]
+        first_rate = begun_rate(surfaces, start, contact)
+        if surfaces.incidence[contact].any():  # the rate of a massless element jumps with the force
+            first_rate = 0.0
+            for node in range(nodes):
+                first_rate += basis.at_start[node] * rates[first + node]
+        rate[contact, 0] = first_rate
+        closing[contact, 0] = first_rate + start.inner_rate[contact]
+        fastest = abs(first_rate)
+        for node in range(nodes):
+            approach[contact, node + 1] = approaches[first + node]
+            rate[contact, node + 1] = rates[first + node]
+            closing[contact, node + 1] = closings[first + node]
+            delta[contact, node + 1] = found.delta[first + node]
+            fastest = max(fastest, abs(rates[first + node]))
+            power = (found.force[first + node] - found.static[first + node]) * rates[first + node]
+            dissipated[contact] += length * basis.integral[nodes - 1, node] * power
+        largest = surfaces.mass[contact] * fastest / length
+        last = 0.0
+        for order in range(nodes):
+            coefficient = 0.0
+            for node in range(nodes):
+                coefficient += basis.spectrum[order, node] * found.force[first + node]
+            largest = max(largest, abs(coefficient))
+            if order >= nodes - 2:
+                last = max(last, abs(coefficient))
+        roughness = max(roughness, last / largest)
+    return Histories(approach, rate, closing, delta, dissipated, roughness)
