@@ -16,7 +16,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from vibroimpact.compiler.deferred import DeferredFunction
+from vibroimpact.compiler.deferred import INTERPRETING, DeferredFunction, interpreted
 from vibroimpact.compiler.function_values import (
     LAW_FUNCTIONS,
     compressed_at,
@@ -34,6 +34,7 @@ __all__ = [
     "compressed_at",
     "energies_at",
     "force_at",
+    "interpreted",
     "law_addresses",
     "law_coefficients",
     "law_function",
@@ -122,6 +123,8 @@ def law_addresses(law_class: type[Any]) -> Any:
     >>> static_force(law_addresses(type(law)), 4.0, law_coefficients(law))
     16.0
     """
+    if INTERPRETING.get():
+        return np.array([interpreted_function(law_class, kind) for kind in LAW_FUNCTIONS], dtype=object)
     if law_class not in _ADDRESSES:
         functions = [law_function(law_class, kind) for kind in LAW_FUNCTIONS]
         _ADDRESSES[law_class] = (

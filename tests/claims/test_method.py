@@ -13,7 +13,6 @@ from vibroimpact.cases.rigid import touch_speed
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.dynamics import air, liquid
 from vibroimpact.dynamics.core import phase_contact
-from vibroimpact.dynamics.phase_plane import contact_solver
 from vibroimpact.dynamics.rigid import line_contact
 from vibroimpact.dynamics.vibrating import visit
 
@@ -22,12 +21,8 @@ WATER, QUARTZ = vi.Liquid(), 2650.0
 
 
 def test_bounds() -> None:
-    for least, tightest in (
-        (phase_contact._LEAST_RESTITUTION, line_contact._TIGHTEST),
-        (contact_solver._LEAST_RESTITUTION, contact_solver._TIGHTEST),
-    ):
-        says(PAGE, "a restitution below {} or not at all", least)
-        says(PAGE, "all contacts below a tolerance of {}.", tightest)
+    says(PAGE, "a restitution below {} or not at all", phase_contact._LEAST_RESTITUTION)
+    says(PAGE, "all contacts below a tolerance of {}.", line_contact._TIGHTEST)
     says(PAGE, "It is integrated for {} steps of contact", visit.MOST_STEPS)
     says(PAGE, "up to that time with at most {};", visit.MOST_STEPS_TO_A_TIME)
     says(PAGE, "more than {} % is refused", 100.0 * air._DENSEST)

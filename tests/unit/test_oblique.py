@@ -14,10 +14,10 @@ import vibroimpact as vi
 from vibroimpact.arrays import Floats
 from vibroimpact.cases.keys import with_values
 from vibroimpact.contact.friction.law import CompliantFriction
-from vibroimpact.dynamics import run
 from vibroimpact.dynamics.columns import LEDGER, OBLIQUE_LEDGER, VIBRATION_LEDGER
 from vibroimpact.dynamics.oblique import motion, sliding
 from vibroimpact.dynamics.oblique.normal_motion import NormalMotion
+from vibroimpact.dynamics.rigid import solve_contact
 from vibroimpact.runs.tables import ledger_table
 
 RADIUS, MASS = 0.01, 0.02
@@ -226,6 +226,32 @@ def test_friction_of_a_drop_does_not_depend_on_its_neighbours(friction: str) -> 
         alone = sliding.slide(law, normal.take(here), speeds[here], MASS + none[here], none[here])
         for name, values in vars(alone).items():
             assert np.array_equal(values[..., 0], getattr(whole, name)[..., drop]), name
+
+
+@pytest.mark.parametrize(
+    ("law", "friction"),
+    [(law, friction) for law in (*LAWS, "linear-spring-dashpot", "walton-braun") for friction in FRICTION] + [("thornton", "rolls")],
+)
+def test_an_oblique_drop_is_what_it_is_alone(law: str, friction: str) -> None:
+    """Its numbers don't depend on the size of the batch, on its place in it, or on its neighbours, to the last digit."""
+    size = 30
+    others = {
+        "linear-spring-dashpot": {"stiffness": 2e6, "restitution": 0.7, "effective_mass": MASS},
+        "walton-braun": {"stiffness": 1e6, "restitution": 0.6},
+    }
+    normal = LAWS[law] if law in LAWS else vi.find_contact_law(law)(**others[law])
+    oblique = vi.Oblique(velocity=(np.linspace(0.05, 6.0, size), 0.2), spin=(10.0, -30.0, 50.0), friction=WITH_ROLLING[friction])
+    ball, plate = vi.Body(mass=MASS, contact_offset=RADIUS), vi.rigid_plate()
+    speeds = np.geomspace(0.05, 5.0, size)
+    drops = vi.Problem(sphere=ball, plate=plate, laws=(normal,), speed=speeds, gravity=9.81, impacts=3, oblique=oblique)
+    together = vi.tabulate(drops).impacts
+    turned = vi.tabulate(drops.take(np.arange(size)[::-1])).impacts
+    for drop in range(0, size, 7):
+        alone = vi.tabulate(drops.take(np.array([drop]))).impacts
+        rows = alone["impact"].shape[1]
+        for name, values in alone.items():
+            np.testing.assert_array_equal(together[name][drop, :rows], values[0], err_msg=name)
+            np.testing.assert_array_equal(turned[name][size - 1 - drop, :rows], values[0], err_msg=name)
 
 
 def normal_motion_of(drops: vi.Problem) -> NormalMotion:
@@ -514,7 +540,7 @@ def test_more_steps_change_little(law: str, friction: str, monkeypatch: pytest.M
     ball, plate = vi.Body(mass=MASS, contact_offset=RADIUS), vi.rigid_plate()
     drops = vi.Problem(sphere=ball, plate=plate, laws=(laws[law],), speed=2.0, gravity=0.0, impacts=1, oblique=oblique)
     found = vi.tabulate(drops).impacts["separation_velocity_x_m_s"][:, 0]
-    monkeypatch.setattr(run, "friction_steps", lambda tolerance: 48)
+    monkeypatch.setattr(solve_contact, "friction_steps", lambda tolerance: 48)
     more = vi.tabulate(drops).impacts["separation_velocity_x_m_s"][:, 0]
     assert (np.abs(found - more) < 1e-4 * slip).all()
 

@@ -2,11 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from functools import cached_property, update_wrapper
 from typing import Any
 
 from vibroimpact.compiler.marks import DEFERRED
+
+INTERPRETING = ContextVar("INTERPRETING", default=False)
+"""Are functions of the core that Python calls run as they are written?"""
+
+
+@contextmanager
+def interpreted() -> Iterator[None]:
+    """Run functions of the core as plain Python, for a computation so short that loading numba would take longer."""
+    token = INTERPRETING.set(True)
+    try:
+        yield
+    finally:
+        INTERPRETING.reset(token)
 
 
 class DeferredFunction:
@@ -44,6 +59,8 @@ class DeferredFunction:
 
     def __call__(self, *arguments: Any) -> Any:
         """Compile the function, unless that was done, and call it."""
+        if INTERPRETING.get():
+            return self.py_func(*arguments)
         return self.compiled(*arguments)
 
     def __reduce__(self) -> str:

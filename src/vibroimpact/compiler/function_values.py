@@ -55,7 +55,7 @@ def compressed_at(address: Any) -> Any:
     return address
 
 
-def multiply_row(room: Any, values: Any, matrices: Any, matrix: Any, width: Any, product: Any) -> None:
+def multiply_row(room: Any, values: Any, matrices: Any, matrix: Any, width: Any, columns: Any, product: Any) -> None:
     """Write the product of a row of an array with a matrix into another row; for use in compiled functions.
 
     Parameters
@@ -64,16 +64,18 @@ def multiply_row(room: Any, values: Any, matrices: Any, matrix: Any, width: Any,
         Holds both rows.
     values : int
         Number of the row that is multiplied.
-    matrices : array, shape (K, M, M)
+    matrices : array, shape (K, N, P)
         Matrices with a column for each element of the product.
     matrix : int
         Number of the one.
     width : int
-        How much of rows and matrix is used, a multiple of eight.
+        How much of the row is multiplied, a multiple of eight.
+    columns : int
+        How much of the product is written, a multiple of eight.
     product : int
         Number of the row that is written, another one.
     """
-    room[product, :width] = room[values, :width] @ matrices[matrix, :width, :width]
+    room[product, :columns] = room[values, :width] @ matrices[matrix, :width, :columns]
 
 
 def law_coefficients(law: Any) -> Floats:

@@ -192,8 +192,10 @@ def _inserting(of_address: Any) -> Callable[..., Any]:
     return replacement
 
 
-def _multiplying(room, values, matrices, matrix, width, product):  # type: ignore[no-untyped-def]
-    return lambda room, values, matrices, matrix, width, product: intrinsics.product_of_rows(room, values, matrices, matrix, width, product)
+def _multiplying(room, values, matrices, matrix, width, columns, product):  # type: ignore[no-untyped-def]
+    return lambda room, values, matrices, matrix, width, columns, product: intrinsics.product_of_rows(
+        room, values, matrices, matrix, width, columns, product
+    )
 
 
 def _fields(kind: Any) -> str:

@@ -38,7 +38,7 @@ _LANES = 8  # doubles of a vector; a machine with shorter ones takes several
 
 
 @intrinsic  # type: ignore[untyped-decorator]
-def product_of_rows(typing_context: Any, room: Any, values: Any, matrices: Any, matrix: Any, width: Any, product: Any) -> Any:
+def product_of_rows(typing_context: Any, room: Any, values: Any, matrices: Any, matrix: Any, width: Any, columns: Any, product: Any) -> Any:
     """Write the product of a row of an array with a matrix into another row, as `function_values.multiply_row` says."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
@@ -47,19 +47,19 @@ def product_of_rows(typing_context: Any, room: Any, values: Any, matrices: Any, 
             for kind, value in zip((types.matrix, types.cube), (arguments[0], arguments[2]), strict=True)
         )
         row_length = builder.extract_value(array.shape, 1)
-        rows, columns = builder.extract_value(cube.shape, 1), builder.extract_value(cube.shape, 2)
+        rows, row_of_matrix = builder.extract_value(cube.shape, 1), builder.extract_value(cube.shape, 2)
         source = builder.gep(array.data, [builder.mul(arguments[1], row_length)])
-        target = builder.gep(array.data, [builder.mul(arguments[5], row_length)])
-        first = builder.gep(cube.data, [builder.mul(arguments[3], builder.mul(rows, columns))])
+        target = builder.gep(array.data, [builder.mul(arguments[6], row_length)])
+        first = builder.gep(cube.data, [builder.mul(arguments[3], builder.mul(rows, row_of_matrix))])
         double, integer = ir.DoubleType(), ir.IntType(64)
         lanes = ir.VectorType(double, _LANES)
         sums = [cgutils.alloca_once(builder, lanes) for _ in range(2)]
-        blocks = builder.lshr(arguments[4], integer(3))
+        blocks, blocks_of_columns = (builder.lshr(number, integer(3)) for number in arguments[4:6])
 
         def vector_at(pointer: Any) -> Any:
             return builder.bitcast(pointer, lanes.as_pointer())
 
-        with cgutils.for_range(builder, blocks, intp=integer) as block:
+        with cgutils.for_range(builder, blocks_of_columns, intp=integer) as block:
             column = builder.shl(block.index, integer(3))
             for one in sums:
                 builder.store(ir.Constant(lanes, [0.0] * _LANES), one)
@@ -72,7 +72,7 @@ def product_of_rows(typing_context: Any, room: Any, values: Any, matrices: Any, 
                     alike = builder.shuffle_vector(
                         alike, ir.Constant(lanes, ir.Undefined), ir.Constant(ir.VectorType(ir.IntType(32), _LANES), [0] * _LANES)
                     )
-                    place = builder.gep(first, [builder.add(builder.mul(row, columns), column)])
+                    place = builder.gep(first, [builder.add(builder.mul(row, row_of_matrix), column)])
                     weights = builder.load(vector_at(place), align=8)
                     one = sums[number % 2]
                     builder.store(builder.fadd(builder.load(one), builder.fmul(alike, weights)), one)
@@ -80,4 +80,5 @@ def product_of_rows(typing_context: Any, room: Any, values: Any, matrices: Any, 
             builder.store(whole, vector_at(builder.gep(target, [column])), align=8)
         return context.get_dummy_value()
 
-    return types.void(types.matrix, types.integer, types.cube, types.integer, types.integer, types.integer), generate
+    numbers = (types.integer, types.integer, types.integer, types.integer)
+    return types.void(types.matrix, types.integer, types.cube, *numbers), generate

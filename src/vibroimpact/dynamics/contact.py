@@ -8,10 +8,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from vibroimpact.arrays import Bools, Drops, Floats
+from vibroimpact.arrays import Bools, Drops, Floats, Integers
 from vibroimpact.contact.law import CompliantLaw
-from vibroimpact.dynamics.phase_plane.motion import PlaneMotion
-from vibroimpact.dynamics.rigid.glide import Glide
 
 RELEASED, CAPTURED, FAILED, SETTLED, RIDING = range(5)
 """Outcomes of a contact.
@@ -33,14 +31,28 @@ class PartOfContact(Protocol):
 
 @dataclass(frozen=True)
 class Piece:
-    """A part of the contact of some drops: a solved stretch or phase, or free motion within the indentation."""
+    """A part of the contact of some drops."""
 
     drops: Drops
     start: Floats
     """Time since first touch at which it begins [s], (b,)."""
-    motion: PlaneMotion | Glide | PartOfContact
+    motion: PartOfContact
     law: CompliantLaw
     """The law with its memory in this part, of all B drops of the contact."""
+
+
+@dataclass(frozen=True)
+class NormalRecords:
+    """The normal motions of B contacts, as the core writes them.
+
+    `steps`: of a smooth part. `shapes`: numbers that tell the parts of each (B,), 0 of one that has to be followed. `begins`: where each
+    begins (B,) in `motions`, with six rows of points; see `core.normal_records`.
+    """
+
+    steps: int
+    shapes: Integers
+    begins: Integers
+    motions: Floats
 
 
 @dataclass
@@ -50,7 +62,7 @@ class Contact:
     `outcome`: RELEASED, CAPTURED (the energy does not suffice to leave the indentation), FAILED, SETTLED or RIDING.
     `final_delta`, `final_rate`: indentation [m] and its rate [m/s] at the end. `dissipated`, `plastic`: energy lost in
     damping and in plastic deformation [J]. `stored`: energy left in the contact [J]. `law`: the law with its memory of
-    this contact.
+    this contact. `normals`: its normal motion, where that drives friction, until it is followed.
     """
 
     pieces: list[Piece]
@@ -64,15 +76,7 @@ class Contact:
     plastic: Floats
     stored: Floats
     law: CompliantLaw
-
-    def put(self, drops: Drops, other: Contact) -> None:
-        """Replace the contacts of some drops."""
-        for name, values in vars(other).items():
-            if isinstance(values, np.ndarray):
-                getattr(self, name)[drops] = values
-        self.law = _remembering(self.law, drops, other.law)
-        for piece in other.pieces:
-            self.pieces.append(Piece(drops[piece.drops], piece.start, piece.motion, _remembering(self.law, drops, piece.law)))
+    normals: NormalRecords | None = None
 
     def of(self, index: int) -> Contact:
         """Return the contact of one drop."""
@@ -83,13 +87,4 @@ class Contact:
                 law = piece.law.take(np.array([index]))
                 pieces.append(Piece(np.zeros(1, dtype=np.intp), piece.start[here], piece.motion.take(here), law))
         arrays = {name: value[index : index + 1] for name, value in vars(self).items() if isinstance(value, np.ndarray)}
-        return replace(self, pieces=pieces, law=self.law.take(np.array([index])), **arrays)
-
-
-def _remembering(law: CompliantLaw, drops: Drops, other: CompliantLaw) -> CompliantLaw:
-    """Return a law of B drops with the memory of some of them taken from a law of these alone."""
-    memories = {name: values + np.zeros(len(drops)) for name, values in other.memories().items()}
-    whole = {name: np.array(getattr(law, name)) for name in memories}
-    for name, values in memories.items():
-        whole[name][drops] = values
-    return law.changed(whole)
+        return replace(self, pieces=pieces, law=self.law.take(np.array([index])), normals=None, **arrays)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.dynamics.phase_plane.contact_solver import solver_for
 from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.rigid.solve_contact import solver_for
 from vibroimpact.dynamics.run import Run
 
 

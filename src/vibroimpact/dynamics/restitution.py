@@ -10,19 +10,17 @@ from typing import TypeVar
 
 import numpy as np
 
-from vibroimpact.arrays import Array, Floats
+from vibroimpact.arrays import Array
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, InstantaneousLaw
 from vibroimpact.contact.roots import solve_monotonic
-from vibroimpact.dynamics.contact import CAPTURED, FAILED
-from vibroimpact.dynamics.encounter import Encounter, encounter_of
-from vibroimpact.dynamics.phase_plane.contact_solver import contact_solver
+from vibroimpact.dynamics.encounter import encounter_of
+from vibroimpact.dynamics.rigid.line_contact import release_rates
 from vibroimpact.dynamics.tolerance import check_tolerance
 from vibroimpact.errors import ComputationError, InputError
 from vibroimpact.ranges import Range
 
 Law = TypeVar("Law", bound=ContactLaw)
 
-_CHUNK = 2000  # drops integrated together: many enough for array operations, few enough for the cache
 _INVERSE_TOLERANCE = 1e-12
 
 
@@ -113,24 +111,8 @@ def _by_integration(law: ContactLaw, mass: Array, speed: Array, tolerance: float
     arrays = {item.name: value for item in fields(law) if np.ndim(value := getattr(law, item.name))}
     flat = law.changed({name: np.broadcast_to(value, shape).ravel() for name, value in arrays.items()})
     encounter = encounter_of(flat, masses, np.zeros(len(masses)), speeds)
-    found, solve, order = np.empty(len(masses)), contact_solver(flat, tolerance, _CHUNK), np.argsort(_loss(encounter))
-    for begin in range(0, len(order), _CHUNK):
-        drops = order[begin : begin + _CHUNK]
-        contact, *_ = solve(encounter.pick(drops), np.arange(len(drops)))
-        found[drops] = np.where(contact.outcome == CAPTURED, 0.0, -contact.final_rate / speeds[drops])
-        found[drops[contact.outcome == FAILED]] = np.nan
-    return found.reshape(shape)[()]
-
-
-def _loss(encounter: Encounter) -> Floats:
-    """Return a measure of each drop's damping.
-
-    Drops of like damping move alike, in units of their own: one Jacobian serves them all, and the solution of one chunk is
-    the guess for the next.
-    """
-    middle = 0.5 * (encounter.law.touch_level + encounter.depth)
-    static, dissipative = encounter.law.forces(middle, encounter.approach_speed, encounter.approach_speed)
-    return np.asarray(dissipative / (np.abs(static) + np.abs(dissipative)))
+    with np.errstate(all="ignore"):  # Newton iterates may overflow
+        return np.abs(release_rates(encounter, tolerance) / speeds).reshape(shape)[()]
 
 
 def law_achieving(law: Law, restitution: Array, mass: Array, speed: Array) -> Law:

@@ -20,7 +20,7 @@ from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.flight_in_fluid import FluidFlight
 from vibroimpact.dynamics.impact_rows import ImpactRows
 from vibroimpact.dynamics.leg import Leg
-from vibroimpact.dynamics.oblique.motion import ObliqueMotion, friction_steps
+from vibroimpact.dynamics.oblique.motion import ObliqueMotion
 from vibroimpact.dynamics.outcome import OUTCOMES, Outcome
 from vibroimpact.dynamics.problem import MOST_IMPACTS, Problem
 from vibroimpact.dynamics.response import Response
@@ -59,11 +59,7 @@ class Run:
         self.end_time, self.rest_time = np.full(self.size, np.nan), np.full(self.size, np.nan)
         self.sag, self.stored, self.written_off = np.zeros(self.size), np.zeros(self.size), np.zeros(self.size)
         self.rest_speed = self.default_rest_speed() if problem.rest_speed is None else self.spread(problem.rest_speed)
-        self.bodies = (
-            self.moving_bodies(solve_contact)
-            if problem.vibrates or problem.shaken
-            else RigidBodies(self.size, solve_contact, friction_steps(problem.tolerance))
-        )
+        self.bodies = self.moving_bodies(solve_contact) if problem.vibrates or problem.shaken else RigidBodies(self.size, solve_contact)
         self.memories = {name: self.spread(value) for name, value in problem.laws[0].memories().items()}
         further = (
             *(() if problem.motion is None else SHAKEN_IMPACT_COLUMNS),

@@ -9,23 +9,19 @@ import numpy as np
 from vibroimpact.dynamics.leg import Leg
 from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.dynamics.packed_list import PackedList
-from vibroimpact.dynamics.phase_plane.collocation import PlaneRule
-from vibroimpact.dynamics.phase_plane.contact_solver import solver_for
 from vibroimpact.dynamics.problem import StatesProblem
 from vibroimpact.dynamics.response import Response
+from vibroimpact.dynamics.rigid.solve_contact import solver_for
 from vibroimpact.dynamics.run import Run
 from vibroimpact.dynamics.shaken.statement import PlateMotion
 from vibroimpact.errors import ComputationError, InputError
-
-_HISTORY = 100.0  # factor between the tolerance of impacts and that of contacts from which histories are read
 
 
 def simulate(problem: StatesProblem, progress: Callable[[float], None] | None = None) -> Response:
     """Return the response of a sphere that falls and bounces until a stop rule.
 
     Flight is exact. A contact is solved by Gauss collocation of whole phases, speed over indentation, or, where that does not come out to
-    the tolerance, in steps of order 8, in a variable in which the force is smooth; histories are read in such steps. The motion
-    that drives friction is collocated for many drops together. Bodies that have
+    the tolerance, in steps of order 8, in a variable in which the force is smooth; histories are read in such steps. Bodies that have
     modes vibrate: between contacts exactly, and the next touch is the first meeting with the surface as it moves.
 
     Parameters
@@ -61,10 +57,10 @@ def simulate(problem: StatesProblem, progress: Callable[[float], None] | None = 
         raise InputError(f"simulate takes a Problem, or a case as vi.load_case(...) reads it, not {problem!r}")
     stated = problem.to_problem()
     with np.errstate(all="ignore"):  # Newton iterates may overflow; results that are not finite are detected and retried
-        run = Run(stated, solver_for(stated, finer=_HISTORY))
+        run = Run(stated, solver_for(stated))
         legs: PackedList[Leg] | list[Leg] = []
         if stated.shape == () and not stated.vibrates:
-            legs = PackedList[Leg](PlaneRule, PlateMotion)
+            legs = PackedList[Leg](PlateMotion)
         while run.moving.any():
             legs.append(run.advance())
             if progress is not None:

@@ -8,10 +8,10 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.phase_plane.contact_solver import solver_for
 from vibroimpact.dynamics.problem import Problem, StatesProblem
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.rest import Rest
+from vibroimpact.dynamics.rigid.solve_contact import solver_for
 from vibroimpact.dynamics.run import Run
 from vibroimpact.errors import InputError
 

@@ -115,3 +115,19 @@ class LineContact(NamedTuple):
     time_of_peak_force: Real
     plastic: Real
     stored: Real
+
+
+class LineContacts(NamedTuple):
+    """Room for the contacts of B pairs of rigid bodies.
+
+    outcomes (B,): of `core.line`. ends (10, B): duration [s], indentation [m] and its rate at the end [m/s], energy lost in damping [J],
+    deepest indentation [m] and its time [s], largest force [N] and its time [s], plastic work and stored energy [J]. shapes (B,): numbers
+    that tell the parts of the normal motions, 0 of contacts that were followed step by step. begins (B,): where these begin in motions,
+    six rows of points each, of `normal_records`. The last three are empty where no normal motion is asked for.
+    """
+
+    outcomes: Integers
+    ends: Matrix
+    shapes: Integers
+    begins: Integers
+    motions: Vector

@@ -8,8 +8,9 @@ from vibroimpact.arrays import Floats, Integers
 from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.law import law_at_touch, law_remembering
 from vibroimpact.dynamics.core.line import follow_line, line_under
-from vibroimpact.dynamics.core.line_records import Line, LineManner, LineState, LineSteps
+from vibroimpact.dynamics.core.line_records import Line, LineContacts, LineManner, LineState, LineSteps
 from vibroimpact.dynamics.core.line_step import FREE, IMPLICIT, advance, energies_of
+from vibroimpact.dynamics.core.normal_records import MOTION_ROWS, NormalGrid
 from vibroimpact.dynamics.core.phase_contact import collocate_contact
 from vibroimpact.dynamics.core.phase_records import ROWS, PhaseRules
 from vibroimpact.dynamics.core.records import Law
@@ -35,19 +36,34 @@ def with_bodies(manner: LineManner, touches: Floats, pair: int) -> LineManner:
 
 
 @compiled(
-    lambda t: t.void(t.of(LineManner), t.of(PhaseRules), t.boolean, t.integers, t.matrix, t.matrix, t.integers, t.matrix),
+    lambda t: t.tuple(t.integer, t.integer)(
+        t.of(LineManner),
+        t.of(PhaseRules),
+        t.of(NormalGrid),
+        t.boolean,
+        t.integers,
+        t.matrix,
+        t.matrix,
+        t.of(LineContacts),
+        t.integer,
+        t.integer,
+    ),
 )
 def follow_lines(
     manner: LineManner,
     rules: PhaseRules,
+    grid: NormalGrid,
     collocates: bool,
     addresses: Integers,
     coefficients: Floats,
     touches: Floats,
-    outcomes: Integers,
-    ends: Floats,
-) -> None:
+    contacts: LineContacts,
+    first: int,
+    written: int,
+) -> tuple[int, int]:
     """Solve the contacts of B pairs of rigid bodies, each from touch on: by collocation, or step by step where that does not come out.
+
+    Return how many are solved, and how many numbers of normal motions are written; it ends early where there is no room for more of these.
 
     Parameters
     ----------
@@ -55,6 +71,8 @@ def follow_lines(
         What all have in common; the bodies of each pair take the place of those in it.
     rules : PhaseRules
         The Gauss rules of the collocation.
+    grid : NormalGrid
+        The grid of normal motions.
     collocates : bool
         Is it tried?
     addresses : array of int, shape (4,)
@@ -63,21 +81,22 @@ def follow_lines(
         Its coefficients for each pair.
     touches : array, shape (5, B)
         Effective mass [kg], gravity [m/s^2], approach speed [m/s], depth [m] and speed scale [m/s] of each pair.
-    outcomes : array of int, shape (B,)
-        Room for the outcomes.
-    ends : array, shape (10, B)
-        Room for duration [s], indentation [m] and its rate at the end [m/s], energy lost in damping [J], deepest indentation [m] and its
-        time [s], largest force [N] and its time [s], plastic work and stored energy [J].
+    contacts : LineContacts
+        Room for the contacts.
+    first, written : int
+        What earlier calls returned.
     """
     room = np.zeros((ROWS, rules.vectors.shape[2]))
     series = np.zeros(7)
     steps = LineSteps(np.zeros(0, np.int64), np.zeros(0, np.bool_), np.zeros((0, 4)), np.zeros(0), np.zeros(1, np.int64))
-    for pair in range(len(outcomes)):
+    outcomes = contacts.outcomes
+    ends = contacts.ends
+    for pair in range(first, len(outcomes)):
         law = law_at_touch(addresses, coefficients[pair], series, touches[2, pair])
         bodies = with_bodies(manner, touches, pair)
         solved = False
         if collocates:
-            solved, contact = collocate_contact(law, bodies, rules, room)
+            solved, contact = collocate_contact(law, bodies, rules, grid, room)
         if not solved:
             contact = follow_line(law, bodies, steps)
         outcomes[pair] = contact.outcome
@@ -91,6 +110,17 @@ def follow_lines(
         ends[7, pair] = contact.time_of_peak_force
         ends[8, pair] = contact.plastic
         ends[9, pair] = contact.stored
+        if grid.steps > 0 and solved:
+            points = grid.extent[1]
+            if written + MOTION_ROWS * points > len(contacts.motions):
+                return pair, written
+            contacts.shapes[pair] = grid.extent[0]
+            contacts.begins[pair] = written
+            for row in range(MOTION_ROWS):
+                for point in range(points):
+                    contacts.motions[written + point] = grid.motion[row, point]
+                written += points
+    return len(outcomes), written
 
 
 @compiled(lambda t: t.void(t.of(Law), t.of(LineManner), t.real, t.of(LineSteps), t.vector, t.matrix))

@@ -192,7 +192,7 @@ def solve_phase(line: Line, rules: PhaseRules, segment: Segment, roughness: floa
             room[BY_SQUARE, node] = by_square
             room[SUMMAND, node] = by_square * vectors[vector, PER_FACTOR, node]
             room[BY_LENGTH, node] = (static_part * static + loss_part * loss + gravity) * slope
-        multiply_row(room, RATE, matrices, matrix, width, REACHED)
+        multiply_row(room, RATE, matrices, matrix, width, width, REACHED)
         missing = segment.wanted - room[REACHED, count] if is_sought else 0.0
         apart = abs(missing)
         for node in range(count + 1):
@@ -205,7 +205,7 @@ def solve_phase(line: Line, rules: PhaseRules, segment: Segment, roughness: floa
         before = apart
         solved_span = span
         if sweep < _FRESH:
-            multiply_row(room, SUMMAND, matrices, matrix + 1, width, GROWTH)
+            multiply_row(room, SUMMAND, matrices, matrix + 1, width, width, GROWTH)
             for node in range(width):  # the exponential, as closely as Newton's method needs it
                 part = 0.125 * room[GROWTH, node]
                 part = 1.0 + part * (1.0 + part * (1.0 / 2.0 + part * (1.0 / 6.0 + part * (1.0 / 24.0 + part * (1.0 / 120.0)))))
@@ -216,13 +216,13 @@ def solve_phase(line: Line, rules: PhaseRules, segment: Segment, roughness: floa
                 room[SHRUNK, node] = 1.0 / part
         for node in range(width):
             room[SUMMAND, node] = room[BY_SQUARE, node] * room[DEFECT, node] * room[SHRUNK, node]
-        multiply_row(room, SUMMAND, matrices, matrix, width, CHANGE)
+        multiply_row(room, SUMMAND, matrices, matrix, width, width, CHANGE)
         longer = 0.0
         if is_sought:  # derivative by the length, with forces taken as powers of the indentation
             if sweep < _FRESH:
                 for node in range(width):
                     room[SUMMAND, node] = room[BY_LENGTH, node] * room[SHRUNK, node]
-                multiply_row(room, SUMMAND, matrices, matrix, width, BY_DEPTH)
+                multiply_row(room, SUMMAND, matrices, matrix, width, width, BY_DEPTH)
             longer = (missing / room[GROWTH, count] - room[CHANGE, count]) / room[BY_DEPTH, count]
             longer = min(max(longer, _SHORTER), _LONGER)
             span *= 1.0 + longer if longer > 0.0 else math.exp(longer)
@@ -270,7 +270,7 @@ def solve_phase(line: Line, rules: PhaseRules, segment: Segment, roughness: floa
         matrix += 2 * KINDS
         count = rules.counts[rule]
         width = (count + 8) // 8 * 8
-        multiply_row(room, SQUARE, rules.onward, rule, width, SUMMAND)
+        multiply_row(room, SQUARE, rules.onward, rule, width, width, SUMMAND)
         for node in range(width):
             room[SQUARE, node] = room[SUMMAND, node] if node < count else at_end
         for row in (STATIC, LOSS, RATE, DEFECT, BY_SQUARE, SUMMAND, SLOPE, BY_LENGTH, BY_DEPTH):

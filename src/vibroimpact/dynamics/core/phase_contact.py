@@ -17,6 +17,8 @@ from vibroimpact.dynamics.core.line import RELEASED, next_level
 from vibroimpact.dynamics.core.line_events import after_glide, end_of_glide, energy_to_part, narrowed, secant_of
 from vibroimpact.dynamics.core.line_records import Bracket, Line, LineContact, LineManner, LineState
 from vibroimpact.dynamics.core.line_step import energies_of, force_of
+from vibroimpact.dynamics.core.normal_motion import write_glide, write_segment
+from vibroimpact.dynamics.core.normal_records import NormalGrid
 from vibroimpact.dynamics.core.phase import solve_phase
 from vibroimpact.dynamics.core.phase_records import (
     AT_TOUCH,
@@ -109,7 +111,7 @@ def elapsed_at(vectors: Floats, matrices: Floats, vector: int, count: int, y: fl
     width = (count + 8) // 8 * 8
     for node in range(count, width):
         room[PACE, node] = 0.0
-    multiply_row(room, PACE, matrices, 2 * vector + 1, width, ELAPSED)
+    multiply_row(room, PACE, matrices, 2 * vector + 1, width, width, ELAPSED)
     weigh(vectors, vector, count, y, room)
     return weighed(count, ELAPSED, room)
 
@@ -280,8 +282,8 @@ def plain_line(law: Law, manner: LineManner) -> Line:
     )
 
 
-@compiled(lambda t: t.tuple(t.boolean, t.of(LineContact))(t.of(Law), t.of(LineManner), t.of(PhaseRules), t.matrix))
-def collocate_contact(law: Law, manner: LineManner, rules: PhaseRules, room: Floats) -> tuple[bool, LineContact]:
+@compiled(lambda t: t.tuple(t.boolean, t.of(LineContact))(t.of(Law), t.of(LineManner), t.of(PhaseRules), t.of(NormalGrid), t.matrix))
+def collocate_contact(law: Law, manner: LineManner, rules: PhaseRules, grid: NormalGrid, room: Floats) -> tuple[bool, LineContact]:
     """Return whether the contact of two rigid bodies is solved to the tolerance, and the contact.
 
     Parameters
@@ -292,9 +294,12 @@ def collocate_contact(law: Law, manner: LineManner, rules: PhaseRules, room: Flo
         The bodies, and what stays the same.
     rules : PhaseRules
         The Gauss rules.
+    grid : NormalGrid
+        Where its normal motion is written, if that is asked for.
     room : array, shape (17, M)
         Room.
     """
+    grid.extent[:] = 0
     line = plain_line(law, manner)
     touch = law.speed * law.speed
     rounding = _ON_LEVEL * (manner.depth - law.release)
@@ -321,6 +326,8 @@ def collocate_contact(law: Law, manner: LineManner, rules: PhaseRules, room: Flo
             if not phase.solved or phase.deep > level + _ABOUT * rules.tolerance * (phase.deep - law.touch):
                 return False, unsolved
         highest, when = peak_in(line, rules, segment, phase, room)
+        if grid.steps > 0:
+            write_segment(grid, rules, segment, phase, 1.0, room)
         if highest > peak_force:
             peak_force = highest
             time_of_peak = time + when
@@ -373,14 +380,20 @@ def collocate_contact(law: Law, manner: LineManner, rules: PhaseRules, room: Flo
                 vector = phase.rule * KINDS + kind
                 elapsed = elapsed_at(rules.vectors, rules.matrices, vector, rules.counts[phase.rule], y, room)
                 state = LineState(state.time + elapsed, pulled.delta, pulled.rate, state.lost + fallen)
+                if grid.steps > 0:
+                    write_segment(grid, rules, segment, phase, y, room)
                 if manner.contact_end != ENDS_AT_NO_FORCE:
                     glide, pushes, stays = end_of_glide(line, state)
                     if stays:
                         return False, unsolved
+                    if grid.steps > 0:
+                        write_glide(grid, glide)
                     state = after_glide(line, state, glide, pushes)
                     if pushes:
                         continue
                 break
+        if grid.steps > 0:
+            write_segment(grid, rules, segment, phase, 1.0, room)
         state = LineState(state.time + phase.duration, level, -math.sqrt(phase.reached), state.lost + phase.lost)
         if is_last:
             break

@@ -1,29 +1,26 @@
 """The normal motion of contacts on a grid, which drives their friction: time and force as functions of a parameter.
 
 The parameter rises nearly evenly through each part of a contact, slowly at its ends, so that the depth of the contact grows with its
-square. It counts the steps of the grid.
+square. It counts the steps of the grid. The core writes it as it collocates contacts; those that it follows step by step are read here.
 """
 
 from __future__ import annotations
 
 import itertools
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from vibroimpact.arrays import Drops, Floats
-from vibroimpact.dynamics.contact import Contact, Piece
+from vibroimpact.dynamics.contact import NormalRecords
+from vibroimpact.dynamics.core import normal_records as records
 from vibroimpact.dynamics.encounter import Encounter
-from vibroimpact.dynamics.phase_plane.collocation import PlaneRule
-from vibroimpact.dynamics.phase_plane.motion import PlaneMotion
 
 if TYPE_CHECKING:
     from vibroimpact.dynamics.rigid.line_contact import RecordedContact
 
-_ROUNDING = 1e-9
-_HALVINGS = 30
-_MORE = 3  # times as many steps where the force is steep
 _TOLERANCE = 1e-10  # of contacts that are followed
 _ASIDE = 1e-6  # of a part: step of finite differences
 _NONE, _STEEP = 1e-6, 1e-2
@@ -32,24 +29,51 @@ _NONE, _STEEP = 1e-6, 1e-2
 
 @dataclass(frozen=True)
 class NormalMotion:
-    """The normal motion of B contacts at G points of a parameter; arrays are (G, B).
+    """The normal motion of B contacts at G points of a parameter.
 
-    `steps`: of the parameter (G - 1,), 1; a step of zero joins two parts, between which the others may jump. `time`: since first touch [s].
-    `pace`, `pace_slope`: derivatives of the time by the parameter [s]. `force`: >= 0 [N], `force_slope`: its derivative. `impulse`: of the
-    force so far [N s].
+    `steps`: of the parameter (G - 1,), 1; a step of zero joins two parts, between which the others may jump. `rows`: time, pace, its slope,
+    force, its slope and impulse (B, 6, G), which the properties give (G, B).
     """
 
     steps: Floats
-    time: Floats
-    pace: Floats
-    pace_slope: Floats
-    force: Floats
-    force_slope: Floats
-    impulse: Floats
+    rows: Floats
+
+    @property
+    def time(self) -> Floats:
+        """Time since first touch [s]."""
+        return self._row(records.TIME)
+
+    @property
+    def pace(self) -> Floats:
+        """Derivative of the time by the parameter [s]."""
+        return self._row(records.PACE)
+
+    @property
+    def pace_slope(self) -> Floats:
+        """Its derivative [s]."""
+        return self._row(records.PACE_SLOPE)
+
+    @property
+    def force(self) -> Floats:
+        """Contact force, >= 0 [N]."""
+        return self._row(records.FORCE)
+
+    @property
+    def force_slope(self) -> Floats:
+        """Its derivative by the parameter [N]."""
+        return self._row(records.FORCE_SLOPE)
+
+    @property
+    def impulse(self) -> Floats:
+        """Impulse of the force so far [N s]."""
+        return self._row(records.IMPULSE)
+
+    def _row(self, number: int) -> Floats:
+        return self.rows[:, number].T
 
     def take(self, drops: Drops) -> NormalMotion:
         """Return the normal motion of some of the contacts."""
-        return NormalMotion(self.steps, *(getattr(self, name)[:, drops] for name in _ARRAYS))
+        return NormalMotion(self.steps, self.rows[drops])
 
     @property
     def pressed(self) -> Floats:
@@ -64,120 +88,50 @@ class NormalMotion:
         return found
 
 
-def normal_motions(contact: Contact, encounter: Encounter, steps: int) -> list[tuple[Drops, NormalMotion]]:
-    """Return the normal motion of contacts in groups that consist of the same parts, with the places of their drops.
-
-    `steps`: of each segment of a phase; three times as many where the force is steep.
-    """
-    pieces, size = contact.pieces, len(encounter.mass)
-    member = np.zeros((len(pieces), size), dtype=bool)
-    for number, piece in enumerate(pieces):
-        member[number, piece.drops] = True
-    kinds, kind_of = member[:, :1], np.zeros(size, dtype=np.intp)
-    if not member.all():
-        kinds, kind_of = np.unique(member, axis=1, return_inverse=True)
-    found = []
-    for kind in range(kinds.shape[1]):
-        places, parts = np.flatnonzero(kind_of.ravel() == kind), [pieces[number] for number in np.flatnonzero(kinds[:, kind])]
-        if all(isinstance(part.motion, PlaneMotion) for part in parts):
-            found.append((places, _joined([one for part in parts for one in _of_phase(part, encounter, places, steps)])))
-        else:
-            found.extend((np.array([place]), _followed(encounter.pick(np.array([place])), steps)) for place in places.tolist())
-    return found
+def normal_motions(normals: NormalRecords, encounter: Encounter) -> list[tuple[Drops, NormalMotion]]:
+    """Return the normal motion of contacts in groups that consist of the same parts, with the places of their drops."""
+    motions: list[tuple[Drops, NormalMotion]] = []
+    for shape in np.unique(normals.shapes).tolist():
+        places = np.flatnonzero(normals.shapes == shape)
+        if shape == 0:
+            motions.extend((np.array([place]), _followed(encounter.pick(np.array([place])), normals.steps)) for place in places.tolist())
+            continue
+        steps = _steps_of(_parts_of(shape, normals.steps))
+        motions.append((places, NormalMotion(steps, _rows_of(normals, places, len(steps) + 1))))
+    return motions
 
 
-_COARSER = 0.2
-"""Part by which steps are longer than evenly where the contact is deepest, and shorter where it begins and ends."""
-
-_ARRAYS = ("time", "pace", "pace_slope", "force", "force_slope", "impulse")
-
-
-def _of_phase(piece: Piece, encounter: Encounter, places: Drops, steps: int) -> list[NormalMotion]:
-    """Return the normal motion in the segments of a phase that was solved in the phase plane, in order of time.
-
-    The parameter is y, which falls in compression.
-    """
-    here = np.isin(piece.drops, places)
-    motion, encounter = piece.motion.take(here), encounter.under(piece.law).take(places)
-    assert isinstance(motion, PlaneMotion)
-    rule, compressing = motion.rule, motion.name == "compression"
-    static, dissipative = motion.forces(encounter)
-    forces = static + dissipative
-    steps *= _MORE if _is_steep(rule, forces) else 1
-    if encounter.law.tension == "cut":
-        forces = np.maximum(forces, 0.0)
-    (grid, rate, bend), left, found = _graded(steps), motion.duration, []
-    for pace, force in zip(rule.split(motion.pace), rule.split(forces), strict=True):
-        ends = _reach(rule, pace, left)
-        if (ends == 1.0).all():
-            values, sums = rule.weights_at(grid[:, 0]).T, rule.weights_to_end(grid[:, 0]).T @ rule.integral
-            slopes = values @ rule.derivatives[0]
-            speed, change = (rate * values) @ pace, (rate**2 * slopes + bend * values) @ pace
-            strength, growth = values @ force, (rate * slopes) @ force
-            time, impulse = sums @ pace, sums @ (force * pace)
-        else:  # released within the segment, each drop at a place of its own
-            at, first = grid * ends, rate * ends
-            values, sums = (weights(at.ravel()).reshape(-1, *at.shape) for weights in (rule.weights_at, rule.weights_to_end))
-            nodes = (pace, rule.derivatives[0] @ pace, force, rule.derivatives[0] @ force)
-            speed, change, strength, growth = (np.einsum("ngb,nb->gb", values, one) for one in nodes)
-            time, impulse = (np.einsum("ngb,nb->gb", sums, rule.integral @ one) for one in (pace, force * pace))
-            speed, change, growth = speed * first, change * first**2 + speed * bend * ends, growth * first
-        time[0] = impulse[0] = 0.0
-        found.append(NormalMotion(np.ones(steps), time, speed, change, np.maximum(strength, 0.0), growth, impulse))
-        left = left - time[-1]
-    return [_reversed(one) for one in reversed(found)] if compressing else found
+def _parts_of(shape: int, steps: int) -> list[int]:
+    """Return the numbers of steps of the parts of a motion, from the number that tells them."""
+    parts: list[int] = []
+    while shape:
+        shape, digit = divmod(shape, records.SHAPES)
+        parts.insert(0, records.MORE_STEPS * steps if digit == records.STEEP else steps)
+    return parts
 
 
-def _graded(steps: int) -> tuple[Floats, Floats, Floats]:
-    """Return y at the points of a segment, from 0 to 1, and its derivatives by the number of the step (G, 1)."""
-    share = np.linspace(0.0, 1.0, steps + 1)[:, None]
-    rate = 1.0 + _COARSER * (1.0 - 2.0 * share)
-    return share * (1.0 + _COARSER * (1.0 - share)), rate / steps, np.full_like(share, -2.0 * _COARSER / steps**2)
+def _steps_of(parts: Sequence[int]) -> Floats:
+    """Return the steps of the parameter (G - 1,) through parts with these numbers of steps, with a step of zero between them."""
+    return np.concatenate([one for steps in parts for one in ([0.0], np.ones(steps))][1:])
 
 
-def _is_steep(rule: PlaneRule, forces: Floats) -> bool:
-    """Return whether the force of some drop pulls at the end of a phase, or begins or ends there with a slope.
-
-    Where it becomes zero with a slope, the radius of the contact has an infinite one.
-    """
-    at_end, slope = rule.end @ rule.split(forces)[-1], rule.end @ (rule.derivatives[0] @ rule.split(forces)[-1])
-    most = forces.max(axis=0)
-    return bool(((at_end < -_NONE * most) | (np.abs(at_end) <= _NONE * most) & (np.abs(slope) > _STEEP * most)).any())
-
-
-def _reach(rule: PlaneRule, pace: Floats, left: Floats) -> Floats:
-    """Return the y at which a time from the deep end of a segment has passed [s] (B,), at most 1; `pace`: dt/dy at the nodes (N, B)."""
-    elapsed = rule.integral @ pace
-    found = np.ones(pace.shape[-1])
-    short = np.flatnonzero(left < elapsed[-1] * (1.0 - _ROUNDING))
-    if short.size:
-        low, high = np.zeros(len(short)), np.ones(len(short))
-        for _ in range(_HALVINGS):  # by Newton's method within a bracket
-            y = found[short]
-            passed = (rule.weights_to_end(y) * elapsed[:, short]).sum(axis=0) - left[short]
-            low, high = np.where(passed <= 0.0, y, low), np.where(passed > 0.0, y, high)
-            step = y - passed / (rule.weights_at(y) * pace[:, short]).sum(axis=0)
-            found[short] = np.where((step > low) & (step < high), step, 0.5 * (low + high))
-    return found
+def _rows_of(normals: NormalRecords, places: Drops, points: int) -> Floats:
+    """Return the rows of some contacts (b, 6, G), whose motions have this many points."""
+    size = records.MOTION_ROWS * points
+    begins = normals.begins[places]
+    if begins[-1] - begins[0] == size * (len(places) - 1):  # without others between them
+        rows = normals.motions[begins[0] : begins[-1] + size]
+    else:
+        rows = normals.motions[begins[:, None] + np.arange(size)]
+    return np.asarray(rows.reshape(len(places), records.MOTION_ROWS, points))
 
 
-def _reversed(motion: NormalMotion) -> NormalMotion:
-    """Return a motion whose parameter counts from the other end."""
-    time, pace, slope, force, force_slope, impulse = (getattr(motion, name)[::-1] for name in _ARRAYS)
-    return NormalMotion(motion.steps[::-1], time[0] - time, pace, -slope, force, -force_slope, impulse[0] - impulse)
-
-
-def _joined(parts: list[NormalMotion]) -> NormalMotion:
-    """Return the motion through parts one after the other, with a step of zero between them."""
-    arrays: dict[str, Floats] = {}
-    for name in _ARRAYS:
-        series = [getattr(part, name) for part in parts]
-        if name in ("time", "impulse"):
-            for number in range(1, len(series)):
-                series[number] = series[number - 1][-1] + series[number]
-        arrays[name] = np.concatenate(series)
-    steps = np.concatenate([one for part in parts for one in ([0.0], part.steps)][1:])
-    return NormalMotion(steps, **arrays)
+def _joined(parts: list[Floats]) -> NormalMotion:
+    """Return the motion of one contact through parts (6, G) one after the other, with a step of zero between them."""
+    for before, part in itertools.pairwise(parts):
+        for row in (records.TIME, records.IMPULSE):
+            part[row] += before[row, -1]
+    return NormalMotion(_steps_of([part.shape[1] - 1 for part in parts]), np.concatenate(parts, axis=1)[None])
 
 
 def _followed(encounter: Encounter, steps: int) -> NormalMotion:
@@ -191,13 +145,13 @@ def _followed(encounter: Encounter, steps: int) -> NormalMotion:
         here = encounter if end <= recorded.contact.time_of_deepest else leaving
         part = _of_part(recorded, here, begin, end - begin, steps)
         if _is_steep_at_end(part):
-            part = _of_part(recorded, here, begin, end - begin, _MORE * steps)
+            part = _of_part(recorded, here, begin, end - begin, records.MORE_STEPS * steps)
         parts.append(part)
     return _joined(parts)
 
 
-def _of_part(recorded: RecordedContact, encounter: Encounter, begin: float, length: float, steps: int) -> NormalMotion:
-    """Return the normal motion in a part of a contact that the core followed; the time is a cosine of the parameter.
+def _of_part(recorded: RecordedContact, encounter: Encounter, begin: float, length: float, steps: int) -> Floats:
+    """Return the rows of the normal motion in a part of a contact that the core followed (6, G); the time is a cosine of the parameter.
 
     `begin`, `length`: of the part, since touch [s].
     """
@@ -216,11 +170,11 @@ def _of_part(recorded: RecordedContact, encounter: Encounter, begin: float, leng
     if law.tension == "cut":
         slope, force = np.where(force > 0.0, slope, 0.0), np.maximum(force, 0.0)
     impulse = encounter.mass * (encounter.gravity * time - (rate - rate[0]))  # what stops the bodies is the force
-    arrays = (time, pace, bend, np.maximum(force, 0.0), slope, impulse)
-    return NormalMotion(np.ones(steps), *(values[:, None] for values in arrays))
+    return np.array([time, pace, bend, np.maximum(force, 0.0), slope, impulse])
 
 
-def _is_steep_at_end(part: NormalMotion) -> bool:
+def _is_steep_at_end(part: Floats) -> bool:
     """Does the force pull at an end of a part, or begin or end there with a slope? The radius of the contact has an infinite one then."""
-    force, slope, most = part.force[[0, -1]], part.force_slope[[0, -1]] * len(part.steps), part.force.max()
+    steps = part.shape[1] - 1
+    force, slope, most = part[records.FORCE, [0, -1]], part[records.FORCE_SLOPE, [0, -1]] * steps, part[records.FORCE].max()
     return bool(((force <= _NONE * most) & (np.abs(slope) > _STEEP * most)).any())

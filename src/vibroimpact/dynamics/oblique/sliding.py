@@ -64,14 +64,10 @@ def _slide_compliant(law: CompliantFriction, normal: NormalMotion, slip: Floats,
     parameters = (law.effective_modulus, law.effective_shear_modulus, law.effective_radius, law.coefficient)
     for column, values in enumerate((*parameters, slip, mass, pull)):
         contacts[:, column] = values
-    normals = np.empty((size, 6, points))
-    motion = (normal.time, normal.pace, normal.pace_slope, normal.force, normal.force_slope, normal.impulse)
-    for row, values in enumerate(motion):
-        normals[:, row] = values.T
     paths = np.empty((size, 3, points))
     microslips = np.empty(size)
     growing, shrinking = law.stretching
     of_law = (float(growing), float(shrinking), law.slips_at_rim, law.sliding_energy)
-    slide_contacts(*of_law, _ROUNDING, contacts, normals, normal.steps, paths, microslips)
+    slide_contacts(*of_law, _ROUNDING, contacts, normal.rows, normal.steps, paths, microslips)
     velocity, displacement, force = paths.transpose(1, 2, 0)
     return Sliding(normal.time, velocity, displacement, force, microslips)

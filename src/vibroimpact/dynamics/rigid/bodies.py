@@ -33,14 +33,11 @@ class RigidBodies:
         Number of drops.
     solve_contact : SolvesContact
         Solver of their contacts.
-    friction_steps : int
-        Steps of friction in each phase of a contact.
     """
 
-    def __init__(self, size: int, solve_contact: SolvesContact, friction_steps: int) -> None:
+    def __init__(self, size: int, solve_contact: SolvesContact) -> None:
         self.columns = tuple(IMPACT_COLUMNS)
         self.solve_contact = solve_contact
-        self.friction_steps = friction_steps
         self.left = np.full(size, np.nan)
         self.lying: list[RestMotion | None] = [None] * size
 
@@ -68,8 +65,11 @@ class RigidBodies:
     def slide(self, oblique: ObliqueMotion, leg: Leg, row: dict[str, Floats]) -> ObliqueContacts:
         """Advance drops along the plate, driven by the normal motion of their contacts, which does not feel friction."""
         assert leg.contact is not None
+        assert leg.contact.normals is not None
         assert leg.encounter is not None
-        return oblique.collide(leg.contact_drops, normal_motions(leg.contact, leg.encounter, self.friction_steps), row)
+        motions = normal_motions(leg.contact.normals, leg.encounter)
+        leg.contact.normals = None  # no history reads them
+        return oblique.collide(leg.contact_drops, motions, row)
 
     def falls_back(self, contact: Contact, law: CompliantLaw, gravity: Floats) -> Bools:
         """Return which drops fall back into the indentation before they have risen to the touch level of the law."""

@@ -11,22 +11,27 @@ from typing import Literal
 import numpy as np
 
 from vibroimpact.arrays import Bools, Floats
-from vibroimpact.compiled import law_addresses, law_coefficients
+from vibroimpact.compiled import interpreted, law_addresses, law_coefficients
 from vibroimpact.contact.law import CompliantLaw
-from vibroimpact.dynamics.contact import CAPTURED, FAILED, RELEASED, Contact, Piece
+from vibroimpact.dynamics.contact import CAPTURED, FAILED, RELEASED, Contact, NormalRecords, Piece
 from vibroimpact.dynamics.core import line_records as records
 from vibroimpact.dynamics.core.events import ENDS, TENSIONS
 from vibroimpact.dynamics.core.law import law_at_touch
 from vibroimpact.dynamics.core.line import follow_line
 from vibroimpact.dynamics.core.line_step import BY_ROOT, FREE
 from vibroimpact.dynamics.core.lines import follow_lines, read_line, time_line
+from vibroimpact.dynamics.core.normal_records import MOTION_ROWS
+from vibroimpact.dynamics.core.phase_contact import collocate_contact
+from vibroimpact.dynamics.core.phase_records import ROWS, PhaseRules
 from vibroimpact.dynamics.core.records import Law
 from vibroimpact.dynamics.encounter import Encounter
-from vibroimpact.dynamics.rigid.phase_rules import phase_rules
+from vibroimpact.dynamics.rigid.phase_rules import normal_grid, phase_rules
 
 _OUTCOMES = np.array([RELEASED, CAPTURED, FAILED], dtype=np.int8)
 _MOST_STEPS = 1_000_000  # the stiffest sensible contacts need thousands
+_FEW = 5  # contacts: fewer take less time in plain Python than numba takes to load
 _ROOM = 200  # steps of a contact, at first
+_SEGMENTS = 2  # of a contact, at first
 _PARTS = 4  # of a step in a history
 _TIGHTEST = 1e-11  # a smaller tolerance is too close to rounding for collocation
 _LOOSEST = 1e-9  # at a larger one, which costs hardly less, the largest force would be less exact than it is taken to be
@@ -36,7 +41,7 @@ _LEAST_ERROR = 1e-14
 _ON_CORNER = 1e-9  # of the duration
 
 
-def follow_contacts(encounter: Encounter, tolerance: float) -> tuple[Contact, Floats, Floats]:
+def follow_contacts(encounter: Encounter, tolerance: float, friction_steps: int = 0) -> tuple[Contact, Floats, Floats]:
     """Return the contacts of B drops, their largest forces [N], and the times of these since first touch [s].
 
     Parameters
@@ -45,16 +50,22 @@ def follow_contacts(encounter: Encounter, tolerance: float) -> tuple[Contact, Fl
         The impact: law, mass, gravity, approach speed.
     tolerance : float
         Relative error allowed.
+    friction_steps : int
+        Of the normal motion in each segment of a contact, if it drives friction.
     """
     law, size = encounter.law, len(encounter.mass)
+    collocates = _collocates(law, tolerance)
     touches = np.array([encounter.mass, encounter.gravity, encounter.approach_speed, encounter.depth, encounter.speed_scale])
-    outcomes, ends = np.zeros(size, dtype=np.int64), np.zeros((10, size))
-    collocates = tolerance >= _TIGHTEST and law.contact_end != "pull-off"
-    rules = phase_rules(law.root, min(max(tolerance, _TIGHTEST), _LOOSEST))
+    rules = _rules(law, tolerance)
+    contacts, solved, written = _room_for(size, friction_steps), 0, 0
     with _coefficients(law, size) as coefficients:
-        addresses = law_addresses(type(law))
-        follow_lines(_manner(encounter, 0, tolerance), rules, collocates, addresses, coefficients, touches, outcomes, ends)
-    duration, final_delta, final_rate, dissipated, deepest, time_of_deepest, peak_force, time_of_peak, plastic, stored = ends
+        known = rules, normal_grid(friction_steps), collocates, law_addresses(type(law)), coefficients, touches
+        while True:
+            solved, written = follow_lines(_manner(encounter, 0, tolerance), *known, contacts, solved, written)
+            if solved == size:
+                break
+            contacts = contacts._replace(motions=np.append(contacts.motions, np.empty_like(contacts.motions)))
+    duration, final_delta, final_rate, dissipated, deepest, time_of_deepest, peak_force, time_of_peak, plastic, stored = contacts.ends
     after = law.after_compression(deepest)
     pieces = [Piece(np.arange(size), np.zeros(size), LineMotion(encounter, tolerance, "compression", time_of_deepest), law)]
     left = np.flatnonzero(duration > time_of_deepest)
@@ -63,7 +74,7 @@ def follow_contacts(encounter: Encounter, tolerance: float) -> tuple[Contact, Fl
         pieces.append(Piece(left, time_of_deepest[left], LineMotion(encounter.take(left), tolerance, "restitution", spans), after))
     contact = Contact(
         pieces=pieces,
-        outcome=_OUTCOMES[outcomes],
+        outcome=_OUTCOMES[contacts.outcomes],
         duration=duration,
         final_delta=final_delta,
         final_rate=final_rate,
@@ -73,8 +84,64 @@ def follow_contacts(encounter: Encounter, tolerance: float) -> tuple[Contact, Fl
         plastic=plastic,
         stored=stored,
         law=after,
+        normals=NormalRecords(friction_steps, contacts.shapes, contacts.begins, contacts.motions) if friction_steps else None,
     )
     return contact, peak_force, time_of_peak
+
+
+def release_rates(encounter: Encounter, tolerance: float) -> Floats:
+    """Return the indentation rates of B drops at the end of their contacts [m/s]: zero where they are captured, NaN where that failed.
+
+    A few are collocated in plain Python.
+
+    Parameters
+    ----------
+    encounter : Encounter
+        The impact.
+    tolerance : float
+        Relative error allowed.
+    """
+    size = len(encounter.mass)
+    rates = np.full(size, np.nan)
+    if size < _FEW and _collocates(encounter.law, tolerance):
+        with interpreted():
+            rates = np.array([_collocated_rate(encounter.pick(np.array([drop])), tolerance) for drop in range(size)])
+    left = np.flatnonzero(np.isnan(rates))
+    if left.size:
+        contact, *_ = follow_contacts(encounter.pick(left), tolerance)
+        rates[left] = np.where(contact.outcome == CAPTURED, 0.0, np.where(contact.outcome == FAILED, np.nan, contact.final_rate))
+    return rates
+
+
+def _collocated_rate(encounter: Encounter, tolerance: float) -> float:
+    """Return the indentation rate of one drop at the end of its contact [m/s]; NaN if it cannot be collocated."""
+    held, rules = encounter.law.take(0), _rules(encounter.law, tolerance)
+    law = law_at_touch(law_addresses(type(held)), law_coefficients(held), _NO_COMPLIANCE, float(encounter.approach_speed[0]))
+    room = np.zeros((ROWS, rules.vectors.shape[2]))
+    solved, contact = collocate_contact(law, _manner(encounter, 0, tolerance), rules, normal_grid(0), room)
+    return float(contact.end.rate) if solved else np.nan
+
+
+def _collocates(law: CompliantLaw, tolerance: float) -> bool:
+    """Is collocation tried for contacts under a law?"""
+    return tolerance >= _TIGHTEST and law.contact_end != "pull-off"
+
+
+def _rules(law: CompliantLaw, tolerance: float) -> PhaseRules:
+    """Return the Gauss rules of the collocation."""
+    return phase_rules(law.root, min(max(tolerance, _TIGHTEST), _LOOSEST))
+
+
+def _room_for(size: int, friction_steps: int) -> records.LineContacts:
+    """Return room for the contacts of B drops, with normal motions that have some steps in each segment, if any."""
+    moved = size if friction_steps else 0
+    return records.LineContacts(
+        outcomes=np.zeros(size, dtype=np.int64),
+        ends=np.zeros((10, size)),
+        shapes=np.zeros(moved, dtype=np.int64),
+        begins=np.zeros(moved, dtype=np.int64),
+        motions=np.empty(moved * MOTION_ROWS * _SEGMENTS * (friction_steps + 1)),
+    )
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""The Gauss rules with which the core collocates a phase of a contact, by the root of the law and the tolerance."""
+"""The Gauss rules with which the core collocates a phase of a contact, and the grids on which it writes the normal motion."""
 
 from __future__ import annotations
 
@@ -8,13 +8,17 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from vibroimpact.arrays import Floats
+from vibroimpact.dynamics.core import normal_records
 from vibroimpact.dynamics.core import phase_records as records
+from vibroimpact.dynamics.core.normal_motion import graded
+from vibroimpact.dynamics.core.normal_records import MORE_STEPS, NormalGrid
 from vibroimpact.dynamics.core.phase_records import PhaseRules
 
 _COUNTS = (15, 23, 31)  # with the far end they fill vectors of eight
 _ROUGHNESS = 0.5  # power of the tolerance: the error at the ends is of the order of the square of the last coefficient
 _OF_RATE = 1e4  # tolerances: last coefficients of G
 _INSIDE = 300.0  # tolerances: last coefficients of a phase that ends within a segment, where the error is of their order
+_MOST_PARTS = 15  # of a contact: three segments of compression, six of restitution, and as many glides
 
 
 @cache
@@ -44,6 +48,44 @@ def phase_rules(root: int, tolerance: float) -> PhaseRules:
         matrices=matrices.reshape(-1, width, width),
         onward=onward,
     )
+
+
+def normal_grid(steps: int) -> NormalGrid:
+    """Return the grid of normal motions with some steps in each segment, with room of its own; 0 where none are asked for."""
+    derivatives, values, integrals = _grid_matrices(steps)
+    nodes, points = values.shape[1:]
+    return NormalGrid(
+        steps=steps,
+        derivatives=derivatives,
+        values=values,
+        integrals=integrals,
+        own=np.zeros((2, nodes, points)),
+        room=np.zeros((normal_records.GRID_ROWS, max(nodes, points))),
+        motion=np.zeros((normal_records.MOTION_ROWS, _MOST_PARTS * (MORE_STEPS * steps + 1))),
+        extent=np.zeros(2, dtype=np.int64),
+    )
+
+
+@cache
+def _grid_matrices(steps: int) -> tuple[Floats, Floats, Floats]:
+    """Return the matrices of a `NormalGrid`."""
+    number, width = len(_COUNTS), max(_COUNTS) + 1
+    points = -(-(MORE_STEPS * steps + 1) // 8) * 8
+    derivatives = np.zeros((number, width, width))
+    values, integrals = np.zeros((2, 2 * number, width, points))
+    for rule, count in enumerate(_COUNTS):
+        z, _ = legendre.leggauss(count)
+        spectrum: Floats = np.asarray(np.linalg.inv(legendre.legvander(z, count - 1)), dtype=np.float64)
+        slopes = 2.0 * legendre.legder(spectrum, axis=0)
+        derivatives[rule, :count, :count] = (legendre.legvander(z, count - 2) @ slopes).T
+        ends = np.append(z, 1.0)
+        of_ends: Floats = np.asarray(np.linalg.inv(legendre.legvander(ends, count)), dtype=np.float64)
+        for finer, number_of_steps in enumerate((steps, MORE_STEPS * steps) if steps else ()):
+            y = np.array([graded(point / number_of_steps) for point in range(number_of_steps + 1)])
+            at = legendre.legvander(2.0 * y - 1.0, count)
+            values[2 * rule + finer, :count, : len(y)] = (at[:, :count] @ spectrum).T
+            integrals[2 * rule + finer, : count + 1, : len(y)] = (at @ of_ends).T
+    return derivatives, values, integrals
 
 
 def _write_kind(kind: int, root: int, nodes: Floats, weights: Floats, spectrum: Floats, vectors: Floats, matrices: Floats) -> None:

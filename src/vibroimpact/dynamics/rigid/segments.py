@@ -11,10 +11,8 @@ from typing import Protocol
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.flight import Flight
-from vibroimpact.dynamics.rigid.glide import Glide
 from vibroimpact.dynamics.shaken.ride import RideSegment
 
 Motion = tuple[Floats, Floats, Floats, Floats, Floats, Floats]
@@ -89,32 +87,6 @@ class ContactSegment:
 
 
 @dataclass(frozen=True)
-class GlideSegment:
-    """Free motion of one drop within the indentation."""
-
-    start: float
-    end: float
-    glide: Glide
-    law: CompliantLaw
-
-    @property
-    def duration(self) -> Floats:
-        """Return the duration [s] (1,)."""
-        return self.glide.duration
-
-    def grid(self) -> Floats:
-        """Return times since the start at which the segment is well resolved [s]."""
-        return np.linspace(0.0, float(self.glide.duration[0]), 17)
-
-    def at(self, time: Floats) -> Motion:
-        """Return the motion at times [s] since the start of the segment."""
-        delta, velocity = (part[:, 0] for part in self.glide.at(time[:, None]))
-        stored = self.law.elastic_energy(delta)
-        nothing = np.zeros_like(time)
-        return -delta, -velocity, nothing, stored, self.law.elastic_energy(self.glide.delta) - stored, nothing
-
-
-@dataclass(frozen=True)
 class RestSegment:
     """The sphere at rest on the plate, in its static indentation."""
 
@@ -136,4 +108,4 @@ class RestSegment:
         return -self.sag * same, 0.0 * same, self.weight * same, self.stored * same, 0.0 * same, 0.0 * same
 
 
-Segment = FlightSegment | ContactSegment | GlideSegment | RestSegment | RideSegment
+Segment = FlightSegment | ContactSegment | RestSegment | RideSegment

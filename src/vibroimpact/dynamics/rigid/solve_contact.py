@@ -1,4 +1,4 @@
-"""The interface of contact solvers of rigid bodies, and the one that solves each drop on its own."""
+"""The interface of contact solvers of rigid bodies, and the one that has the core solve each drop on its own."""
 
 from __future__ import annotations
 
@@ -7,6 +7,8 @@ from typing import Protocol
 from vibroimpact.arrays import Drops, Floats
 from vibroimpact.dynamics.contact import Contact
 from vibroimpact.dynamics.encounter import Encounter
+from vibroimpact.dynamics.oblique.motion import friction_steps
+from vibroimpact.dynamics.problem import Problem
 
 
 class SolvesContact(Protocol):
@@ -17,12 +19,13 @@ class SolvesContact(Protocol):
         ...
 
 
-def followed(tolerance: float) -> SolvesContact:
-    """Return the solver that solves each drop on its own, whatever its law."""
+def solver_for(problem: Problem) -> SolvesContact:
+    """Return the solver of contacts of rigid bodies for the drops of a problem."""
+    steps = 0 if problem.oblique is None else friction_steps(problem.tolerance)
 
     def solve(encounter: Encounter, drops: Drops) -> tuple[Contact, Floats, Floats]:
         from vibroimpact.dynamics.rigid.line_contact import follow_contacts  # a law without a force does not load the compiler
 
-        return follow_contacts(encounter, tolerance)
+        return follow_contacts(encounter, problem.tolerance, steps)
 
     return solve

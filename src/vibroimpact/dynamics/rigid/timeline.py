@@ -10,8 +10,7 @@ import numpy as np
 
 from vibroimpact.arrays import Floats, Indices
 from vibroimpact.dynamics.leg import Leg
-from vibroimpact.dynamics.rigid.glide import Glide
-from vibroimpact.dynamics.rigid.segments import ContactSegment, FlightSegment, GlideSegment, MotionInContact, RestSegment, Segment
+from vibroimpact.dynamics.rigid.segments import ContactSegment, FlightSegment, MotionInContact, RestSegment, Segment
 from vibroimpact.dynamics.shaken.ride import RideSegment
 
 
@@ -89,7 +88,7 @@ def timeline_of(legs: Sequence[Leg], rest: RestSegment | RideSegment | None, los
                 so_far = before[number + 1]
             starts.append(segment.start)
             spent.append(so_far)
-            if isinstance(segment, (ContactSegment, GlideSegment)) and segment is not segments[-1]:
+            if isinstance(segment, ContactSegment) and segment is not segments[-1]:
                 so_far = so_far + np.array([*(float(part[0]) for part in segment.at(segment.duration)[-2:]), 0.0])
     if rest is not None:
         firsts.append(len(starts))
@@ -110,10 +109,7 @@ def segments_of(leg: Leg) -> list[Segment]:
     for piece in leg.contact.pieces:
         begin = touch + float(piece.start[0])
         finish = begin + float(piece.motion.duration[0])
-        if isinstance(piece.motion, Glide):
-            segments.append(GlideSegment(begin, finish, piece.motion, piece.law))
-        else:
-            segments.append(ContactSegment(begin, finish, cast(MotionInContact, piece.motion), leg.encounter.under(piece.law)))
+        segments.append(ContactSegment(begin, finish, cast(MotionInContact, piece.motion), leg.encounter.under(piece.law)))
     return segments
 
 

@@ -8,7 +8,6 @@ from vibroimpact.arrays import Bools, Drops, Floats
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.dynamics.bodies import Motions
 from vibroimpact.dynamics.flight import Flight
-from vibroimpact.dynamics.oblique.motion import friction_steps
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.rigid.bodies import RigidBodies
 from vibroimpact.dynamics.rigid.solve_contact import SolvesContact
@@ -38,7 +37,7 @@ class ShakenBodies(RigidBodies):
     """
 
     def __init__(self, problem: Problem, mass: Floats, gravity: Floats, solve_contact: SolvesContact) -> None:
-        super().__init__(len(mass), solve_contact, friction_steps(problem.tolerance))
+        super().__init__(len(mass), solve_contact)
         self.problem, self.mass, self.gravity = problem, mass, gravity
         self.systems = [system_of(problem, *pair) for pair in zip(mass.tolist(), gravity.tolist(), strict=True)]
         self.since, self.work = np.full(len(mass), np.nan), np.zeros(len(mass))

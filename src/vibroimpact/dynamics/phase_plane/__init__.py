@@ -1,1 +1,0 @@
-"""Contacts of bodies that move rigidly, solved in the phase plane: the speed over the indentation."""
