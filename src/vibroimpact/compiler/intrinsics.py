@@ -53,6 +53,7 @@ def product_of_rows(typing_context: Any, room: Any, values: Any, matrices: Any, 
         first = builder.gep(cube.data, [builder.mul(arguments[3], builder.mul(rows, row_of_matrix))])
         double, integer = ir.DoubleType(), ir.IntType(64)
         lanes = ir.VectorType(double, _LANES)
+        nothing = ir.Constant(lanes, [0.0] * _LANES)
         sums = [cgutils.alloca_once(builder, lanes) for _ in range(2)]
         blocks, blocks_of_columns = (builder.lshr(number, integer(3)) for number in arguments[4:6])
 
@@ -62,16 +63,14 @@ def product_of_rows(typing_context: Any, room: Any, values: Any, matrices: Any, 
         with cgutils.for_range(builder, blocks_of_columns, intp=integer) as block:
             column = builder.shl(block.index, integer(3))
             for one in sums:
-                builder.store(ir.Constant(lanes, [0.0] * _LANES), one)
+                builder.store(nothing, one)
             with cgutils.for_range(builder, blocks, intp=integer) as rows_of_eight:
                 begin = builder.shl(rows_of_eight.index, integer(3))
                 for number in range(_LANES):
                     row = builder.add(begin, integer(number))
                     value = builder.load(builder.gep(source, [row]))
-                    alike = builder.insert_element(ir.Constant(lanes, ir.Undefined), value, ir.IntType(32)(0))
-                    alike = builder.shuffle_vector(
-                        alike, ir.Constant(lanes, ir.Undefined), ir.Constant(ir.VectorType(ir.IntType(32), _LANES), [0] * _LANES)
-                    )
+                    alike = builder.insert_element(nothing, value, ir.IntType(32)(0))
+                    alike = builder.shuffle_vector(alike, nothing, ir.Constant(ir.VectorType(ir.IntType(32), _LANES), [0] * _LANES))
                     place = builder.gep(first, [builder.add(builder.mul(row, row_of_matrix), column)])
                     weights = builder.load(vector_at(place), align=8)
                     one = sums[number % 2]
