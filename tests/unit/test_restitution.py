@@ -50,6 +50,21 @@ def test_what_can_not_be_achieved_is_named() -> None:
     assert vi.law_achieving(Hertz(stiffness=5e8), 1.0, mass=0.09, speed=3.0) == Hertz(stiffness=5e8)
 
 
+def test_a_few_drops_have_the_restitution_of_many() -> None:
+    """They are collocated in plain Python, and followed by compiled code where that does not come out, as under much damping."""
+    speeds = np.array([1e-4, 0.01, 0.5, 3.0])
+    laws: tuple[vi.ContactLaw, ...] = (
+        AdamsImpact(stiffness=5e8, damping_max=170.0, full_damping_penetration=1e-4),
+        AdamsImpact(stiffness=5e8, damping_max=1e5, full_damping_penetration=1e-6),
+        Flores(stiffness=5e8, restitution=0.7),
+        LankaraniNikravesh(stiffness=5e8, restitution=0.01),
+    )
+    for law in laws:
+        few = vi.integrated_restitution(law, 0.09, speeds)
+        many = vi.integrated_restitution(law, 0.09, np.tile(speeds, 3))
+        np.testing.assert_allclose(np.tile(few, 3), many, rtol=1e-12)
+
+
 @pytest.mark.parametrize("wanted", [-0.1, 1.1, np.nan])
 def test_impossible_restitution(wanted: float) -> None:
     with pytest.raises(vi.InputError, match="restitution"):
