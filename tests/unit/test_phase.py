@@ -15,37 +15,48 @@ from vibroimpact.contact.power_law import HERTZ_TIME
 from vibroimpact.contact.registry import contact_laws
 from vibroimpact.dynamics.core.law import law_at_touch
 from vibroimpact.dynamics.core.line_records import LineContact
+from vibroimpact.dynamics.core.normal_records import FORCE, IMPULSE, PACE, TIME
 from vibroimpact.dynamics.core.phase_contact import collocate_contact
 from vibroimpact.dynamics.core.phase_records import ROWS
 from vibroimpact.dynamics.encounter import encounter_of
 from vibroimpact.dynamics.rigid.line_contact import RecordedContact, _manner
-from vibroimpact.dynamics.rigid.phase_rules import phase_rules
+from vibroimpact.dynamics.rigid.phase_rules import normal_grid, phase_rules
 
 SOLVED = sorted(law.name for law in contact_laws().values() if issubclass(law, CompliantLaw) and law.contact_end != "pull-off")
 
 
 def collocated(law: CompliantLaw, speed: float, gravity: float = 9.8, tolerance: float = 1e-10) -> tuple[bool, LineContact, LineContact]:
     """Return whether a contact of 0.1 kg is solved, that contact, and the one that is followed in steps."""
+    solved, contact, recorded, _ = with_normal_motion(law, speed, gravity, tolerance, 0)
+    return solved, contact, recorded.contact
+
+
+def with_normal_motion(
+    law: CompliantLaw, speed: float, gravity: float, tolerance: float, steps: int
+) -> tuple[bool, LineContact, RecordedContact, np.ndarray]:
+    """Return the same with the steps, and the normal motion with some steps in each segment (6, G)."""
     encounter = encounter_of(law, np.array([0.1]), np.array([gravity]), np.array([speed]))
-    rules = phase_rules(law.root, tolerance)
+    rules, grid = phase_rules(law.root, tolerance, sharp=False), normal_grid(steps)
     at_touch = law_at_touch(law_addresses(type(law)), law_coefficients(law), np.zeros(7), speed)
-    solved, contact = collocate_contact(at_touch, _manner(encounter, 0, tolerance), rules, np.zeros((ROWS, rules.vectors.shape[2])))
-    return solved, contact, RecordedContact.of(encounter, 1e-13).contact
+    room = np.zeros((ROWS, rules.vectors.shape[2]))
+    solved, contact = collocate_contact(at_touch, _manner(encounter, 0, tolerance), rules, grid, room)
+    return solved, contact, RecordedContact.of(encounter, 1e-13), grid.motion[:, : grid.extent[1]]
 
 
-@compiled(lambda t: t.void(t.matrix, t.cube, t.integer))
-def multiply(room: np.ndarray, matrices: np.ndarray, width: int) -> None:
-    multiply_row(room, 1, matrices, 2, width, 3)
+@compiled(lambda t: t.void(t.matrix, t.cube, t.integer, t.integer))
+def multiply(room: np.ndarray, matrices: np.ndarray, width: int, columns: int) -> None:
+    multiply_row(room, 1, matrices, 2, width, columns, 3)
 
 
 @pytest.mark.parametrize("width", [8, 16, 24])
-def test_a_row_times_a_matrix(width: int) -> None:
+@pytest.mark.parametrize("columns", [8, 24, 32])
+def test_a_row_times_a_matrix(width: int, columns: int) -> None:
     random = np.random.default_rng(width)
-    room, matrices = random.normal(size=(5, 24)), random.normal(size=(3, 24, 24))
+    room, matrices = random.normal(size=(5, 32)), random.normal(size=(3, 24, 32))
     before = room.copy()
-    multiply(room, matrices, width)
-    np.testing.assert_allclose(room[3, :width], before[1, :width] @ matrices[2, :width, :width], rtol=0, atol=1e-13)
-    room[3, :width] = before[3, :width]
+    multiply(room, matrices, width, columns)
+    np.testing.assert_allclose(room[3, :columns], before[1, :width] @ matrices[2, :width, :columns], rtol=0, atol=1e-13)
+    room[3, :columns] = before[3, :columns]
     np.testing.assert_array_equal(room, before)
 
 
@@ -80,14 +91,31 @@ def test_contact_is_that_followed_in_steps(name: str, speed: float) -> None:
         assert contact.stored == pytest.approx(exact.stored, rel=0, abs=1e-9 * energy)
 
 
+@pytest.mark.parametrize("name", SOLVED)
+@pytest.mark.parametrize("speed", [0.5, 5.0])
+def test_the_normal_motion_is_that_followed_in_steps(name: str, speed: float) -> None:
+    law = contact_laws()[name].example(ContactPair(2.4e9, 0.02, 0.1, 8e7, 0.3))
+    solved, contact, recorded, motion = with_normal_motion(law, speed, 9.8, 1e-10, 16)
+    if not solved:
+        return
+    time, force, impulse = motion[TIME], motion[FORCE], motion[IMPULSE]
+    assert time[0] == impulse[0] == 0.0
+    assert time[-1] == pytest.approx(contact.end.time, rel=1e-9)
+    assert (np.diff(time) >= -1e-12 * time[-1]).all()
+    assert (motion[PACE] >= -1e-7 * time[-1]).all()
+    rate = speed + 9.8 * time - impulse / 0.1
+    np.testing.assert_allclose(rate, recorded.motion(np.minimum(time, recorded.contact.end.time))[1], rtol=0, atol=1e-7 * speed)
+    assert force.max() == pytest.approx(contact.peak_force, rel=0.02)
+
+
 def test_what_is_not_smooth_is_not_taken_for_solved() -> None:
     """A law that says more energy than its force stores: the work of the force is not that energy."""
     law = Hertz(stiffness=1e9, exponent=1.5)
     addresses = np.array([law_addresses(Hertz)[0], law_addresses(contact_laws()["linear-spring-dashpot"])[1], *law_addresses(Hertz)[2:]])
     encounter = encounter_of(law, np.array([0.1]), np.array([9.8]), np.array([1.0]))
-    rules = phase_rules(2, 1e-9)
+    rules = phase_rules(2, 1e-9, sharp=False)
     at_touch = law_at_touch(addresses, law_coefficients(law), np.zeros(7), 1.0)
-    solved, _ = collocate_contact(at_touch, _manner(encounter, 0, 1e-9), rules, np.zeros((ROWS, rules.vectors.shape[2])))
+    solved, _ = collocate_contact(at_touch, _manner(encounter, 0, 1e-9), rules, normal_grid(0), np.zeros((ROWS, rules.vectors.shape[2])))
     assert not solved
 
 
