@@ -38,6 +38,7 @@ _COARSER = 0.2
 
 _NONE = 1e-6  # of the largest force: one that is zero
 _STEEP = 1e-2  # of the largest force: a slope that is not
+_SMALL = 1e-4  # of an impulse: error at the nodes
 _TINY = 1e-300  # so that a node has a distance from itself
 
 
@@ -102,8 +103,8 @@ def write_own(grid: NormalGrid, rules: PhaseRules, vector: int, count: int, step
                 own[matrix, node, point] = 0.0
 
 
-@compiled(lambda t: t.void(t.of(NormalGrid), t.of(PhaseRules), t.of(Segment), t.of(Phase), t.real, t.matrix))
-def write_segment(grid: NormalGrid, rules: PhaseRules, segment: Segment, phase: Phase, end: float, solved: Floats) -> None:
+@compiled(lambda t: t.void(t.of(NormalGrid), t.of(PhaseRules), t.of(Segment), t.of(Phase), t.real, t.real, t.matrix))
+def write_segment(grid: NormalGrid, rules: PhaseRules, segment: Segment, phase: Phase, end: float, stopped: float, solved: Floats) -> None:
     """Write the normal motion in a segment of a phase.
 
     Parameters
@@ -116,6 +117,8 @@ def write_segment(grid: NormalGrid, rules: PhaseRules, segment: Segment, phase: 
         The segment and its solution.
     end : float
         The y at which the contact ends within it, or 1.
+    stopped : float
+        The impulse of the force in it by the speeds at its ends [N s], which are more exact than its nodes.
     solved : array, shape (17, M)
         The room in which it was solved.
     """
@@ -156,6 +159,12 @@ def write_segment(grid: NormalGrid, rules: PhaseRules, segment: Segment, phase: 
     multiply_row(room, NODE_IMPULSE, integrals, of_integrals, width, columns, IMPULSE)
     room[TIME, 0] = 0.0
     room[IMPULSE, 0] = 0.0
+    missing = stopped - room[IMPULSE, steps]
+    if abs(missing) <= _SMALL * abs(stopped):
+        factor = stopped / room[IMPULSE, steps]
+        for point in range(steps):
+            room[IMPULSE, point] *= factor
+        room[IMPULSE, steps] = stopped
     first = grid.extent[1]
     time = motion[TIME, first - 1] if first > 0 else 0.0
     impulse = motion[IMPULSE, first - 1] if first > 0 else 0.0

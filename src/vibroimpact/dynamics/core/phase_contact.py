@@ -327,7 +327,8 @@ def collocate_contact(law: Law, manner: LineManner, rules: PhaseRules, grid: Nor
                 return False, unsolved
         highest, when = peak_in(line, rules, segment, phase, room)
         if grid.steps > 0:
-            write_segment(grid, rules, segment, phase, 1.0, room)
+            slower = math.sqrt(square) - (0.0 if turned else math.sqrt(phase.reached))
+            write_segment(grid, rules, segment, phase, 1.0, line.mass * (slower + line.gravity * phase.duration), room)
         if highest > peak_force:
             peak_force = highest
             time_of_peak = time + when
@@ -379,9 +380,10 @@ def collocate_contact(law: Law, manner: LineManner, rules: PhaseRules, grid: Nor
                 fallen = potential_of(line, state.delta) - potential_of(line, pulled.delta) - energy
                 vector = phase.rule * KINDS + kind
                 elapsed = elapsed_at(rules.vectors, rules.matrices, vector, rules.counts[phase.rule], y, room)
+                begun = state.rate
                 state = LineState(state.time + elapsed, pulled.delta, pulled.rate, state.lost + fallen)
                 if grid.steps > 0:
-                    write_segment(grid, rules, segment, phase, y, room)
+                    write_segment(grid, rules, segment, phase, y, line.mass * (begun - pulled.rate + line.gravity * elapsed), room)
                 if manner.contact_end != ENDS_AT_NO_FORCE:
                     glide, pushes, stays = end_of_glide(line, state)
                     if stays:
@@ -393,7 +395,8 @@ def collocate_contact(law: Law, manner: LineManner, rules: PhaseRules, grid: Nor
                         continue
                 break
         if grid.steps > 0:
-            write_segment(grid, rules, segment, phase, 1.0, room)
+            faster = state.rate + math.sqrt(phase.reached)
+            write_segment(grid, rules, segment, phase, 1.0, line.mass * (faster + line.gravity * phase.duration), room)
         state = LineState(state.time + phase.duration, level, -math.sqrt(phase.reached), state.lost + phase.lost)
         if is_last:
             break
