@@ -36,7 +36,7 @@ def with_normal_motion(
 ) -> tuple[bool, LineContact, RecordedContact, np.ndarray]:
     """Return the same with the steps, and the normal motion with some steps in each segment (6, G)."""
     encounter = encounter_of(law, np.array([0.1]), np.array([gravity]), np.array([speed]))
-    rules, grid = phase_rules(law.root, tolerance, sharp=False), normal_grid(steps)
+    rules, grid = phase_rules(law.root, tolerance), normal_grid(steps)
     at_touch = law_at_touch(law_addresses(type(law)), law_coefficients(law), np.zeros(7), speed)
     room = np.zeros((ROWS, rules.vectors.shape[2]))
     solved, contact = collocate_contact(at_touch, _manner(encounter, 0, tolerance), rules, grid, room)
@@ -113,7 +113,7 @@ def test_what_is_not_smooth_is_not_taken_for_solved() -> None:
     law = Hertz(stiffness=1e9, exponent=1.5)
     addresses = np.array([law_addresses(Hertz)[0], law_addresses(contact_laws()["linear-spring-dashpot"])[1], *law_addresses(Hertz)[2:]])
     encounter = encounter_of(law, np.array([0.1]), np.array([9.8]), np.array([1.0]))
-    rules = phase_rules(2, 1e-9, sharp=False)
+    rules = phase_rules(2, 1e-9)
     at_touch = law_at_touch(addresses, law_coefficients(law), np.zeros(7), 1.0)
     solved, _ = collocate_contact(at_touch, _manner(encounter, 0, 1e-9), rules, normal_grid(0), np.zeros((ROWS, rules.vectors.shape[2])))
     assert not solved

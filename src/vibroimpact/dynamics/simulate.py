@@ -57,7 +57,7 @@ def simulate(problem: StatesProblem, progress: Callable[[float], None] | None = 
         raise InputError(f"simulate takes a Problem, or a case as vi.load_case(...) reads it, not {problem!r}")
     stated = problem.to_problem()
     with np.errstate(all="ignore"):  # Newton iterates may overflow; results that are not finite are detected and retried
-        run = Run(stated, solver_for(stated, sharp=True))
+        run = Run(stated, solver_for(stated))
         legs: PackedList[Leg] | list[Leg] = []
         if stated.shape == () and not stated.vibrates:
             legs = PackedList[Leg](PlateMotion)

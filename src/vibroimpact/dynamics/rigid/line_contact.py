@@ -41,9 +41,7 @@ _LEAST_ERROR = 1e-14
 _ON_CORNER = 1e-9  # of the duration
 
 
-def follow_contacts(
-    encounter: Encounter, tolerance: float, friction_steps: int = 0, *, sharp: bool = False
-) -> tuple[Contact, Floats, Floats]:
+def follow_contacts(encounter: Encounter, tolerance: float, friction_steps: int = 0) -> tuple[Contact, Floats, Floats]:
     """Return the contacts of B drops, their largest forces [N], and the times of these since first touch [s].
 
     Parameters
@@ -54,13 +52,11 @@ def follow_contacts(
         Relative error allowed.
     friction_steps : int
         Of the normal motion in each segment of a contact, if it drives friction.
-    sharp : bool
-        Is the largest force to be as exact as the end?
     """
     law, size = encounter.law, len(encounter.mass)
     collocates = _collocates(law, tolerance)
     touches = np.array([encounter.mass, encounter.gravity, encounter.approach_speed, encounter.depth, encounter.speed_scale])
-    rules = _rules(law, tolerance, sharp)
+    rules = _rules(law, tolerance)
     contacts, solved, written = _room_for(size, friction_steps), 0, 0
     with _coefficients(law, size) as coefficients:
         known = rules, normal_grid(friction_steps), collocates, law_addresses(type(law)), coefficients, touches
@@ -119,7 +115,7 @@ def release_rates(encounter: Encounter, tolerance: float) -> Floats:
 
 def _collocated_rate(encounter: Encounter, tolerance: float) -> float:
     """Return the indentation rate of one drop at the end of its contact [m/s]; NaN if it cannot be collocated."""
-    held, rules = encounter.law.take(0), _rules(encounter.law, tolerance, sharp=False)
+    held, rules = encounter.law.take(0), _rules(encounter.law, tolerance)
     law = law_at_touch(law_addresses(type(held)), law_coefficients(held), _NO_COMPLIANCE, float(encounter.approach_speed[0]))
     room = np.zeros((ROWS, rules.vectors.shape[2]))
     solved, contact = collocate_contact(law, _manner(encounter, 0, tolerance), rules, normal_grid(0), room)
@@ -131,9 +127,9 @@ def _collocates(law: CompliantLaw, tolerance: float) -> bool:
     return tolerance >= _TIGHTEST and law.contact_end != "pull-off"
 
 
-def _rules(law: CompliantLaw, tolerance: float, sharp: bool) -> PhaseRules:
+def _rules(law: CompliantLaw, tolerance: float) -> PhaseRules:
     """Return the Gauss rules of the collocation."""
-    return phase_rules(law.root, min(max(tolerance, _TIGHTEST), _LOOSEST), sharp)
+    return phase_rules(law.root, min(max(tolerance, _TIGHTEST), _LOOSEST))
 
 
 def _room_for(size: int, friction_steps: int) -> records.LineContacts:

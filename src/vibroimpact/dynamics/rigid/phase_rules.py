@@ -16,17 +16,14 @@ from vibroimpact.dynamics.core.phase_records import PhaseRules
 
 _COUNTS = (15, 23, 31)  # with the far end they fill vectors of eight
 _ROUGHNESS = 0.5  # power of the tolerance: the error at the ends is of the order of the square of the last coefficient
-_OF_RATE, _OF_SHARP_RATE = 1e4, 1e3  # tolerances: last coefficients of G
+_OF_RATE = 1e3  # tolerances: last coefficients of G, so that the largest force, between nodes, is as exact as the end
 _INSIDE = 300.0  # tolerances: last coefficients of a phase that ends within a segment, where the error is of their order
 _MOST_PARTS = 15  # of a contact: three segments of compression, six of restitution, and as many glides
 
 
 @cache
-def phase_rules(root: int, tolerance: float, sharp: bool) -> PhaseRules:
-    """Return the rules for laws whose force is smooth in a root of the indentation, at a relative error of the approach speed.
-
-    `sharp`: is the largest force, which lies between nodes, to be as exact as the state at the end?
-    """
+def phase_rules(root: int, tolerance: float) -> PhaseRules:
+    """Return the rules for laws whose force is smooth in a root of the indentation, at a relative error of the approach speed."""
     number, width = len(_COUNTS), max(_COUNTS) + 1
     vectors = np.zeros((number, records.KINDS, records.VECTORS, width))
     matrices = np.zeros((number, records.KINDS, 2, width, width))
@@ -44,7 +41,7 @@ def phase_rules(root: int, tolerance: float, sharp: bool) -> PhaseRules:
         tolerance=tolerance,
         roughness=tolerance**_ROUGHNESS,
         roughness_inside=min(tolerance**_ROUGHNESS, _INSIDE * tolerance),
-        sharper=max(tolerance ** (_ROUGHNESS - 1.0) / (_OF_SHARP_RATE if sharp else _OF_RATE), 1.0),
+        sharper=max(tolerance ** (_ROUGHNESS - 1.0) / _OF_RATE, 1.0),
         root=root,
         counts=np.array(_COUNTS),
         vectors=vectors.reshape(-1, records.VECTORS, width),

@@ -19,13 +19,13 @@ class SolvesContact(Protocol):
         ...
 
 
-def solver_for(problem: Problem, *, sharp: bool = False) -> SolvesContact:
-    """Return the solver of contacts of rigid bodies for the drops of a problem; `sharp`: is the largest force to be as exact as the end?"""
+def solver_for(problem: Problem) -> SolvesContact:
+    """Return the solver of contacts of rigid bodies for the drops of a problem."""
     steps = 0 if problem.oblique is None else friction_steps(problem.tolerance)
 
     def solve(encounter: Encounter, drops: Drops) -> tuple[Contact, Floats, Floats]:
         from vibroimpact.dynamics.rigid.line_contact import follow_contacts  # a law without a force does not load the compiler
 
-        return follow_contacts(encounter, problem.tolerance, steps, sharp=sharp)
+        return follow_contacts(encounter, problem.tolerance, steps)
 
     return solve
