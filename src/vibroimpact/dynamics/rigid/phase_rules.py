@@ -16,7 +16,7 @@ from vibroimpact.dynamics.core.phase_records import PhaseRules
 
 _COUNTS = (15, 23, 31)  # with the far end they fill vectors of eight
 _ROUGHNESS = 0.5  # power of the tolerance: the error at the ends is of the order of the square of the last coefficient
-_OF_RATE = 1e3  # tolerances: last coefficients of G, so that the largest force, between nodes, is as exact as the end
+_OF_RATE = 3e3  # tolerances: last coefficients of G, so that the largest force, between nodes, is as exact as the end
 _INSIDE = 300.0  # tolerances: last coefficients of a phase that ends within a segment, where the error is of their order
 _MOST_PARTS = 15  # of a contact: three segments of compression, six of restitution, and as many glides
 
