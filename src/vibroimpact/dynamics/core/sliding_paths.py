@@ -44,16 +44,14 @@ _MOST_PARTS = 64
 """Angle by which the free oscillation of a contact that sticks turns in a step at most [rad], and parts of a step for that at most."""
 
 
-@compiled(lambda t: t.void(t.matrix, t.vector, t.real, t.real, t.matrix))
-def write_grid(normal: Floats, steps: Floats, hertz: float, largest: float, grid: Floats) -> None:
+@compiled(lambda t: t.void(t.matrix, t.real, t.real, t.matrix))
+def write_grid(normal: Floats, hertz: float, largest: float, grid: Floats) -> None:
     """Write the normal motion of a contact at G points (G, 7), in the order of `NormalState`.
 
     Parameters
     ----------
     normal : array, shape (6, G)
         Time, pace, its slope, force, its slope, and impulse.
-    steps : array, shape (G - 1,)
-        Of the parameter; 0 where two parts of the contact meet.
     hertz : float
         Hertz's stiffness of the bodies [N/m^1.5].
     largest : float
@@ -258,7 +256,7 @@ def slide_contacts(
     normals : array, shape (B, 6, G)
         Normal motion; see `write_grid`.
     steps : array, shape (G - 1,)
-        Of its parameter.
+        Of its parameter; 0 where two parts of a contact meet.
     paths : array, shape (B, 3, G)
         Room for slip velocities [m/s], displacements [m] and friction forces [N].
     microslips : array, shape (B,)
@@ -276,7 +274,7 @@ def slide_contacts(
         for point in range(points):
             largest = max(largest, normal[FORCE, point])
         hertz = 4.0 / 3.0 * contact[MODULUS] * math.sqrt(contact[RADIUS])
-        write_grid(normal, steps, hertz, largest, grid)
+        write_grid(normal, hertz, largest, grid)
         duration = normal[TIME, points - 1]
         deepest = (largest / hertz) ** (2.0 / 3.0)
         scale = (abs(contact[SLIP]) + abs(contact[PULL]) * duration) * duration / deepest
