@@ -72,9 +72,10 @@ def _numbers_of_system(name: str, times: Floats | None) -> dict[str, Floats]:
 
 
 def _moments(response: vi.Response) -> Floats:
-    """Return times over the whole run, and in its first contacts, away from their ends."""
+    """Return times over the whole run, and in its first contacts, away from their ends: at an impulse the velocity is either one."""
     begun, length = response.impacts["time_s"], response.impacts["duration_s"]
-    inside = [first + across * np.linspace(0.04, 0.96, 15) for first, across in zip(begun[:2], length[:2], strict=True)]
+    contacts = [(first, across) for first, across in zip(begun[:2], length[:2], strict=True) if across > 0.0]
+    inside = [first + across * np.linspace(0.04, 0.96, 15) for first, across in contacts]
     end = begun[-1] + length[-1] if len(begun) else float(response.end_time[0])
     return np.sort(np.concatenate([*inside, end * (np.arange(25) + 0.37) / 25.0]))
 

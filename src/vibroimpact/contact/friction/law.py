@@ -155,6 +155,11 @@ class CompliantFriction(FrictionLaw):
         "effective radius R", "m", detail="Effective radius :math:`R`.", above=0, from_pair="effective_radius"
     )
 
+    @property
+    def kappa(self) -> Array:
+        r"""The unit :math:`\kappa = \mu E^* / G^*` of tangential displacements [-]."""
+        return self.coefficient * self.effective_modulus / self.effective_shear_modulus
+
     def contact_radius(self, force: Floats) -> Floats:
         """Return the radius of Hertz's contact under a normal force [m]."""
         return np.asarray(np.cbrt(0.75 * force * self.effective_radius / self.effective_modulus))
@@ -165,5 +170,4 @@ class CompliantFriction(FrictionLaw):
         Of `mdr` it is what springs of stiffness G* dx store at their limits mu E*/G* (D - x^2/R), 2/5 mu F kappa D together.
         """
         depth = np.cbrt(0.75 * force / (self.effective_modulus * np.sqrt(self.effective_radius))) ** 2
-        kappa = self.coefficient * self.effective_modulus / self.effective_shear_modulus
-        return np.asarray(self.sliding_energy * self.coefficient * force * kappa * depth)
+        return np.asarray(self.sliding_energy * self.coefficient * force * self.kappa * depth)

@@ -26,7 +26,7 @@ from vibroimpact.dynamics.core.turning_points import BELOW, RIM, add_rim
 TIME, PACE, PACE_SLOPE, FORCE, FORCE_SLOPE, IMPULSE = range(6)
 """Rows of the normal motion of a contact."""
 
-MODULUS, SHEAR_MODULUS, RADIUS, COEFFICIENT, SLIP, MASS, PULL = range(7)
+HERTZ, SPRING, KAPPA, SLIP, MASS, PULL = range(6)
 """Columns of what is known of a contact."""
 
 VELOCITY, DISPLACEMENT, FRICTION_FORCE = range(3)
@@ -44,16 +44,14 @@ _MOST_PARTS = 64
 """Angle by which the free oscillation of a contact that sticks turns in a step at most [rad], and parts of a step for that at most."""
 
 
-@compiled(lambda t: t.void(t.matrix, t.vector, t.real, t.real, t.matrix))
-def write_grid(normal: Floats, steps: Floats, hertz: float, largest: float, grid: Floats) -> None:
+@compiled(lambda t: t.void(t.matrix, t.real, t.real, t.matrix))
+def write_grid(normal: Floats, hertz: float, largest: float, grid: Floats) -> None:
     """Write the normal motion of a contact at G points (G, 7), in the order of `NormalState`.
 
     Parameters
     ----------
     normal : array, shape (6, G)
         Time, pace, its slope, force, its slope, and impulse.
-    steps : array, shape (G - 1,)
-        Of the parameter; 0 where two parts of the contact meet.
     hertz : float
         Hertz's stiffness of the bodies [N/m^1.5].
     largest : float
@@ -252,13 +250,13 @@ def slide_contacts(
         See `Friction`.
     rounding : float
         Error of the rate of the depth at release, as a part of the largest.
-    contacts : array, shape (B, 7)
-        Effective modulus and shear modulus [Pa], effective radius [m], coefficient of friction, slip velocity at first touch [m/s],
-        effective mass of the tangential motion [kg], acceleration along the direction [m/s^2] of each.
+    contacts : array, shape (B, 6)
+        Of each: Hertz's stiffness [N/m^1.5]; 2 G* sqrt(R) [N/m^1.5]; kappa; slip velocity at first touch [m/s]; effective mass of the
+        tangential motion [kg]; acceleration along the direction [m/s^2].
     normals : array, shape (B, 6, G)
         Normal motion; see `write_grid`.
     steps : array, shape (G - 1,)
-        Of its parameter.
+        Of its parameter; 0 where two parts of a contact meet.
     paths : array, shape (B, 3, G)
         Room for slip velocities [m/s], displacements [m] and friction forces [N].
     microslips : array, shape (B,)
@@ -275,17 +273,15 @@ def slide_contacts(
         largest = 0.0
         for point in range(points):
             largest = max(largest, normal[FORCE, point])
-        hertz = 4.0 / 3.0 * contact[MODULUS] * math.sqrt(contact[RADIUS])
-        write_grid(normal, steps, hertz, largest, grid)
+        write_grid(normal, contact[HERTZ], largest, grid)
         duration = normal[TIME, points - 1]
-        deepest = (largest / hertz) ** (2.0 / 3.0)
+        deepest = (largest / contact[HERTZ]) ** (2.0 / 3.0)
         scale = (abs(contact[SLIP]) + abs(contact[PULL]) * duration) * duration / deepest
-        asked = contact[COEFFICIENT] * contact[MODULUS] / contact[SHEAR_MODULUS]
-        kappa = min(max(asked, _LEAST * scale), _MOST * scale)
+        kappa = min(max(contact[KAPPA], _LEAST * scale), _MOST * scale)
         if kappa == 0.0:
             kappa = 1.0
         # of the integral: none where friction is below the least
-        spring = 0.0 if asked < kappa else 2.0 * contact[SHEAR_MODULUS] * math.sqrt(contact[RADIUS])
+        spring = 0.0 if contact[KAPPA] < kappa else contact[SPRING]
         friction = Friction(growing, shrinking, at_rim, sliding_energy, spring / contact[MASS], contact[PULL] / kappa)
         write_slide(friction, grid, steps, contact[SLIP] / kappa, path)
         microslips[number] = 0.0

@@ -52,41 +52,6 @@ class TangentialHistory(NamedTuple):
     slid: Real
 
 
-@compiled(lambda t: t.of(TangentialHistory)(t.boolean, t.real, t.real, t.real, t.real, t.real, t.real, t.real))
-def fresh_history(
-    at_rim: bool,
-    growing: float,
-    shrinking: float,
-    modulus: float,
-    shear_modulus: float,
-    radius: float,
-    coefficient: float,
-    largest_force: float,
-) -> TangentialHistory:
-    """Return the history of a contact before first touch.
-
-    Parameters
-    ----------
-    at_rim, growing, shrinking
-        See `TangentialHistory`.
-    modulus, shear_modulus : float
-        Effective modulus and effective shear modulus [Pa].
-    radius : float
-        Effective radius [m].
-    coefficient : float
-        Coefficient of friction.
-    largest_force : float
-        About the largest normal force [N], in whose contact the springs are close enough to each other.
-    """
-    hertz = 4.0 / 3.0 * modulus * math.sqrt(radius)
-    width = math.sqrt(radius * (largest_force / hertz) ** (2.0 / 3.0)) / SPRINGS
-    stretch = np.zeros((2, SPRINGS if at_rim else 0))
-    ratio = coefficient * modulus / shear_modulus
-    stiffness = 2.0 * shear_modulus
-    force = np.zeros(2)
-    return TangentialHistory(at_rim, growing, shrinking, hertz, radius, stiffness, coefficient, ratio, width, 0.0, stretch, force, 0.0)
-
-
 @compiled(lambda t: t.of(TangentialHistory)(t.of(TangentialHistory), t.real, t.matrix, t.vector, t.real))
 def with_state(history: TangentialHistory, depth: float, stretch: Floats, force: Floats, slid: float) -> TangentialHistory:
     """Return a history with another state."""
@@ -189,20 +154,7 @@ def spring_after(history: TangentialHistory, depth: float, most: float, moved_x:
 
 @compiled(lambda t: t.of(TangentialHistory)(t.of(TangentialHistory), t.real, t.real, t.real))
 def history_after(history: TangentialHistory, normal_force: float, moved_x: float, moved_y: float) -> TangentialHistory:
-    """Return the history at another normal force [N], after the surfaces have moved past each other along x and y [m].
-
-    Examples
-    --------
-    A spring of stiffness 2 G* a that is stretched until it slides:
-
-    >>> spring = fresh_history(False, 1.0, 1.0, 60e9, 50e9, 0.01, 0.1, 100.0)
-    >>> for moved in (0.0, 1e-7, 1e-3):
-    ...     spring = history_after(spring, 100.0, moved, 0.0)
-    ...     print(round(float(spring.force[0]), 4))
-    0.0
-    2.3208
-    10.0
-    """
+    """Return the history at another normal force [N], after the surfaces have moved past each other along x and y [m]."""
     pressing = max(normal_force, 0.0)
     depth = (pressing / history.hertz) ** (2.0 / 3.0)
     if history.at_rim:

@@ -8,6 +8,7 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.contact.friction.law import CompliantFriction
+from vibroimpact.dynamics.core.cubics import values_in_parts
 from vibroimpact.dynamics.core.resisted_contact import RollingSphere, march_resisted
 from vibroimpact.dynamics.oblique.microslip import lost_in_microslip
 from vibroimpact.dynamics.oblique.normal_motion import NormalMotion
@@ -119,15 +120,11 @@ def _parts(law: CompliantFriction, normal: NormalMotion, sphere: Sphere) -> int:
 
 def _refined(normal: NormalMotion, parts: int) -> tuple[Floats, Floats, Floats]:
     """Return times [s], normal forces [N] and their impulses so far [N s] (G,) of one drop, with `parts` steps for each of the motion's."""
-    inside = normal.steps > 0.0  # where two parts meet nothing lies between
-    place = np.arange(1, parts + 1)[:, None] / parts
+    inside = normal.steps[:, None] > 0.0  # where two parts meet nothing lies between
 
     def at(values: Floats, slopes: Floats) -> Floats:
-        change = values[1:, 0] - values[:-1, 0]
-        bend = 3.0 * change - 2.0 * slopes[:-1, 0] - slopes[1:, 0]
-        twist = slopes[:-1, 0] + slopes[1:, 0] - 2.0 * change
-        between = values[:-1, 0] + place * (slopes[:-1, 0] + place * (bend + place * twist))
-        return np.append(values[0, 0], np.where(inside, between, values[1:, 0]).T.ravel())
+        between = values_in_parts(np.ascontiguousarray(values[:, 0]), np.ascontiguousarray(slopes[:, 0]), parts)
+        return np.append(values[0, 0], np.where(inside, between, values[1:]).ravel())
 
     time = np.maximum.accumulate(at(normal.time, normal.pace))
     force = np.maximum(at(normal.force, normal.force_slope), 0.0)

@@ -6,6 +6,7 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.contact.friction.law import CompliantFriction, FrictionLaw, ImpulsiveFriction
+from vibroimpact.contact.pair import hertz_stiffness
 from vibroimpact.dynamics.oblique.normal_motion import NormalMotion
 from vibroimpact.dynamics.oblique.state import Sliding
 
@@ -60,9 +61,10 @@ def _slide_compliant(law: CompliantFriction, normal: NormalMotion, slip: Floats,
 
     size = len(slip)
     points = len(normal.steps) + 1
-    contacts = np.empty((size, 7))
-    parameters = (law.effective_modulus, law.effective_shear_modulus, law.effective_radius, law.coefficient)
-    for column, values in enumerate((*parameters, slip, mass, pull)):
+    hertz = hertz_stiffness(law.effective_modulus, law.effective_radius)
+    spring = 2.0 * law.effective_shear_modulus * np.sqrt(law.effective_radius)
+    contacts = np.empty((size, 6))
+    for column, values in enumerate((hertz, spring, law.kappa, slip, mass, pull)):
         contacts[:, column] = values
     paths = np.empty((size, 3, points))
     microslips = np.empty(size)

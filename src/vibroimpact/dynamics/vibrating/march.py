@@ -351,29 +351,38 @@ class March:
 
     def first_other_event(self, stretch: VibratingStretch) -> OtherEvent | None:
         """Return the first touch, or end of a recoil, of another contact within a stretch; or None."""
-        numbers = [number for number in range(len(self.definitions)) if number not in stretch.view.contacts]
-        if not numbers:
+        others = [number for number in range(len(self.definitions)) if number not in stretch.view.contacts]
+        if not others:
             return None
         states = stretch.state(stretch.length * stretch.rule.map_time(GRID))
         slack = _TOUCH_SLACK * max(float(history.delta.max()) for history in stretch.contacts)
-        found = []
-        for number in numbers:
-            if number not in self.active:
-                found.append(
-                    OtherEvent(partial(self.overlap_beyond, number, slack), partial(self.begin_contacts, number, slack, stretch.start))
-                )
-                if dent := self.dents.get(number):
-                    found.append(
-                        OtherEvent(partial(self.overlap_beyond, number, slack, law=dent), partial(self.begin_contact, number, dent))
-                    )
-                continue
-            contact = self.active[number]
-            for kind in (0, 1):
-                found.append(
-                    OtherEvent(partial(recoil_end_value, self.system, contact, kind), partial(self.end_recoil, contact, parts=kind == 0))
-                )
-        seen = [replace(other, x=x) for other in found if (x := first_crossing(other.value(states))) is not None]
+        possible = [event for number in others if number in self.active for event in self.ends_of_recoil(self.active[number])]
+        possible += self.touches_within(states, [number for number in others if number not in self.active], slack, stretch.start)
+        seen = [replace(other, x=x) for other in possible if (x := first_crossing(other.value(states))) is not None]
         return min(seen, key=lambda other: other.x, default=None)
+
+    def ends_of_recoil(self, contact: ActiveContact) -> list[OtherEvent]:
+        """Return the two ways in which the recoil of a contact may end: its surfaces part, or its law pushes again."""
+        return [
+            OtherEvent(partial(recoil_end_value, self.system, contact, kind), partial(self.end_recoil, contact, parts=kind == 0))
+            for kind in (0, 1)
+        ]
+
+    def touches_within(self, states: State, apart: list[int], slack: float, start: State) -> list[OtherEvent]:
+        """Return the touches of surfaces that are apart at the start of some states in order, and overlap by more than a slack [m] later.
+
+        Of many contacts few come that near, so that all are looked at together first.
+        """
+        approaches = self.system.approach(states)[:, apart]
+        levels = np.array([float(self.next_laws[number].touch_level) for number in apart])
+        touches = [
+            OtherEvent(partial(self.overlap_beyond, number, slack), partial(self.begin_contacts, number, slack, start))
+            for number in np.array(apart)[(approaches > levels + slack).any(axis=0)].tolist()
+        ]
+        for number in apart:
+            if dent := self.dents.get(number):
+                touches.append(OtherEvent(partial(self.overlap_beyond, number, slack, law=dent), partial(self.begin_contact, number, dent)))
+        return touches
 
     def overlap_beyond(self, number: int, slack: float, states: State, law: CompliantLaw | None = None) -> Floats:
         """Return the overlap of surfaces beyond a slack [m], under the next law, or beyond the dent of another."""

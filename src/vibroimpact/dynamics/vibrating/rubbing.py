@@ -21,7 +21,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cache
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -90,6 +90,19 @@ def rubbing_at_touch(law: CompliantFriction, largest_force: float, sphere: Spher
     spin, slip, pull = np.array([-about_y, about_x, about_z]), sphere.slip(before)[:, 0], sphere.gravity[:, 0]
     history = tangential_history(law, largest_force)
     return Rubbing(law, largest_force, mass, radius, inertia, pull, slip, none, spin, none, history, np.zeros(3), none)
+
+
+class Way(NamedTuple):
+    """What happened on the way through a stretch, as `lost_in_microslip` takes it.
+
+    normal, friction: forces [N] (T,), (T, 2). moved: displacements between them [m] (T - 1, 2). slid: how far all of the contact slid on
+    the way to each [m] (T,).
+    """
+
+    normal: Floats
+    friction: Floats
+    moved: Floats
+    slid: Floats
 
 
 def longest_with_friction(tolerance: float) -> float:
@@ -175,7 +188,7 @@ class Friction:
         self.force[:2] = rubbing.force[:, None]
         self.history = rubbing.history
         self.normal = 0.0
-        self.microslip = 0.0
+        self.way = Way(np.zeros(1), np.zeros((1, 2)), np.zeros((0, 2)), np.zeros(1))
 
     def set_length(self, length: float) -> None:
         """Set the length of the stretch [s]."""
@@ -203,9 +216,8 @@ class Friction:
         slid[0] = start.history.slid
         self.history = follow_history(start.history, pressed, np.ascontiguousarray(steps.T), frictions[1:], slid[1:])
         self.force[:2] = frictions[_STEPS::_STEPS].T
-        normals = np.append(start.normal, pressed)
-        self.microslip = lost_in_microslip(start.law, normals, frictions, steps.T, slid)
-        self.normal = float(normals[-1])
+        self.way = Way(np.append(start.normal, pressed), frictions, steps.T, slid)
+        self.normal = float(pressed[-1])
         if len(self.force) > 2:
             self.force[2:] = self._moments(normal)
         return float(np.abs(self.force - before).max())
@@ -289,7 +301,7 @@ class Friction:
             normal=self.normal,
             history=self.history,
             work=start.work + taken,
-            microslip=start.microslip + self.microslip,
+            microslip=start.microslip + lost_in_microslip(start.law, *self.way),
         )
         gain = 0.5 * (end.velocity - start.velocity) @ (end.velocity + start.velocity) - start.pull @ moved
         lost = float((start.mass * slowed * velocity).sum(axis=0) @ weights)

@@ -113,13 +113,14 @@ class _Neighbour:
     def pass_visit(self, motions: Sequence[VibratingStretch | FreePhase]) -> None:
         """Propagate through the parts of a visit."""
         for _, parts in groupby(motions, _contact_of):
-            alike = list(parts)
-            stretches = [motion for motion in alike if isinstance(motion, VibratingStretch)]
-            if stretches:
-                self.pass_through(stretches)
-            for motion in alike:
+            stretches = []
+            for motion in parts:  # all of them stretches under one law, or all of them free
                 if isinstance(motion, FreePhase):
                     self.fly(motion.free, motion.length, inside=motion.local is not None)
+                else:
+                    stretches.append(motion)
+            if stretches:
+                self.pass_through(stretches)
 
     def pass_through(self, stretches: Sequence[VibratingStretch]) -> None:
         """Propagate through stretches of contact under one law."""
