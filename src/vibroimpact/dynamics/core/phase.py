@@ -255,7 +255,9 @@ def solve_phase(line: Line, rules: PhaseRules, segment: Segment, roughness: floa
             rough_pace_before += vectors[vector, BEFORE_LAST, node] * pace
             is_lossy = is_lossy or room[LOSS, node] != 0.0
         duration *= span / solved_span
-        rough = rules.sharper * max(abs(rough_rate), abs(rough_rate_before)) / touch
+        rough = max(abs(rough_rate), abs(rough_rate_before)) / touch
+        if rule < len(rules.counts) - 1:
+            rough *= rules.sharper
         rough = max(rough, 2.0 * max(abs(rough_pace), abs(rough_pace_before)) / duration)
         elastic, plastic = energies(shallow + solved_span, coefficients)
         high = elastic + plastic - weight * (shallow + solved_span)
