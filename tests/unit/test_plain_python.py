@@ -58,5 +58,7 @@ def test_plain_python_gives_the_same() -> None:
     plain = json.loads(told.stdout)
     for name, columns in numbers().items():
         for column, values in columns.items():
-            if column != "sensitivity":  # by finite differences
-                np.testing.assert_allclose(plain[name][column], values, rtol=1e-12, atol=1e-15, err_msg=f"{name}: {column}")
+            if column == "sensitivity":  # by finite differences
+                continue
+            within = 1e-9 if column.startswith("time_of_max") else 1e-12  # a top is flat: rounding shifts it further
+            np.testing.assert_allclose(plain[name][column], values, rtol=within, atol=1e-15, err_msg=f"{name}: {column}")

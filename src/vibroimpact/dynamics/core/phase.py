@@ -118,8 +118,8 @@ def start_phase(line: Line, rules: PhaseRules, segment: Segment, room: Floats) -
     return span, static_power, loss_power, low
 
 
-@compiled(lambda t: t.of(Phase)(t.of(Line), t.of(PhaseRules), t.of(Segment), t.real, t.matrix))
-def solve_phase(line: Line, rules: PhaseRules, segment: Segment, roughness: float, room: Floats) -> Phase:
+@compiled(lambda t: t.of(Phase)(t.of(Line), t.of(PhaseRules), t.of(Segment), t.real, t.real, t.matrix))
+def solve_phase(line: Line, rules: PhaseRules, segment: Segment, roughness: float, sharper: float, room: Floats) -> Phase:
     r"""Solve a segment of a phase by Newton's method, with more nodes until it is resolved.
 
     With d the residual of u, the linearised equation for its correction e is scalar, and is solved by quadrature:
@@ -139,6 +139,8 @@ def solve_phase(line: Line, rules: PhaseRules, segment: Segment, roughness: floa
         The segment.
     roughness : float
         The last Legendre coefficients allowed.
+    sharper : float
+        Times as small those of G have to be, on which the motion between the nodes depends, while a larger number of nodes is left.
     room : array, shape (17, M)
         Room; the motion stays in it.
     """
@@ -170,6 +172,7 @@ def solve_phase(line: Line, rules: PhaseRules, segment: Segment, roughness: floa
         for node in range(count, width):
             room[row, node] = 0.0
     before = 0.0
+    contraction = 1.0
     sweep = 0
     solved_span = span
     duration = 0.0
@@ -201,7 +204,10 @@ def solve_phase(line: Line, rules: PhaseRules, segment: Segment, roughness: floa
             apart = max(apart, abs(defect))
         if not apart < math.inf:
             break
+        if rule > 0 and sweep == 0:
+            before = apart / contraction
         settled = apart <= close or (apart <= _FAST * before and _DOUBT * apart * (apart / before) <= close)
+        contraction = apart / before if before > 0.0 else 1.0
         before = apart
         solved_span = span
         if sweep < _FRESH:
@@ -257,7 +263,7 @@ def solve_phase(line: Line, rules: PhaseRules, segment: Segment, roughness: floa
         duration *= span / solved_span
         rough = max(abs(rough_rate), abs(rough_rate_before)) / touch
         if rule < len(rules.counts) - 1:
-            rough *= rules.sharper
+            rough *= sharper
         rough = max(rough, 2.0 * max(abs(rough_pace), abs(rough_pace_before)) / duration)
         elastic, plastic = energies(shallow + solved_span, coefficients)
         high = elastic + plastic - weight * (shallow + solved_span)

@@ -318,10 +318,10 @@ def collocate_contact(law: Law, manner: LineManner, rules: PhaseRules, grid: Nor
         segment = Segment(TURNING, 1.0, 0.0, 0.0, 0.0, 0.0)
         if level < manner.depth - _MARGIN * (manner.depth - law.touch):
             segment = Segment(AT_TOUCH_INWARD if is_at_touch else BETWEEN_INWARD, 1.0, level, deepest, square, 0.0)
-            phase = solve_phase(line, rules, segment, rules.roughness, room)
+            phase = solve_phase(line, rules, segment, rules.roughness, rules.sharper, room)
         if not phase.solved:
             segment = Segment(TURNING_AT_TOUCH if is_at_touch else TURNING, 1.0, manner.depth, deepest, 0.0, square)
-            phase = solve_phase(line, rules, segment, rules.roughness, room)
+            phase = solve_phase(line, rules, segment, rules.roughness, rules.sharper, room)
             turned = True
             if not phase.solved or phase.deep > level + _ABOUT * rules.tolerance * (phase.deep - law.touch):
                 return False, unsolved
@@ -352,6 +352,7 @@ def collocate_contact(law: Law, manner: LineManner, rules: PhaseRules, grid: Nor
     least_energy = 0.5 * line.mass * (rules.tolerance * manner.speed_scale) ** 2
     if energy_to_part(line, state) < least_energy or line.gravity >= force_of(line, state) / line.mass:
         return False, unsolved
+    sharper_back = rules.sharper if grid.steps > 0 else 1.0  # nothing between the nodes is asked for without friction
     for _ in range(_SEGMENTS_BACK):
         level = next_level(law, state.delta, False, _ABOUT * rules.tolerance * (deepest - law.release))
         is_last = level == law.release
@@ -360,7 +361,8 @@ def collocate_contact(law: Law, manner: LineManner, rules: PhaseRules, grid: Nor
             kind = TURNING_AT_TOUCH if state.rate == 0.0 else AT_TOUCH
         segment = Segment(kind, -1.0, state.delta, level, state.rate * state.rate, 0.0)
         ends_inside = manner.tension == TENSION_CUT and manner.contact_end == ENDS_AT_NO_FORCE
-        phase = solve_phase(line, rules, segment, rules.roughness_inside if ends_inside else rules.roughness, room)
+        roughness = rules.roughness_inside if ends_inside else rules.roughness
+        phase = solve_phase(line, rules, segment, roughness, sharper_back, room)
         if not phase.solved:
             return False, unsolved
         if manner.tension == TENSION_CUT:
@@ -369,7 +371,7 @@ def collocate_contact(law: Law, manner: LineManner, rules: PhaseRules, grid: Nor
                 return False, unsolved
             if y < math.inf:
                 if phase.roughness > rules.roughness_inside:
-                    phase = solve_phase(line, rules, segment, rules.roughness_inside, room)
+                    phase = solve_phase(line, rules, segment, rules.roughness_inside, sharper_back, room)
                     if not phase.solved:
                         return False, unsolved
                     certain, y = tension_in(line, rules, segment, phase, is_last, room)

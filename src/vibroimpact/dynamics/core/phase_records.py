@@ -40,8 +40,7 @@ class PhaseRules(NamedTuple):
     """Gauss rules of L numbers of nodes, rising, for the segments of a phase.
 
     tolerance: relative error allowed of the approach speed. roughness: the last Legendre coefficients allowed, and roughness_inside, where
-    a contact ends within a segment; sharper: times as small they have to be for G, on which the motion between the nodes depends, while a
-    larger number of nodes is left. root:
+    a contact ends within a segment; sharper: times as small they have to be for G where the motion between the nodes is asked for. root:
     power of the indentation in whose root the force is smooth at touch. counts (L,): numbers of nodes. vectors (6 L, 9, M): of each kind of
     segment; M, their length, has room for the nodes and the far end. matrices (12 L, M, M), two of each kind: from G at the nodes to the
     change of u, and from values to their integrals, up to the nodes and the far end, with a row for each node that they are taken from.

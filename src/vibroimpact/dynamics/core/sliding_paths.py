@@ -125,9 +125,13 @@ def write_slide(friction: Friction, grid: Floats, steps: Floats, slip: float, pa
     So it is where nowhere the displacement grows more slowly than the depth, or shrinks faster than a part of it. `slip`: at first touch.
     """
     displacement = 0.0
+    velocity = slip
     rate = 0.0
     bend = 0.0
+    normal = normal_at(grid, 0)
     for point in range(len(grid)):
+        before = normal
+        velocity_before = velocity
         normal = normal_at(grid, point)
         velocity = slip + friction.pull * normal.time - friction.stiffness * normal.swept
         rate_before = rate
@@ -135,6 +139,8 @@ def write_slide(friction: Friction, grid: Floats, steps: Floats, slip: float, pa
         rate = normal.pace * velocity
         bend = normal.pace_slope * velocity + normal.pace * normal.pace * (friction.pull - friction.stiffness * normal.most)
         if point:
+            by_pace = 0.5 * (before.pace + normal.pace) + (before.pace_slope - normal.pace_slope) / 12.0
+            displacement += (normal.time - before.time - steps[point - 1] * by_pace) * velocity_before
             displacement += steps[point - 1] * (0.5 * (rate + rate_before) + (bend_before - bend) / 12.0)
         path[VELOCITY, point] = velocity
         path[DISPLACEMENT, point] = displacement

@@ -65,12 +65,23 @@ def normal_between(start: NormalState, end: NormalState, share: float) -> Normal
     return NormalState(time, pace, pace_slope, depth, depth_slope, most, end.swept - remaining)
 
 
+@compiled(lambda t: t.real(t.of(NormalState), t.of(NormalState)))
+def missed_time(start: NormalState, end: NormalState) -> float:
+    """Return the time of a step less the integral of the pace by the same rule [s].
+
+    At the velocity at the start this is displacement as well: without it the two would not belong together in steps of next to no time.
+    """
+    by_pace = 0.5 * (start.pace + end.pace) + (start.pace_slope - end.pace_slope) / 12.0
+    return end.time - start.time - by_pace
+
+
 @compiled(lambda t: t.of(SlipState)(t.of(Friction), t.of(NormalState), t.of(NormalState), t.of(SlipState), t.real, t.real))
 def moved(friction: Friction, start: NormalState, end: NormalState, before: SlipState, velocity: float, integral: float) -> SlipState:
     """Return the motion at the end of a step, from velocity and integral at both ends."""
     bend = start.pace_slope * before.velocity + start.pace * start.pace * (friction.pull - friction.stiffness * before.integral)
     bend -= end.pace_slope * velocity + end.pace * end.pace * (friction.pull - friction.stiffness * integral)
-    displacement = before.displacement + 0.5 * (start.pace * before.velocity + end.pace * velocity) + bend / 12.0
+    displacement = before.displacement + missed_time(start, end) * before.velocity
+    displacement += 0.5 * (start.pace * before.velocity + end.pace * velocity) + bend / 12.0
     return SlipState(velocity, displacement, integral, before.direction, before.front, before.microslip)
 
 
@@ -142,7 +153,7 @@ def slip_at_rim(friction: Friction, curve: Curve, start: NormalState, end: Norma
     square = end.pace * end.pace / 12.0
     flow = start.pace * before.velocity
     tangential = pull - stiffness * before.integral
-    ahead = before.displacement + 0.5 * flow - square * pull
+    ahead = before.displacement + missed_time(start, end) * before.velocity + 0.5 * flow - square * pull
     ahead += (start.pace_slope * before.velocity + start.pace * start.pace * tangential) / 12.0
     grows = direction * (math.sqrt(start.depth) - before.front) * start.depth_slope + before.front * flow
     right = before.velocity + pull * (end.time - start.time)
