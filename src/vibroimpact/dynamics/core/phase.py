@@ -204,7 +204,7 @@ def solve_phase(line: Line, rules: PhaseRules, segment: Segment, roughness: floa
             apart = max(apart, abs(defect))
         if not apart < math.inf:
             break
-        if rule > 0 and sweep == 0:
+        if rule > 0 and sweep == 0:  # the first correction with more nodes is as good as the last one before
             before = apart / contraction
         settled = apart <= close or (apart <= _FAST * before and _DOUBT * apart * (apart / before) <= close)
         contraction = apart / before if before > 0.0 else 1.0
