@@ -7,6 +7,7 @@ import json
 import os
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -32,7 +33,7 @@ LAWS = {
 
 
 def numbers() -> dict[str, dict[str, list[float]]]:
-    """The first impacts of each law on a plate with two modes, with a compliance in series; and of oblique drops on a rigid one."""
+    """The first impacts of each law on a plate with two modes, with a compliance in series; and of oblique drops on a rigid one, and on it."""
     plate = ModalBasis(np.array([300.0, 2e3]), np.array([0.01, 0.02]), np.array([1.0, 0.5]), np.zeros((2, 3)))
     found = {}
     for name, law in LAWS.items():
@@ -44,6 +45,10 @@ def numbers() -> dict[str, dict[str, list[float]]]:
         oblique = vi.Oblique(velocity=(0.6, 0.1), spin=(0.0, -20.0, 5.0), friction=friction)
         problem = drop_on(LAWS["hysteretic"], speed=2.0, impacts=1, oblique=oblique)
         found[f"{name}, {rolling}"] = {column: values.tolist() for column, values in vi.simulate(problem).impacts.items()}
+        if name != "mindlin-rescale":
+            moving = replace(plate, along=np.array([[0.3, -0.1], [0.1, 0.2]]))
+            on_plate = drop_on(LAWS["hysteretic"], moving, speed=2.0, impacts=1, oblique=oblique, tolerance=1e-6)
+            found[f"{name}, {rolling}, on a plate"] = {column: values.tolist() for column, values in vi.simulate(on_plate).impacts.items()}
     return found
 
 

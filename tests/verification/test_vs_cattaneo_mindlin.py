@@ -12,9 +12,8 @@ from support import one_in
 from turning_history import by_turning_points
 from vibroimpact.arrays import Floats
 from vibroimpact.contact.friction.laws.mdr import Mdr
-from vibroimpact.dynamics.core.tangential_history import history_after
+from vibroimpact.dynamics.core.tangential_history import history_after, lost_in_microslip
 from vibroimpact.dynamics.oblique.tangential_history import tangential_history
-from vibroimpact.dynamics.vibrating.rubbing import lost_in_microslip
 
 AGAINST = Against(
     "array of independent friction springs",
@@ -236,7 +235,7 @@ def test_a_cycle_of_tangential_force_is_lost_in_microslip(agrees: Agrees, share:
     assert np.max(frictions) == pytest.approx(share * MU * force, rel=1e-3)
     assert not np.any(slid)
     first = 200  # the first turning point, from which the loop is closed
-    lost = lost_in_microslip(law, np.full(801, force), np.array(frictions)[first:], moved[first:], np.array(slid)[first:])
+    lost = lost_in_microslip(history, np.full(801, force), np.array(frictions)[first:], moved[first:], np.array(slid)[first:])
     rest = 1.0 - share
     loop = 1.0 - rest ** (5.0 / 3.0) - 5.0 / 6.0 * share * (1.0 + rest ** (2.0 / 3.0))
     exact = 3.6 * (MU * force) ** 2 / (shear * contact) * loop

@@ -107,6 +107,8 @@ class Problem:
     at_place : callable, optional
         The problem with its contact at another place of the plate, x and y [m]; without it a sphere that moves along a plate that
         vibrates finds it everywhere as where it touches first.
+    plate_at_place : callable, optional
+        The plate with its contact there, which tells its motion; the compliance in series is left out, which takes more time.
 
     Raises
     ------
@@ -148,6 +150,7 @@ class Problem:
     facts: Mapping[str, float | str] = field(default_factory=dict, compare=False)
     models: Mapping[str, ModalModel] = field(default_factory=dict, compare=False)
     at_place: Callable[[tuple[float, float]], Problem] | None = field(default=None, compare=False)
+    plate_at_place: Callable[[tuple[float, float]], Body] | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
         if isinstance(self.laws, ContactLaw):

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from vibroimpact.arrays import Floats
+from vibroimpact.bodies.body import Body
 from vibroimpact.bodies.rigid import rigid_sphere
 from vibroimpact.cases.elastic.modes import BodyModes, compute_modes, contact_place
 from vibroimpact.cases.elastic.residuals import residual_keys, with_residuals
@@ -97,12 +98,9 @@ def coupling_of(case: CaseTable, progress: Callable[[float], None] | None = None
     if "plate" in bodies:
         if not bodies["plate"].model.is_held_vertically and case.drop.gravity:
             raise InputError(PLATE_FALLS, "plate.supports")
-        if not bodies["plate"].model.is_held_vertically:
-            rigid = bodies["plate"].body.rigid_motions(bodies["plate"].model)
-        if treatment != "superposed":  # which reproduces multibody programs: contact at a node, without corrections
-            modes["plate"], beyond = _basis_at_face(bodies["plate"])
-            if beyond:
-                facts[PLATE_THEORY_INERTIA] = beyond
+        modes["plate"], rigid, beyond = _plate_motions(bodies["plate"], treatment)
+        if beyond:
+            facts[PLATE_THEORY_INERTIA] = beyond
         carried = _compliance(modes["plate"])
         facts["plate_modal_compliance_m_N"] = carried
         if treatment != "superposed":
@@ -130,6 +128,16 @@ def coupling_of(case: CaseTable, progress: Callable[[float], None] | None = None
     if series:
         _check_well_posed(case, series, facts)
     return Coupling(modes, rigid, series, facts, {name: body.model for name, body in bodies.items()})
+
+
+def _plate_motions(body: BodyModes, treatment: str) -> tuple[ModalBasis, ModalBasis | None, float]:
+    """Return modes and rigid motions of a plate at its contact point, and the inertia that plate theory lacks [m s^2/N].
+
+    The treatment "superposed" reproduces multibody programs: contact at a node, without corrections.
+    """
+    rigid = None if body.model.is_held_vertically else body.body.rigid_motions(body.model)
+    modes, beyond = (body.basis, 0.0) if treatment == "superposed" else _basis_at_face(body)
+    return modes, rigid, beyond
 
 
 def _free_sphere(case: CaseTable) -> ModalBasis:
@@ -304,7 +312,7 @@ def couple_bodies(
         models=coupling.models,
     )
     if problem.oblique is not None and "plate" in coupling.modes:
-        found = replace(found, at_place=partial(at_place, case, found))
+        found = replace(found, at_place=partial(at_place, case, found), plate_at_place=partial(plate_at_place, case, found))
     local = case.contact.local
     if local.local_compliance != "identified":
         return found
@@ -323,10 +331,41 @@ def couple_bodies(
 
 
 def at_place(case: CaseTable, problem: Problem, place: tuple[float, float]) -> Problem:
-    """Return the problem of a case with the contact at another place of its plate [m]."""
-    coupling = coupling_of(case.model_copy(update={"drop": case.drop.model_copy(update={"position": place})}))
-    plate = replace(problem.plate, modes=coupling.modes["plate"], rigid=coupling.rigid)
-    return problem.on_plate(plate, coupling.quasi_static)
+    """Return the problem of a case with the contact at another place of its plate [m].
+
+    Raises
+    ------
+    InputError
+        If too little compliance is left to the contact there.
+    """
+    moved = _with_contact_at(case, place)
+    body = compute_modes(moved)["plate"]
+    treatment = treatment_of(case)
+    modes, rigid, _ = _plate_motions(body, treatment)
+    linear = 0.0
+    facts: dict[str, float | str] = {}
+    if treatment != "superposed":
+        linear = _plate_compliance(body, None) - _compliance(modes)
+        modes = with_residuals(body, modes, None)
+    if problem.sphere.modes is not None:
+        facts["sphere_modal_compliance_m_N"] = _compliance(problem.sphere.modes)
+        if treatment == "consistent":
+            linear -= _compliance(problem.sphere.modes)
+    series = replace(problem.quasi_static, linear=linear)
+    if series:
+        _check_well_posed(moved, series, facts)
+    return problem.on_plate(replace(problem.plate, modes=modes, rigid=rigid), series)
+
+
+def plate_at_place(case: CaseTable, problem: Problem, place: tuple[float, float]) -> Body:
+    """Return the plate of a case with the contact at another place [m], for its motion: without residual compliances to sensors."""
+    body = compute_modes(_with_contact_at(case, place))["plate"]
+    modes, rigid, _ = _plate_motions(body, treatment_of(case))
+    return replace(problem.plate, modes=modes, rigid=rigid)
+
+
+def _with_contact_at(case: CaseTable, place: tuple[float, float]) -> CaseTable:
+    return case.model_copy(update={"drop": case.drop.model_copy(update={"position": place})})
 
 
 def _identified(case: CaseTable, measured: MeasuredImpact, problem: Problem) -> tuple[tuple[float, float], dict[str, float | str]]:

@@ -16,6 +16,7 @@ from typing import ClassVar
 import numpy as np
 
 from vibroimpact.arrays import Array, Floats
+from vibroimpact.contact.friction.twisting import twisting_share
 from vibroimpact.contact.parameters import Parameters, parameter
 
 _TWISTING = 3.0 * np.pi / 16.0
@@ -51,16 +52,9 @@ class FrictionLaw(Parameters):
         return np.asarray(_TWISTING * self.coefficient * force * self.contact_radius(force))
 
     def twisting_part(self, force: Floats, friction: Floats, slip: Floats, spin: Floats) -> Floats:
-        r"""Return the part of the moment of full twisting that a contact has beside its friction [-], of the shape of `force`.
+        """Return the part of the moment of full twisting that a contact has beside its friction [-], of the shape of `force`.
 
-        Each point of a contact that slides at the speed s and twists at the rate :math:`\omega` rubs against its own velocity. Over Hertz's
-        pressure this makes, with :math:`q = a |\omega| / s`, the part
-
-        .. math:: \frac{16}{15\pi}\, q\; {}_2F_1\left(\tfrac12, \tfrac12; \tfrac72; q^2\right) \quad (q \le 1),\qquad
-           1 - \frac{1}{q^2} + \frac{3}{8 q^4} \quad (q \ge 1)
-
-        A contact whose friction Q is less than :math:`\mu F` sticks somewhere; it has at most about
-        :math:`\sqrt{1 - (Q / \mu F)^2}`, which is taken if it is more.
+        It is `contact.friction.twisting.twisting_share`, of a contact of the radius that the normal force makes.
 
         Parameters
         ----------
@@ -88,15 +82,9 @@ class FrictionLaw(Parameters):
         >>> law.twisting_part(force, 0.1 * force, np.array([0.0, 1e-3, 1.0]), spin).round(4).tolist()
         [1.0, 0.9814, 0.0025]
         """
-        from scipy.special import hyp2f1  # a drop along the normal does not load it
-
-        rim, most = self.contact_radius(force) * spin, self.coefficient * force
-        faster = np.maximum(rim, slip)
-        ratio = np.divide(np.minimum(rim, slip), faster, out=np.zeros_like(faster), where=faster > 0.0)
-        sliding = 0.2 / _TWISTING * ratio * hyp2f1(0.5, 0.5, 3.5, ratio**2)
-        used = np.divide(friction, most, out=np.ones_like(faster), where=most > 0.0)
-        sticking = np.sqrt(np.maximum(1.0 - used**2, 0.0))
-        return np.asarray(np.maximum(np.where(slip > rim, sliding, 1.0 - ratio**2 + 0.375 * ratio**4), sticking))
+        most = self.coefficient * force
+        used = np.divide(friction, most, out=np.ones_like(force), where=most > 0.0)
+        return np.asarray(twisting_share(self.contact_radius(force) * spin, slip, used))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -163,11 +151,3 @@ class CompliantFriction(FrictionLaw):
     def contact_radius(self, force: Floats) -> Floats:
         """Return the radius of Hertz's contact under a normal force [m]."""
         return np.asarray(np.cbrt(0.75 * force * self.effective_radius / self.effective_modulus))
-
-    def energy_in_sliding(self, force: Floats) -> Floats:
-        """Return the work that stretches the contact along the plate, while all of it slides up to a normal force [J].
-
-        Of `mdr` it is what springs of stiffness G* dx store at their limits mu E*/G* (D - x^2/R), 2/5 mu F kappa D together.
-        """
-        depth = np.cbrt(0.75 * force / (self.effective_modulus * np.sqrt(self.effective_radius))) ** 2
-        return np.asarray(self.sliding_energy * self.coefficient * force * self.kappa * depth)

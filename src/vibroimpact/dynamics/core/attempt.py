@@ -6,29 +6,15 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled, force_at
+from vibroimpact.dynamics.core.contact_records import Attempt, Balance, Beginning, Bodies, Manner
 from vibroimpact.dynamics.core.events import BREAKPOINT, NO_EVENT, NO_PUSH, PARTED, TURN, first_event
 from vibroimpact.dynamics.core.flight import approach_of
 from vibroimpact.dynamics.core.histories import contact_histories
 from vibroimpact.dynamics.core.law import static_work
 from vibroimpact.dynamics.core.path import stretch_path
-from vibroimpact.dynamics.core.receptance import surface_motion
-from vibroimpact.dynamics.core.records import (
-    Attempt,
-    Balance,
-    Bases,
-    Basis,
-    Beginning,
-    Bodies,
-    Contacts,
-    Event,
-    Law,
-    Manner,
-    Nodes,
-    Start,
-    State,
-    Surfaces,
-    System,
-)
+from vibroimpact.dynamics.core.records import Bases, Basis, Contacts, Coordinates, End, Event, Law, Nodes, Start, State, Surfaces, System
+from vibroimpact.dynamics.core.rubbing import first_friction, free_motions, rubbed_part, under_friction
+from vibroimpact.dynamics.core.rubbing_records import Rubbed, Rubbing
 from vibroimpact.dynamics.core.stretch import (
     AT_LEVEL,
     AT_NO_FORCE,
@@ -80,22 +66,28 @@ def weights_at(basis: Basis, x: float, weights: Floats) -> None:
         weights[node] /= total
 
 
-@compiled(lambda t: t.of(Start)(t.of(System), t.of(Surfaces), t.of(State)))
-def surface_start(system: System, surfaces: Surfaces, state: State) -> Start:
-    """Return the state of the surfaces of one contact in a state of the system."""
-    parts, _, modes = surfaces.shapes.shape
+@compiled(lambda t: t.of(Start)(t.of(System), t.of(Surfaces), t.of(Coordinates), t.of(State)))
+def surface_start(system: System, surfaces: Surfaces, coordinates: Coordinates, state: State) -> Start:
+    """Return the state of the surfaces in a state of a system with one contact, and with directions of friction as further contacts."""
+    parts, contacts, modes = surfaces.shapes.shape
     displacement = state.displacement[system.rigid :].copy()
     velocity = state.velocity[system.rigid :].copy()
-    approach, _ = approach_of(system, state)
-    outer_rate = 0.0
-    for coordinate in range(system.rigid):
-        outer_rate += system.shape[coordinate] * state.velocity[coordinate]
-    inner_rate = 0.0
-    for mode in range(modes):
-        outer_rate += surfaces.shapes[0, 0, mode] * velocity[mode]
-        if parts == 2:
-            inner_rate += surfaces.shapes[1, 0, mode] * velocity[mode]
-    return Start(displacement, velocity, state.local, np.array([approach]), np.array([outer_rate]), np.array([inner_rate]))
+    approach = np.zeros(contacts)
+    outer_rate = np.zeros(contacts)
+    inner_rate = np.zeros(contacts)
+    for contact in range(contacts):
+        for coordinate in range(system.rigid):
+            shape = coordinates.rigid_shapes[contact, coordinate]
+            approach[contact] += shape * state.displacement[coordinate]
+            outer_rate[contact] += shape * state.velocity[coordinate]
+        for mode in range(modes):
+            shape = surfaces.shapes[0, contact, mode]
+            approach[contact] += shape * displacement[mode]
+            outer_rate[contact] += shape * velocity[mode]
+            if parts == 2:
+                inner_rate[contact] += surfaces.shapes[1, contact, mode] * velocity[mode]
+    approach[0], _ = approach_of(system, state)  # with the modes inside the contact, massless elements and the gap
+    return Start(displacement, velocity, state.local, approach, outer_rate, inner_rate)
 
 
 @compiled(lambda t: t.of(Contacts)(t.of(Law)))
@@ -111,12 +103,16 @@ def contacts_of(law: Law) -> Contacts:
     )
 
 
-@compiled(lambda t: t.of(Beginning)(t.of(Bodies), t.of(Law), t.of(State), t.real))
-def beginning_of(bodies: Bodies, law: Law, state: State, delta: float) -> Beginning:
+@compiled(lambda t: t.of(Beginning)(t.of(Bodies), t.of(Law), t.of(State), t.of(Rubbing), t.real))
+def beginning_of(bodies: Bodies, law: Law, state: State, rubbing: Rubbing, delta: float) -> Beginning:
     """Return what a stretch begins with; `delta`: about the indentation of the law [m]."""
-    start = surface_start(bodies.system, bodies.surfaces, state)
+    start = surface_start(bodies.system, bodies.surfaces, bodies.coordinates, state)
+    along = start
+    if rubbing.directions:
+        along = surface_start(bodies.system, bodies.rubbed_surfaces, bodies.rubbed_coordinates, state)
     contacts = contacts_of(law)
-    return Beginning(state, start, contacts, begun_indentations(contacts, start, np.array([delta])))
+    rubbed = Rubbed(bodies.rubbed_surfaces, along, rubbing)
+    return Beginning(state, start, contacts, begun_indentations(contacts, start, np.array([delta])), rubbed)
 
 
 @compiled(
@@ -144,9 +140,12 @@ def attempt(
     start = beginning.start
     contacts = beginning.contacts
     begun = beginning.delta
+    rubbed = beginning.rubbed
     length = event.x
-    motion = surface_motion(basis, surfaces, start, length)
+    motions = free_motions(basis, surfaces, start, rubbed, length)
+    friction = first_friction(rubbed.rubbing, len(basis.time))
     if not guessed:
+        motion = under_friction(motions, friction.force)
         guess = first_guess(basis, surfaces, contacts, start, motion, begun, np.array([trend]), length)
     ends = GIVEN_LENGTH
     if event.kind == PARTED or event.kind == BREAKPOINT:
@@ -155,12 +154,17 @@ def attempt(
         ends = AT_NO_FORCE
     elif event.kind == TURN:
         ends = AT_TURN
-    nodes, motion, length, solved = solve_stretch(basis, surfaces, contacts, start, guess, motion, length, ends, event.level, 0)
+    end = End(ends, event.level, 0)
+    nodes, motions, friction, length, solved = solve_stretch(
+        basis, surfaces, contacts, start, rubbed, guess, motions, friction, length, end
+    )
+    motion = under_friction(motions, friction.force)
+    part = rubbed_part(basis, motions, rubbed.rubbing, length, nodes.force, friction)
     contact = contact_histories(basis, surfaces, contacts, start, begun, nodes, motion, length)
     seen = Event(NO_EVENT, 0.0, np.inf)
     if solved:
         seen = first_event(basis, system, law, manner.tension, contact, nodes, manner.motion_speed, manner.span)
-    return Attempt(nodes, contact, length, solved, seen)
+    return Attempt(nodes, contact, part, length, solved, seen)
 
 
 @compiled(lambda t: t.of(Balance)(t.of(Basis), t.of(Bodies), t.of(Law), t.of(Manner), t.of(State), t.of(Attempt)))
@@ -169,16 +173,30 @@ def balance_of(basis: Basis, bodies: Bodies, law: Law, manner: Manner, state: St
     system = bodies.system
     contact = tried.contact
     nodes = tried.nodes
-    path = stretch_path(basis, bodies.surfaces, bodies.coordinates, state, tried.length, nodes.force, nodes.static, False)
+    directions, number = tried.rubbed.force.shape
+    force = np.zeros((1 + directions) * number)
+    static = np.zeros((1 + directions) * number)
+    for node in range(number):
+        force[node] = nodes.force[node]
+        static[node] = nodes.static[node]
+        for direction in range(directions):
+            force[(1 + direction) * number + node] = tried.rubbed.force[direction, node]
+    surfaces = bodies.surfaces
+    coordinates = bodies.coordinates
+    if directions:
+        surfaces = bodies.rubbed_surfaces
+        coordinates = bodies.rubbed_coordinates
+    path = stretch_path(basis, surfaces, coordinates, state, tried.length, force, static, False)
     work = 0.0
     if tried.solved:
         work = static_work(law, contact.delta[0, len(basis.time)]) - static_work(law, contact.delta[0, 0])
-    imbalance = path.energies[0] + work + contact.dissipated[0]
+    imbalance = path.energies[0] + work + contact.dissipated[0] - tried.rubbed.surface_work
     for coordinate in range(len(path.lost)):
         imbalance += path.lost[coordinate]
     energy = 0.5 * system.mass * manner.motion_speed * manner.motion_speed
+    allowed = 0.06 * manner.tolerance * energy
     smooth = contact.roughness * contact.roughness <= 0.1 * manner.tolerance
-    balanced = abs(imbalance) <= 0.06 * manner.tolerance * energy + path.energies[1]
+    balanced = abs(imbalance) <= allowed + path.energies[1] and tried.rubbed.imbalance <= allowed
     return Balance(path, work, tried.solved and smooth and balanced)
 
 

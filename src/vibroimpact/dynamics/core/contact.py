@@ -14,13 +14,15 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.attempt import attempt, balance_of, basis_of, beginning_of, time_at, up_to_event
+from vibroimpact.dynamics.core.contact_records import Bodies, Manner, Parts, Progress
 from vibroimpact.dynamics.core.events import ENDS_AT_NO_FORCE, NO_EVENT, NO_PUSH, PARTED, TENSION_CUT, TURN
 from vibroimpact.dynamics.core.flight import approach_of, lost_in_flight, state_after
 from vibroimpact.dynamics.core.law import law_after, law_indentation, stored_energy
-from vibroimpact.dynamics.core.parts import lose_at_end, write_part, write_stretch
+from vibroimpact.dynamics.core.parts import lose_at_end, write_part, write_rubbed, write_stretch
 from vibroimpact.dynamics.core.recoil import end_of_recoil
-from vibroimpact.dynamics.core.records import Bases, Bodies, Event, Law, Manner, Nodes, Parts, Progress, State, System
+from vibroimpact.dynamics.core.records import Bases, Event, Law, Nodes, State, System
 from vibroimpact.dynamics.core.rest import is_captured, is_near_rest
+from vibroimpact.dynamics.core.rubbing import flown
 from vibroimpact.dynamics.core.touch import time_to_separation
 
 RELEASED, CAPTURED, RIDES, TOO_STIFF, NEAR_REST, FULL = 0, 1, 2, 3, 4, 5
@@ -102,6 +104,7 @@ def follow_contact(
     memories = progress.memories
     largest_force = progress.largest_force
     deepest = progress.deepest
+    rubbing = progress.rubbing
     elements = len(lost) - 1
     part = 0
     changes = 0  # of the law's memory, in this call
@@ -128,6 +131,7 @@ def follow_contact(
             lost[elements] += held - left
             time += length
             state = after
+            rubbing = flown(rubbing, length)
             if separates:
                 outcome = RELEASED
                 break
@@ -167,7 +171,7 @@ def follow_contact(
             break
 
         time_map = 0 if fresh else 1
-        beginning = beginning_of(bodies, law, state, delta)
+        beginning = beginning_of(bodies, law, state, rubbing, delta)
         given = Event(NO_EVENT, 0.0, min(next_length, longest))
         tried = attempt(basis_of(bases, time_map), bodies, law, manner, beginning, no_guess, trend, False, given)
         event = no_event
@@ -193,12 +197,14 @@ def follow_contact(
         write_part(parts, part, time, state, memories)
         basis = basis_of(bases, time_map)
         write_stretch(parts, part, basis, system, tried, balance, state)
+        write_rubbed(parts, part, rubbing, tried.rubbed)
         part += 1
         number = len(basis.time)
         for coordinate in range(len(lost)):
             lost[coordinate] += balance.path.lost[coordinate]
         lost[elements] += tried.contact.dissipated[0]
         state = State(balance.path.displacement, balance.path.speed, balance.path.local)
+        rubbing = tried.rubbed.end
         time += tried.length
         delta = tried.contact.delta[0, number]
         force = tried.nodes.force[number - 1]
@@ -231,5 +237,5 @@ def follow_contact(
             if is_near_rest(system, law, state, force):
                 outcome = NEAR_REST
                 break
-    now = Progress(time, next_length, delta, force, trend, closing, fresh, pushes, steps, memories, largest_force, deepest)
+    now = Progress(time, next_length, delta, force, trend, closing, fresh, pushes, steps, memories, largest_force, deepest, rubbing)
     return outcome, part, now, state, law

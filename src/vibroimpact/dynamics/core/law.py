@@ -46,12 +46,19 @@ def is_in_series(series: Floats) -> bool:
 
 @compiled(lambda t: t.real(t.address, t.vector, t.real, t.real, t.vector, t.real))
 def indentation_at(law: Any, coefficients: Floats, speed: float, release: float, series: Floats, approach: float) -> float:
-    """Return the indentation of a law [m] at an approach of the surfaces [m], at least that of release, to 1e-8 of it."""
+    """Return the indentation of a law [m] at an approach of the surfaces [m], at least that of release, to 1e-8 of it.
+
+    By Newton's method, and by bisection where that goes to and fro between two branches of a law, as between those with and without its
+    memory of a deeper indentation.
+    """
     if not is_in_series(series):
         return max(approach, release)
     force = force_at(law)
     delta = max(approach, release)
     low = release
+    high = math.inf
+    is_bracketed = False
+    change = math.inf
     for _ in range(_MOST_ITERATIONS):
         step = _STEP * (abs(delta) + _TINY)
         static, _ = force(delta, 0.0, speed, coefficients)
@@ -61,13 +68,16 @@ def indentation_at(law: Any, coefficients: Floats, speed: float, release: float,
         excess = delta + yielded - approach
         if excess < 0.0:
             low = delta
+            is_bracketed = high < math.inf
+        else:
+            high = delta
         if not slope > 0.0:
             return delta
-        nearer = delta - excess / slope
-        if nearer < release:
-            nearer = release
+        nearer = max(delta - excess / slope, release)
         if nearer < low:
             nearer = 0.5 * (low + delta)
+        if is_bracketed and abs(nearer - delta) > 0.5 * change:
+            nearer = 0.5 * (low + high)
         change = abs(nearer - delta)
         delta = nearer
         if change <= _CONVERGED * abs(delta) + _TINY:

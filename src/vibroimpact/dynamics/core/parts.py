@@ -4,8 +4,20 @@ from __future__ import annotations
 
 from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled
+from vibroimpact.dynamics.core.contact_records import Attempt, Balance, Parts
 from vibroimpact.dynamics.core.linear import product
-from vibroimpact.dynamics.core.records import Attempt, Balance, Basis, Parts, State, System
+from vibroimpact.dynamics.core.records import Basis, State, System
+from vibroimpact.dynamics.core.rubbing_records import (
+    DISPLACEMENT_X,
+    FORCE_X,
+    MICROSLIP,
+    TURNED_WAY_X,
+    TURNED_X,
+    VELOCITY_X,
+    WORK,
+    RubbedPart,
+    Rubbing,
+)
 
 
 @compiled(lambda t: t.void(t.of(Parts), t.integer, t.real, t.of(State), t.integer))
@@ -56,3 +68,28 @@ def write_stretch(parts: Parts, part: int, basis: Basis, system: System, solved:
         for other in range(number):
             moved += basis.integral[node, other] * speeds[other]
         parts.indentation[part, node + 1] = depth + solved.length * moved
+
+
+@compiled(lambda t: t.void(t.of(Parts), t.integer, t.of(Rubbing), t.of(RubbedPart)))
+def write_rubbed(parts: Parts, part: int, begun: Rubbing, rubbed: RubbedPart) -> None:
+    """Write what friction does through a stretch that begins in a state."""
+    if begun.directions == 0:
+        return
+    parts.friction[part] = rubbed.force
+    parts.slip[part] = rubbed.slip
+    write_rubbing(begun, parts.rubbing[part, 0])
+    write_rubbing(rubbed.end, parts.rubbing[part, 1])
+
+
+@compiled(lambda t: t.void(t.of(Rubbing), t.vector))
+def write_rubbing(rubbing: Rubbing, numbers: Floats) -> None:
+    """Write the numbers of `rubbing_records` that change through a contact."""
+    for direction in range(2):
+        numbers[VELOCITY_X + direction] = rubbing.velocity[direction]
+        numbers[DISPLACEMENT_X + direction] = rubbing.displacement[direction]
+        numbers[FORCE_X + direction] = rubbing.force[direction]
+        numbers[TURNED_WAY_X + direction] = rubbing.turned_way[direction]
+    for axis in range(3):
+        numbers[TURNED_X + axis] = rubbing.turned[axis]
+    numbers[WORK] = rubbing.work
+    numbers[MICROSLIP] = rubbing.microslip

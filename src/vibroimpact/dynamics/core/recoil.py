@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from vibroimpact.compiled import compiled, force_at
+from vibroimpact.dynamics.core.contact_records import Manner
 from vibroimpact.dynamics.core.flight import approach_of, dashpot_rate, flight_of, flown, state_after
 from vibroimpact.dynamics.core.law import law_indentation
-from vibroimpact.dynamics.core.records import Law, Manner, State, System
+from vibroimpact.dynamics.core.records import Law, State, System
 
 _SAMPLES = 64
 _MOST_HORIZONS = 2_000  # each twice as long as the one before

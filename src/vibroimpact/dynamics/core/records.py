@@ -29,10 +29,11 @@ class Basis(NamedTuple):
     values at the nodes to Legendre coefficients. at_start (N,): weights of the nodes in the value at the start. at_end (N,): weights in the
     time derivative at the end, times the length; zero where the nodes do not tell it. places, barycentric (N + 1,): the start and the nodes
     as parts of the stretch, and their weights in interpolation. grid (G, N + 1): weights of the start and the nodes in the values at evenly
-    spaced points. time_map, root: the map, of `MAPS`, and its power. eigenvalues, one, clock
-    (2, H): real and imaginary parts of the eigenvalues, and of the function one and the time in the eigenbasis. forward (N, 2 H): from
-    values at the nodes to the eigenbasis; backward (2 H, N): back to the nodes. filters (2 H, N N): from an operator that is diagonal in
-    the eigenbasis to its matrix on the nodes.
+    spaced points. forces_between, displacements_between (S, N): weights of the nodes at S points, as many from each node to the next, in a
+    polynomial through them, and in one that is zero at the start. time_map, root: the map, of `MAPS`, and its power. eigenvalues, one,
+    clock (2, H): real and imaginary parts of the eigenvalues, and of the function one and the time in the eigenbasis. forward (N, 2 H):
+    from values at the nodes to the eigenbasis; backward (2 H, N): back to the nodes. filters (2 H, N N): from an operator that is diagonal
+    in the eigenbasis to its matrix on the nodes.
     """
 
     time: Vector
@@ -44,6 +45,8 @@ class Basis(NamedTuple):
     places: Vector
     barycentric: Vector
     grid: Matrix
+    forces_between: Matrix
+    displacements_between: Matrix
     time_map: Integer
     root: Integer
     eigenvalues: Matrix
@@ -208,6 +211,14 @@ class Event(NamedTuple):
     x: Real
 
 
+class End(NamedTuple):
+    """What ends a stretch: its kind, of `stretch`; the indentation of the law then, if that is it [m]; and the contact it belongs to."""
+
+    kind: Integer
+    level: Real
+    contact: Integer
+
+
 class Motion(NamedTuple):
     """Motion of the surfaces at the nodes of all contacts, M = c N: without contact forces, and by these.
 
@@ -287,131 +298,3 @@ class Bases(NamedTuple):
     touch: Basis
     inside: Basis
     release: Basis
-
-
-class Bodies(NamedTuple):
-    """The bodies of one contact: the linear system, what moves its surfaces, and all its coordinates."""
-
-    system: System
-    surfaces: Surfaces
-    coordinates: Coordinates
-
-
-class Beginning(NamedTuple):
-    """What a stretch of one contact begins with: the state, also as that of the surfaces, the law, and its indentation (1,) [m]."""
-
-    state: State
-    start: Start
-    contacts: Contacts
-    delta: Vector
-
-
-class Attempt(NamedTuple):
-    """A stretch of one contact as Newton's method leaves it.
-
-    nodes, contact: its forces and histories. length [s]. solved: did Newton's method converge? event: the first one within it.
-    """
-
-    nodes: Nodes
-    contact: Histories
-    length: Real
-    solved: Boolean
-    event: Event
-
-
-class Solved(NamedTuple):
-    """Solved stretches of one contact, one after the other.
-
-    time_map (P,): their maps of time, in `MAPS`. length (P,) [s]. At the start and the nodes (P, N + 1): delta, indentation of the law [m],
-    and rate of the approach at its dashpot [m/s].
-    """
-
-    time_map: Integers
-    length: Vector
-    delta: Matrix
-    rate: Matrix
-
-
-class Balance(NamedTuple):
-    """Motion of all coordinates through a solved stretch of one contact, and its balance of energy.
-
-    work: increase of the energy stored by the law and of the plastic work [J]. resolved: is it solved with an error within the tolerance?
-    """
-
-    path: Path
-    work: Real
-    resolved: Boolean
-
-
-class Manner(NamedTuple):
-    """What stays the same through a contact.
-
-    tension, contact_end: numbers of the law's, of `events`. motion_speed: speed of the motion [m/s]. span: approximate duration of a
-    contact [s]. tolerance: relative error allowed at the end of each stretch. begun: time of touch [s]. until: end of a ride [s]. longest:
-    length of a stretch [s]. most_steps: how many stretches are tried.
-    """
-
-    tension: Integer
-    contact_end: Integer
-    motion_speed: Real
-    span: Real
-    tolerance: Real
-    begun: Real
-    until: Real
-    longest: Real
-    most_steps: Integer
-
-
-class Progress(NamedTuple):
-    """How far a contact has come.
-
-    time [s]. next_length: of the next stretch [s]. At the end of the last stretch: delta, indentation of the law [m], force [N], its rate
-    of change trend [N/s], and closing, the whole rate of the approach [m/s]. fresh: no stretch has been solved yet. pushes: the law acts,
-    otherwise the contact recoils. steps: stretches tried. memories: changes of the law's memory. largest_force [N], deepest [m]: at a node.
-    """
-
-    time: Real
-    next_length: Real
-    delta: Real
-    force: Real
-    trend: Real
-    closing: Real
-    fresh: Boolean
-    pushes: Boolean
-    steps: Integer
-    memories: Integer
-    largest_force: Real
-    deepest: Real
-
-
-class Parts(NamedTuple):
-    """Room for P parts of the motion through a contact: stretches (kind 1) and recoils (kind 0).
-
-    kind, time_map (P,). start, length [s] (P,). displacement, velocity (P, n), local (P, k): state at the start. memories (P,): changes of
-    the law's memory before it. Of stretches, as in `Nodes`, `Histories` and `Attempt`: static, force (P, N), approach, rate, closing,
-    delta (P, N + 1), work, dissipated, roughness (P,). separation_loss (P,): stored energy that is lost at the end [J]. indentation
-    (P, N + 1): of the surface by the centre above [m]. turned_at (P,): indentations of the law at the changes of its memory [m]. late_loss
-    (1,): stored energy lost at the end of the last part of the call before [J].
-    """
-
-    kind: Integers
-    time_map: Integers
-    start: Vector
-    length: Vector
-    displacement: Matrix
-    velocity: Matrix
-    local: Matrix
-    memories: Integers
-    static: Matrix
-    force: Matrix
-    approach: Matrix
-    rate: Matrix
-    closing: Matrix
-    delta: Matrix
-    work: Vector
-    dissipated: Vector
-    roughness: Vector
-    separation_loss: Vector
-    indentation: Matrix
-    turned_at: Vector
-    late_loss: Vector

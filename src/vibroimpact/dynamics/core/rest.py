@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 
 from vibroimpact.compiled import compiled
+from vibroimpact.dynamics.core.contact_records import Manner
 from vibroimpact.dynamics.core.flight import approach_of, energy_of_approach
 from vibroimpact.dynamics.core.law import static_work, stored_energy
-from vibroimpact.dynamics.core.records import Law, Manner, State, System
+from vibroimpact.dynamics.core.records import Law, State, System
 
 _REST_MARGIN = 0.5  # of the weight: largest variation of the force at rest
 

@@ -12,8 +12,10 @@ from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled, force_at
 from vibroimpact.dynamics.core.law import indentation_at, is_in_series, linearise
 from vibroimpact.dynamics.core.linear import product, solve_in_place
-from vibroimpact.dynamics.core.receptance import motion_by_length, surface_motion
-from vibroimpact.dynamics.core.records import Basis, Contacts, Motion, Nodes, Start, Surfaces
+from vibroimpact.dynamics.core.receptance import motion_by_length
+from vibroimpact.dynamics.core.records import Basis, Contacts, End, Motion, Nodes, Start, Surfaces
+from vibroimpact.dynamics.core.rubbing import follow_friction, free_motions, under_friction
+from vibroimpact.dynamics.core.rubbing_records import FrictionAtNodes, Motions, Rubbed
 
 GIVEN_LENGTH, AT_LEVEL, AT_NO_FORCE, AT_TURN = 0, 1, 2, 3
 """What ends a stretch: a given length; an indentation of a law; no force of a law; no rate of an approach."""
@@ -173,7 +175,7 @@ def write_force_jacobian(linear: Floats, motion: Motion, by: Floats, matrix: Flo
 
 @compiled(
     lambda t: t.tuple(t.vector, t.vector, t.real)(
-        t.of(Basis), t.of(Surfaces), t.of(Start), t.of(Motion), t.matrix, t.of(Nodes), t.real, t.integer, t.real, t.integer
+        t.of(Basis), t.of(Surfaces), t.of(Start), t.of(Motion), t.matrix, t.of(Nodes), t.real, t.of(End)
     )
 )
 def newton_step(
@@ -184,9 +186,7 @@ def newton_step(
     linear: Floats,
     now: Nodes,
     length: float,
-    event: int,
-    level: float,
-    event_contact: int,
+    end: End,
 ) -> tuple[Floats, Floats, float]:
     r"""Return the Newton steps of the indentations, the forces (M,) and the length, to be subtracted.
 
@@ -202,7 +202,7 @@ def newton_step(
     if inside:
         missing += product(motion.approach_by_static, linear[0])
     by_length = np.zeros((3, size))
-    if event != GIVEN_LENGTH:
+    if end.kind != GIVEN_LENGTH:
         by_length = motion_by_length(basis, surfaces, start, motion, length, now.force, linear[0])
     for row in range(size):
         for column in range(size):
@@ -211,27 +211,27 @@ def newton_step(
         columns[row, size + 1] = -by_length[0, row]
     by = indentations_by(linear, motion, columns)
 
-    unknowns = size if event == GIVEN_LENGTH else size + 1  # the last one is the relative change of the length
+    unknowns = size if end.kind == GIVEN_LENGTH else size + 1  # the last one is the relative change of the length
     matrix = np.empty((unknowns, unknowns))
     right = np.empty((unknowns, 1))
     write_force_jacobian(linear, motion, by, matrix)
     for row in range(size):
         force_by_delta = linear[4, row] + linear[5, row]
         right[row, 0] = now.force[row] - (linear[0, row] + linear[1, row]) + force_by_delta * by[row, size]
-        if event != GIVEN_LENGTH:
+        if end.kind != GIVEN_LENGTH:
             matrix[row, size] = (force_by_delta * by[row, size + 1] - linear[6, row] * by_length[1, row]) * length
-    if event != GIVEN_LENGTH:
-        last = (event_contact + 1) * nodes - 1
+    if end.kind != GIVEN_LENGTH:
+        last = (end.contact + 1) * nodes - 1
         unit = _TINY
         slope = 0.0
         residual = 0.0
         for column in range(size):
             matrix[size, column] = 0.0
-        if event == AT_NO_FORCE:
+        if end.kind == AT_NO_FORCE:
             matrix[size, last] = 1.0
             unit = 1.0
             residual = now.force[last]
-        elif event == AT_TURN:
+        elif end.kind == AT_TURN:
             slope = by_length[2, last]
             residual = motion.closing[last]
             for column in range(size):
@@ -249,7 +249,7 @@ def newton_step(
                     residual += within * by[node, size] - by_static * linear[0, node]
         else:
             slope = -by[last, size + 1]
-            residual = now.delta[last] - level - by[last, size]
+            residual = now.delta[last] - end.level - by[last, size]
             for column in range(size):
                 matrix[size, column] = -by[last, column]
                 unit = max(unit, abs(by[last, column]))
@@ -260,7 +260,7 @@ def newton_step(
     solve_in_place(matrix, right)
 
     force_step = right[:size, 0].copy()
-    length_step = 0.0 if event == GIVEN_LENGTH else right[size, 0] * length
+    length_step = 0.0 if end.kind == GIVEN_LENGTH else right[size, 0] * length
     delta_step = np.empty(size)
     for row in range(size):
         change = by[row, size] - by[row, size + 1] * length_step
@@ -272,7 +272,7 @@ def newton_step(
 
 @compiled(
     lambda t: t.tuple(t.of(Nodes), t.real, t.real, t.boolean)(
-        t.of(Basis), t.of(Surfaces), t.of(Contacts), t.of(Start), t.of(Motion), t.of(Nodes), t.real, t.real, t.integer, t.real, t.integer
+        t.of(Basis), t.of(Surfaces), t.of(Contacts), t.of(Start), t.of(Motion), t.of(Nodes), t.real, t.real, t.of(End)
     )
 )
 def improved(
@@ -284,16 +284,14 @@ def improved(
     now: Nodes,
     length: float,
     scale: float,
-    event: int,
-    level: float,
-    event_contact: int,
+    end: End,
 ) -> tuple[Nodes, float, float, bool]:
     """Return the next iterate of the nodes and of the length [s], the relative size of the step, and whether the problem is well posed."""
     linear = linearised_laws(contacts, motion, now)
     # a negative compliance in series that exceeds that of the law makes the problem ill-posed
     if not linear[3].min() > 0.0:
         return now, length, np.inf, False
-    delta_step, force_step, length_step = newton_step(basis, surfaces, start, motion, linear, now, length, event, level, event_contact)
+    delta_step, force_step, length_step = newton_step(basis, surfaces, start, motion, linear, now, length, end)
     size = len(now.force)
     static = np.empty(size)
     force = np.empty(size)
@@ -308,11 +306,21 @@ def improved(
         largest_step = max(largest_step, max(abs(force_step[row]), abs(by_static)))
         largest_force = max(largest_force, abs(force[row]))
     step_size = largest_step / (scale + largest_force)
-    if event != GIVEN_LENGTH:
+    if end.kind != GIVEN_LENGTH:
         length_step = min(max(length_step, -_LENGTH_FACTOR * length), _LENGTH_FACTOR / (1.0 + _LENGTH_FACTOR) * length)
         length -= length_step
         step_size = max(step_size, abs(length_step) / length)
     return Nodes(static, force, delta), length, step_size, bool(np.isfinite(force).all())
+
+
+@compiled(lambda t: t.real(t.matrix, t.matrix))
+def largest_change(now: Floats, before: Floats) -> float:
+    """Return the largest change of the forces and moments of friction [N, N m]."""
+    largest = 0.0
+    for direction in range(len(now)):
+        for node in range(now.shape[1]):
+            largest = max(largest, abs(now[direction, node] - before[direction, node]))
+    return largest
 
 
 @compiled(lambda t: t.boolean(t.real, t.real))
@@ -323,8 +331,17 @@ def is_converged(size: float, last_size: float) -> bool:
 
 
 @compiled(
-    lambda t: t.tuple(t.of(Nodes), t.of(Motion), t.real, t.boolean)(
-        t.of(Basis), t.of(Surfaces), t.of(Contacts), t.of(Start), t.of(Nodes), t.of(Motion), t.real, t.integer, t.real, t.integer
+    lambda t: t.tuple(t.of(Nodes), t.of(Motions), t.of(FrictionAtNodes), t.real, t.boolean)(
+        t.of(Basis),
+        t.of(Surfaces),
+        t.of(Contacts),
+        t.of(Start),
+        t.of(Rubbed),
+        t.of(Nodes),
+        t.of(Motions),
+        t.of(FrictionAtNodes),
+        t.real,
+        t.of(End),
     )
 )
 def solve_stretch(
@@ -332,36 +349,43 @@ def solve_stretch(
     surfaces: Surfaces,
     contacts: Contacts,
     start: Start,
+    rubbed: Rubbed,
     guess: Nodes,
-    motion: Motion,
+    motions: Motions,
+    friction: FrictionAtNodes,
     length: float,
-    event: int,
-    level: float,
-    event_contact: int,
-) -> tuple[Nodes, Motion, float, bool]:
-    """Return forces and indentations at the nodes, the motion of the surfaces, the length [s], and whether the method converged.
+    end: End,
+) -> tuple[Nodes, Motions, FrictionAtNodes, float, bool]:
+    """Return forces and indentations at the nodes, motion of the surfaces, friction, length [s], and whether the method converged.
 
     Parameters
     ----------
-    guess : Nodes
+    guess, friction : Nodes, FrictionAtNodes
         Where the iteration begins.
-    motion : Motion
+    motions : Motions
         The motion of the surfaces through the given length.
     length : float
         Length of the stretch [s]; with an event, its first guess.
-    event, level, event_contact : int, float, int
-        What ends the stretch, at which indentation [m] if so, and which contact it belongs to.
+    end : End
+        What ends the stretch.
     """
     now = guess
+    motion = under_friction(motions, friction.force)
     scale = force_scale(surfaces, motion, length)
     size = np.inf
     for _ in range(MOST_ITERATIONS):
         last_size = size
-        now, length, size, well_posed = improved(basis, surfaces, contacts, start, motion, now, length, scale, event, level, event_contact)
+        now, length, size, well_posed = improved(basis, surfaces, contacts, start, motion, now, length, scale, end)
         if not (well_posed and np.isfinite(size)):
             break
-        if event != GIVEN_LENGTH:
-            motion = surface_motion(basis, surfaces, start, length)
+        if end.kind != GIVEN_LENGTH:
+            motions = free_motions(basis, surfaces, start, rubbed, length)
+            motion = motions.across
+        if rubbed.rubbing.directions:
+            before = friction
+            friction = follow_friction(basis, motions, rubbed, length, now.force, before)
+            size = max(size, largest_change(friction.force, before.force) / (scale + np.abs(now.force).max()))
+            motion = under_friction(motions, friction.force)
         if is_converged(size, last_size):
-            return now, motion, length, True
-    return now, motion, length, False
+            return now, motions, friction, length, True
+    return now, motions, friction, length, False

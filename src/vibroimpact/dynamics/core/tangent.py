@@ -11,10 +11,11 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.attempt import basis_of, surface_start
+from vibroimpact.dynamics.core.contact_records import Bodies, Solved
 from vibroimpact.dynamics.core.linear import product, solve_in_place
 from vibroimpact.dynamics.core.path import stretch_path
 from vibroimpact.dynamics.core.receptance import surface_motion
-from vibroimpact.dynamics.core.records import Bases, Bodies, Contacts, Motion, Solved, State
+from vibroimpact.dynamics.core.records import Bases, Contacts, Motion, State
 from vibroimpact.dynamics.core.stretch import indentations_by, linearise_contact, write_force_jacobian
 
 
@@ -94,7 +95,9 @@ def propagate(bases: Bases, bodies: Bodies, laws: Contacts, weights: Floats, sol
         for variation in range(len(weights)):
             linearise_contact(laws, 1 + variation, delta, rate, varied)
             change += weights[variation] * (varied[:3] - linear[:3])
-        motion = surface_motion(basis, bodies.surfaces, surface_start(bodies.system, bodies.surfaces, difference), length)
+        motion = surface_motion(
+            basis, bodies.surfaces, surface_start(bodies.system, bodies.surfaces, bodies.coordinates, difference), length
+        )
         force, static = force_differences(motion, linear, change[2], change[0], change[1])
         path = stretch_path(basis, bodies.surfaces, bodies.coordinates, difference, length, force, static, False)
         difference = State(path.displacement, path.speed, path.local)

@@ -30,8 +30,8 @@ class TangentialHistory(NamedTuple):
     """Law, and state of one contact under way in two directions; it does not change, so that a way may be tried.
 
     at_rim: is it a row of springs, and not a single one? growing, shrinking: powers of the radius of a single spring. hertz: Hertz's
-    stiffness [N/m^1.5]. radius: effective radius [m]. stiffness: 2 G* [Pa]. coefficient: of friction. ratio: mu E*/G* [-]. width: of a
-    spring [m].
+    stiffness [N/m^1.5]. radius: effective radius [m]. stiffness: 2 G* [Pa]. coefficient: of friction. ratio: mu E*/G* [-]. sliding_energy:
+    elastic work of a contact as it grows while all of it slides, over mu F mu E*/G* D. width: of a spring [m].
 
     depth: D [m]. stretch (2, N): displacement of each spring of one half, integrated over its width in contact [m^2]. force (2,): of
     friction [N]. slid: how far all of the contact slid on the way to here [m]; nothing if a part of it sticks.
@@ -45,6 +45,7 @@ class TangentialHistory(NamedTuple):
     stiffness: Real
     coefficient: Real
     ratio: Real
+    sliding_energy: Real
     width: Real
     depth: Real
     stretch: Matrix
@@ -64,6 +65,7 @@ def with_state(history: TangentialHistory, depth: float, stretch: Floats, force:
         history.stiffness,
         history.coefficient,
         history.ratio,
+        history.sliding_energy,
         history.width,
         depth,
         stretch,
@@ -78,55 +80,69 @@ def pressed_up_to(history: TangentialHistory, place: float, depth: float) -> flo
     return float(place * (depth - place * place / (3.0 * history.radius)))
 
 
-@compiled(lambda t: t.of(TangentialHistory)(t.of(TangentialHistory), t.real, t.real, t.real))
-def springs_after(history: TangentialHistory, depth: float, moved_x: float, moved_y: float) -> TangentialHistory:
-    """Return a row of springs at another depth [m], after the surfaces have moved past each other [m]."""
-    before = history.depth
+@compiled(lambda t: t.tuple(t.real, t.real, t.real)(t.of(TangentialHistory), t.matrix, t.real, t.real, t.real, t.real))
+def move_springs(
+    history: TangentialHistory, stretch: Floats, before: float, depth: float, moved_x: float, moved_y: float
+) -> tuple[float, float, float]:
+    """Stretch a row of springs from a depth to another [m], while the surfaces move past each other [m]; `stretch`: that of the springs.
+
+    Return the friction along x and y [N], and how far all of the contact slid [m].
+    """
     width = history.width
     rim = math.sqrt(history.radius * depth)
     rim_before = math.sqrt(history.radius * before)
-    number = max(int(rim / width) + 1, history.stretch.shape[1])
-    stretch = np.zeros((2, number))
-    force = np.zeros(2)
+    force_x = 0.0
+    force_y = 0.0
     slid = 0.0
-    for spring in range(number):
-        x = 0.0
-        y = 0.0
-        if spring < history.stretch.shape[1]:
-            x = history.stretch[0, spring]
-            y = history.stretch[1, spring]
+    pressed = 0.0
+    for spring in range(min(int(max(rim, rim_before) / width) + 1, stretch.shape[1])):
         left = width * spring
-        right = min(left + width, rim)
-        covered = max(right - left, 0.0)
-        covered_before = min(max(rim_before - left, 0.0), width)
-        if covered == 0.0:
+        if left >= rim:
+            stretch[0, spring] = 0.0
+            stretch[1, spring] = 0.0
             continue
-        if depth > before:
+        right = min(left + width, rim)
+        covered = right - left
+        covered_before = min(max(rim_before - left, 0.0), width)
+        pressed_before = pressed
+        pressed = pressed_up_to(history, right, depth)
+        x = stretch[0, spring]
+        y = stretch[1, spring]
+        follows = covered
+        if covered > covered_before and depth > before:
             # depth and displacement grow evenly: what comes into contact on the way follows for the rest of it
-            reached = left + min(covered_before, covered)
-            entering = (pressed_up_to(history, right, depth) - pressed_up_to(history, reached, depth)) / (depth - before)
-            follows = reached - left + entering
-        else:
-            kept = covered / max(covered_before, _TINY)
-            x *= kept
-            y *= kept
-            follows = covered
+            entering = pressed - pressed_up_to(history, left + covered_before, depth)
+            follows = covered_before + entering / (depth - before)
+        elif covered < covered_before:
+            x *= covered / covered_before
+            y *= covered / covered_before
         x += moved_x * follows
         y += moved_y * follows
-        most = history.ratio * (pressed_up_to(history, right, depth) - pressed_up_to(history, left, depth))
-        length = math.hypot(x, y)
-        if spring == 0:  # the one in the middle sticks longest
-            slid = max(length - most, 0.0) / max(covered, _TINY)
-        if length > most:
+        most = history.ratio * (pressed - pressed_before)
+        square = x * x + y * y
+        if square > most * most:
+            length = math.sqrt(square)
+            if spring == 0:  # the one in the middle sticks longest
+                slid = (length - most) / max(covered, _TINY)
             x *= most / length
             y *= most / length
         stretch[0, spring] = x
         stretch[1, spring] = y
-        force[0] += x
-        force[1] += y
-    force[0] *= history.stiffness
-    force[1] *= history.stiffness
-    return with_state(history, depth, stretch, force, slid)
+        force_x += x
+        force_y += y
+    return history.stiffness * force_x, history.stiffness * force_y, slid
+
+
+@compiled(lambda t: t.matrix(t.of(TangentialHistory), t.real))
+def springs_for(history: TangentialHistory, depth: float) -> Floats:
+    """Return the stretch of the springs, with room for those of a contact of a depth [m]."""
+    number = int(math.sqrt(history.radius * depth) / history.width) + 1
+    known = history.stretch.shape[1]
+    stretch = np.zeros((2, max(number, known)))
+    for direction in range(2):
+        for spring in range(known):
+            stretch[direction, spring] = history.stretch[direction, spring]
+    return stretch
 
 
 @compiled(lambda t: t.of(TangentialHistory)(t.of(TangentialHistory), t.real, t.real, t.real, t.real))
@@ -152,14 +168,22 @@ def spring_after(history: TangentialHistory, depth: float, most: float, moved_x:
     return with_state(history, depth, history.stretch, force, slid)
 
 
+@compiled(lambda t: t.real(t.of(TangentialHistory), t.real))
+def depth_under(history: TangentialHistory, normal_force: float) -> float:
+    """Return the depth of Hertz's contact under a normal force [m]."""
+    return float((max(normal_force, 0.0) / history.hertz) ** (2.0 / 3.0))
+
+
 @compiled(lambda t: t.of(TangentialHistory)(t.of(TangentialHistory), t.real, t.real, t.real))
 def history_after(history: TangentialHistory, normal_force: float, moved_x: float, moved_y: float) -> TangentialHistory:
     """Return the history at another normal force [N], after the surfaces have moved past each other along x and y [m]."""
-    pressing = max(normal_force, 0.0)
-    depth = (pressing / history.hertz) ** (2.0 / 3.0)
-    if history.at_rim:
-        return springs_after(history, depth, moved_x, moved_y)
-    return spring_after(history, depth, history.coefficient * pressing, moved_x, moved_y)
+    depth = depth_under(history, normal_force)
+    if not history.at_rim:
+        return spring_after(history, depth, history.coefficient * max(normal_force, 0.0), moved_x, moved_y)
+    stretch = springs_for(history, depth)
+    force = np.empty(2)
+    force[0], force[1], slid = move_springs(history, stretch, history.depth, depth, moved_x, moved_y)
+    return with_state(history, depth, stretch, force, slid)
 
 
 @compiled(lambda t: t.of(TangentialHistory)(t.of(TangentialHistory), t.vector, t.matrix, t.matrix, t.vector))
@@ -179,9 +203,64 @@ def follow_history(history: TangentialHistory, normal: Floats, moved: Floats, fr
     slid : array, shape (T,)
         Room for how far all of the contact slid in each step [m].
     """
+    if not history.at_rim:
+        for step in range(len(normal)):
+            history = history_after(history, normal[step], moved[step, 0], moved[step, 1])
+            friction[step, 0] = history.force[0]
+            friction[step, 1] = history.force[1]
+            slid[step] = history.slid
+        return history
+    deepest = 0.0
     for step in range(len(normal)):
-        history = history_after(history, normal[step], moved[step, 0], moved[step, 1])
-        friction[step, 0] = history.force[0]
-        friction[step, 1] = history.force[1]
-        slid[step] = history.slid
-    return history
+        deepest = max(deepest, depth_under(history, normal[step]))
+    stretch = springs_for(history, deepest)
+    before = history.depth
+    for step in range(len(normal)):
+        depth = depth_under(history, normal[step])
+        x, y, slid[step] = move_springs(history, stretch, before, depth, moved[step, 0], moved[step, 1])
+        friction[step, 0] = x
+        friction[step, 1] = y
+        before = depth
+    last = len(normal) - 1
+    return with_state(history, before, stretch, friction[last].copy(), slid[last])
+
+
+@compiled(lambda t: t.real(t.of(TangentialHistory), t.real))
+def energy_in_sliding(history: TangentialHistory, load: float) -> float:
+    """Return the work that stretches a contact along the plate, while all of it slides up to a normal force [J]."""
+    depth = (load / history.hertz) ** (2.0 / 3.0)
+    return float(history.sliding_energy * history.coefficient * load * history.ratio * depth)
+
+
+@compiled(lambda t: t.real(t.of(TangentialHistory), t.vector, t.matrix, t.matrix, t.vector))
+def lost_in_microslip(history: TangentialHistory, normal: Floats, friction: Floats, moved: Floats, slid: Floats) -> float:
+    """Return what friction took on a way of T steps [J], but while all of the contact slid.
+
+    Less its elastic energy, where it slides at the end.
+
+    Parameters
+    ----------
+    history : TangentialHistory
+        The law.
+    normal : array, shape (T + 1,)
+        Normal forces at the ends of the steps [N].
+    friction : array, shape (T + 1, 2)
+        Friction forces there [N].
+    moved : array, shape (T, 2)
+        Displacement of the surfaces past each other in each step [m].
+    slid : array, shape (T + 1,)
+        How far all of the contact slid in the step before [m].
+    """
+    lost = 0.0
+    for step in range(len(moved)):
+        load_before = max(normal[step], 0.0)
+        load = max(normal[step + 1], 0.0)
+        slides_before = slid[step] > 0.0 or load_before == 0.0
+        slides = slid[step + 1] > 0.0 or load == 0.0
+        if slides and slides_before:
+            lost += energy_in_sliding(history, load) - energy_in_sliding(history, load_before)
+            continue
+        for direction in range(2):
+            lost += 0.5 * (friction[step + 1, direction] + friction[step, direction]) * moved[step, direction]
+        lost -= history.coefficient * 0.5 * (load + load_before) * slid[step + 1]
+    return lost

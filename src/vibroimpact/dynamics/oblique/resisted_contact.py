@@ -10,7 +10,7 @@ from vibroimpact.arrays import Floats
 from vibroimpact.contact.friction.law import CompliantFriction
 from vibroimpact.dynamics.core.cubics import values_in_parts
 from vibroimpact.dynamics.core.resisted_contact import RollingSphere, march_resisted
-from vibroimpact.dynamics.oblique.microslip import lost_in_microslip
+from vibroimpact.dynamics.core.tangential_history import lost_in_microslip
 from vibroimpact.dynamics.oblique.normal_motion import NormalMotion
 from vibroimpact.dynamics.oblique.state import Sphere, State, energy_taken
 from vibroimpact.dynamics.oblique.tangential_history import tangential_history
@@ -106,7 +106,7 @@ def resisted_contact(law: CompliantFriction, normal: NormalMotion, sphere: Spher
         velocities.T,
         np.stack([turnings[:, 1] / sphere.radius, -turnings[:, 0] / sphere.radius, spins]),
     )
-    microslip = lost_in_microslip(law, force, frictions, moved, slid)
+    microslip = lost_in_microslip(history, force, frictions, moved, slid)
     return ResistedContact(sphere, before, time, states, -frictions.T, np.array([microslip]))
 
 

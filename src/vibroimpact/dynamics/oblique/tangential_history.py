@@ -44,6 +44,7 @@ def tangential_history(law: CompliantFriction, largest_force: float) -> Tangenti
         stiffness=2.0 * float(law.effective_shear_modulus),
         coefficient=float(law.coefficient),
         ratio=float(law.kappa),
+        sliding_energy=float(law.sliding_energy),
         width=float(law.contact_radius(np.asarray(largest_force))) / SPRINGS,
         depth=0.0,
         stretch=np.zeros((2, SPRINGS if law.slips_at_rim else 0)),

@@ -13,6 +13,7 @@ from vibroimpact.contact.law import CompliantLaw, ContactLaw
 from vibroimpact.dynamics.bodies import Motions
 from vibroimpact.dynamics.columns import VIBRATING_IMPACT_COLUMNS
 from vibroimpact.dynamics.contact import CAPTURED, RIDING, SETTLED, Contact, Piece
+from vibroimpact.dynamics.core.rubbing_records import Rubbing
 from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.leg import Leg
@@ -29,7 +30,7 @@ from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSyste
 from vibroimpact.dynamics.vibrating.next_touch import next_touch
 from vibroimpact.dynamics.vibrating.rest_motion import RestMotion, bring_to_rest
 from vibroimpact.dynamics.vibrating.rubbed_contact import rubbed_contacts
-from vibroimpact.dynamics.vibrating.rubbing import Rubbing, rubbing_at_touch
+from vibroimpact.dynamics.vibrating.rubbing import NO_RUBBING, rubbing_at_touch
 from vibroimpact.dynamics.vibrating.sensitivity import Neighbours
 from vibroimpact.dynamics.vibrating.visit import Visit, follow_visit
 
@@ -204,30 +205,34 @@ class VibratingBodies:
 
     def _touch(self, drop: int, flight: Flight, level: float, guess: float) -> tuple[FreeMotion, float]:
         """Return the free motion of a drop and the time until it touches [s], where it then is over the plate; `guess`: about that time."""
-        if self.oblique is None or self.problem.at_place is None:
+        problem = self.problem
+        if self.oblique is None or problem.at_place is None or problem.plate_at_place is None:
             motion = self._free(drop, flight)
             return motion, next_touch(motion, level, np.inf)
-        one, place = np.array([drop]), None
+        one = np.array([drop])
+        time = guess
+        place = self.oblique.place_on_plate(one, flight, flight.start + time)[:, 0]
         for _ in range(_MOST_PLACES):  # the deflection of the plate where it falls changes the time a little, and that the place
-            before, place = place, self.oblique.place_on_plate(one, flight, flight.start + guess)[:, 0]
-            if before is not None and np.abs(place - before).max() <= _SAME_PLACE:
-                break
-            self.move_to(drop, (float(place[0]), float(place[1])))
-            motion = self._free(drop, flight)
-            time = next_touch(motion, level, np.inf)
+            at = (float(place[0]), float(place[1]))
+            self._put_contact(drop, problem.on_plate(problem.plate_at_place(at), problem.quasi_static))
+            time = next_touch(self._free(drop, flight), level, np.inf)
             if not np.isfinite(time):
                 break
-            guess = time
-        return motion, time
+            before = place
+            place = self.oblique.place_on_plate(one, flight, flight.start + time)[:, 0]
+            if np.abs(place - before).max() <= _SAME_PLACE:
+                break
+        self._put_contact(drop, problem.at_place(at))
+        return self._free(drop, flight), time
 
-    def move_to(self, drop: int, place: tuple[float, float]) -> None:
-        """Let the contact of a drop be at another place on the plate [m]."""
-        assert self.problem.at_place is not None
-        self.places[drop] = there = self.problem.at_place(place)
+    def _put_contact(self, drop: int, there: Problem) -> None:
+        """Let the contact of a drop be at another place on the plate, as a problem has it."""
         mass, gravity = float(self.mass[drop]), float(self.gravity[drop])
         # what drives the plate has its coordinates in common
-        found = system_of(there, float(self.mass[0]), float(self.gravity[0])).with_sphere(mass**-0.5, gravity * mass**0.5)
-        self.systems[drop], self.series[drop] = found, there.quasi_static
+        system = system_of(there, float(self.mass[0]), float(self.gravity[0])).with_sphere(mass**-0.5, gravity * mass**0.5)
+        self.places[drop] = there
+        self.systems[drop] = system
+        self.series[drop] = there.quasi_static
 
     def pass_flight(self, drops: Drops, motions: Motions, elapsed: Floats) -> None:
         """Advance the coordinates of drops by free motion."""
@@ -292,14 +297,16 @@ class VibratingBodies:
         force, when = (np.array([getattr(found, name) for found in visits]) for name in ("max_force", "time_of_max_force"))
         return contact_of(visits, encounter.law), force, when
 
-    def rubbing(self, drop: int, encounter: Encounter) -> Rubbing | None:
-        """Return the friction of a drop at first touch; None if there is none."""
+    def rubbing(self, drop: int, encounter: Encounter) -> Rubbing:
+        """Return the friction of a drop at first touch."""
         law = None if self.oblique is None or self.oblique.law is None else self.oblique.law.take(drop)
         if self.oblique is None or not isinstance(law, CompliantFriction):
-            return None
+            return NO_RUBBING
         sphere, before = self.oblique.now(np.array([drop]))
         largest = float(encounter.law.forces(encounter.depth, np.zeros(1), encounter.approach_speed)[0][0])
-        return rubbing_at_touch(law, largest, sphere, before)
+        along = self.systems[drop].along
+        assert along is not None  # there is friction
+        return rubbing_at_touch(law, largest, sphere, before, len(along))
 
     def slide(self, oblique: ObliqueMotion, leg: Leg, row: dict[str, Floats]) -> ObliqueContacts:
         """Advance drops along the plate as their visits have it."""

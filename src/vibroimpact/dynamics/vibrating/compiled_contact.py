@@ -1,4 +1,4 @@
-"""One contact without friction, followed by the core, and its parts read back."""
+"""One contact, followed by the core, and its parts read back."""
 
 from __future__ import annotations
 
@@ -7,8 +7,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from vibroimpact.dynamics.core import contact as core
-from vibroimpact.dynamics.core import records
+from vibroimpact.dynamics.core.contact_records import Manner, Parts, Progress
 from vibroimpact.dynamics.core.events import ENDS, TENSIONS
+from vibroimpact.dynamics.core.records import MAPS
+from vibroimpact.dynamics.core.rubbing_records import NUMBERS, Rubbing
 from vibroimpact.dynamics.vibrating.active_contact import ActiveContact, record_peaks
 from vibroimpact.dynamics.vibrating.contact_history import ContactHistory
 from vibroimpact.dynamics.vibrating.contact_view import contact_view
@@ -16,7 +18,8 @@ from vibroimpact.dynamics.vibrating.free_motion import FreePhase
 from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, State
 from vibroimpact.dynamics.vibrating.local import LocalContact
 from vibroimpact.dynamics.vibrating.march import March, MotionPart
-from vibroimpact.dynamics.vibrating.radau_eigenbasis import NODES_PER_STRETCH, bases_of, radau_eigenbasis
+from vibroimpact.dynamics.vibrating.radau_eigenbasis import NODES_PER_STRETCH, RadauEigenbasis, bases_of, radau_eigenbasis
+from vibroimpact.dynamics.vibrating.rubbing import RubbedStretch, RubbingState
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 from vibroimpact.dynamics.vibrating.stretch_end import with_separation_loss
 
@@ -33,15 +36,15 @@ class Limits:
 
 
 class CompiledContact:
-    """The contact of a march with one contact and without friction, from touch on."""
+    """The contact of a march with one contact, from touch on; `rubbing`: friction at touch."""
 
-    def __init__(self, march: March, active: ActiveContact, limits: Limits) -> None:
+    def __init__(self, march: March, active: ActiveContact, limits: Limits, rubbing: Rubbing) -> None:
         self.march = march
         self.active = active
         law = active.local.law
         self.view = contact_view(march.system, (0,))
         self.root = law.root
-        self.manner = records.Manner(
+        self.manner = Manner(
             tension=TENSIONS.index(law.tension),
             contact_end=ENDS.index(law.contact_end),
             motion_speed=active.speed,
@@ -53,7 +56,7 @@ class CompiledContact:
             most_steps=limits.most_steps,
         )
         self.law = active.local.with_levels
-        self.progress = records.Progress(
+        self.progress = Progress(
             time=march.time,
             next_length=march.next_length,
             delta=active.delta,
@@ -66,9 +69,10 @@ class CompiledContact:
             memories=0,
             largest_force=0.0,
             deepest=0.0,
+            rubbing=rubbing,
         )
         self.state = march.state.record
-        self.parts = _room(march.system.number, len(march.system.rate))
+        self.parts = _room(march.system.number, len(march.system.rate), rubbing.directions)
         self.locals = [active.local]
 
     @property
@@ -103,7 +107,7 @@ class CompiledContact:
             before = self.locals[-1]
             march.plastic += float(before.law.plastic_work(turned_at))
             self.locals.append(before.after_indentation(turned_at))
-        written = records.Parts._make(values[:count].copy() for values in parts)
+        written = Parts._make(values[:count].copy() for values in parts)
         largest = written.force.max(axis=1).tolist()
         for part in range(count):
             local = self.locals[written.memories[part]]
@@ -121,8 +125,8 @@ class CompiledContact:
                 end = State(written.displacement[part + 1], written.velocity[part + 1], written.local[part + 1])
             stretch.__dict__["end"] = end  # which it would compute anew
 
-    def _stretch(self, parts: records.Parts, part: int, local: LocalContact, begun: State) -> VibratingStretch:
-        basis = radau_eigenbasis(records.MAPS[parts.time_map[part]], self.root)
+    def _stretch(self, parts: Parts, part: int, local: LocalContact, begun: State) -> VibratingStretch:
+        basis = radau_eigenbasis(MAPS[parts.time_map[part]], self.root)
         static = parts.static[part]
         history = ContactHistory(
             0,
@@ -138,13 +142,22 @@ class CompiledContact:
             dissipated=float(parts.dissipated[part]),
             separation_loss=float(parts.separation_loss[part]),
         )
-        return VibratingStretch(self.view, basis, float(parts.length[part]), begun, (history,), True, float(parts.roughness[part]))
+        length = float(parts.length[part])
+        rubbed = self._rubbed(parts, part, basis, length)
+        return VibratingStretch(self.view, basis, length, begun, (history,), True, float(parts.roughness[part]), rubbed)
+
+    def _rubbed(self, parts: Parts, part: int, basis: RadauEigenbasis, length: float) -> RubbedStretch | None:
+        rubbing = self.progress.rubbing
+        if not rubbing.directions:
+            return None
+        start, end = (RubbingState.of(numbers) for numbers in parts.rubbing[part])
+        return RubbedStretch(basis.rule, length, rubbing, start, end, parts.friction[part], parts.slip[part])
 
 
-def _room(number: int, elements: int) -> records.Parts:
-    """Return room for parts of the motion of a system with so many coordinates and massless elements."""
+def _room(number: int, elements: int, directions: int) -> Parts:
+    """Return room for parts of the motion of a system with so many coordinates, massless elements, and directions of friction."""
     nodes = NODES_PER_STRETCH
-    return records.Parts(
+    return Parts(
         kind=np.zeros(_PARTS, dtype=np.int64),
         time_map=np.zeros(_PARTS, dtype=np.int64),
         start=np.empty(_PARTS),
@@ -166,4 +179,7 @@ def _room(number: int, elements: int) -> records.Parts:
         indentation=np.empty((_PARTS, nodes + 1)),
         turned_at=np.empty(_PARTS + 1),
         late_loss=np.zeros(1),
+        friction=np.empty((_PARTS, directions, nodes)),
+        slip=np.empty((_PARTS, directions, nodes)),
+        rubbing=np.empty((_PARTS, 2, NUMBERS)),
     )

@@ -9,7 +9,8 @@ from functools import cached_property
 import numpy as np
 
 from vibroimpact.arrays import Bools, Floats
-from vibroimpact.dynamics.core.records import Bodies, Coordinates, Start, Surfaces
+from vibroimpact.dynamics.core.contact_records import Bodies
+from vibroimpact.dynamics.core.records import Coordinates, Start, Surfaces
 from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State
 
 _RIGID_ROUNDING = 2e-15  # relative rounding error of the kinetic energy of the rigid motions that move the contacts
@@ -90,8 +91,12 @@ class ContactView:
 
     @cached_property
     def bodies(self) -> Bodies:
-        """The system, of one contact, as the core takes it."""
-        return Bodies(self.system.record_of(self.contacts[0]), self.surfaces, self.coordinates)
+        """The system, of one contact, as the core takes it, with the directions of friction as further contacts where there are any."""
+        rubbed = self
+        if self.system.along is not None:
+            rubbed = contact_view(self.system.rubbed, range(1 + len(self.system.along)))
+        system = self.system.record_of(self.contacts[0])
+        return Bodies(system, self.surfaces, self.coordinates, rubbed.surfaces, rubbed.coordinates)
 
     @cached_property
     def without_load(self) -> ContactView:

@@ -33,7 +33,6 @@ from vibroimpact.dynamics.vibrating.local import LocalContact
 from vibroimpact.dynamics.vibrating.next_touch import next_touch, time_to_separation
 from vibroimpact.dynamics.vibrating.radau_eigenbasis import GRID
 from vibroimpact.dynamics.vibrating.recoil import end_of_recoil, recoil_end_value
-from vibroimpact.dynamics.vibrating.rubbing import Rubbing, longest_with_friction
 from vibroimpact.dynamics.vibrating.solve_stretch import StretchProblem
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 from vibroimpact.dynamics.vibrating.stretch_end import (
@@ -70,7 +69,7 @@ class March:
     `time` [s], `state`: current ones. `next_length`: of the next stretch [s]. `active`: contacts whose surfaces overlap, by number.
     `next_laws`: laws of the next impacts, with their memory. `dents`: laws of the last impacts where the next one meets undeformed
     surfaces, while surfaces may still overlap the dent. `parts`: the history. `impacts`: one record per impact. `lost` [J], (n + 1,):
-    energy lost in each coordinate, and in the contacts; `plastic`: plastic work [J]. `rubbing`: friction of the only contact, if any.
+    energy lost in each coordinate, and in the contacts; `plastic`: plastic work [J].
 
     Parameters
     ----------
@@ -84,8 +83,6 @@ class March:
         Relative error allowed at the end of each stretch.
     scale : tuple of two floats, optional
         Speed of the motion [m/s] and approximate duration of a contact [s]; by default each contact has its own.
-    rubbing : Rubbing, optional
-        Friction at the start, of one contact.
     """
 
     def __init__(
@@ -95,7 +92,6 @@ class March:
         state: State,
         tolerance: float,
         scale: tuple[float, float] | None = None,
-        rubbing: Rubbing | None = None,
     ) -> None:
         self.system, self.definitions, self.state, self.tolerance, self.scale = system, definitions, state, tolerance, scale
         self.next_laws = [law.law for law in definitions]
@@ -105,7 +101,6 @@ class March:
         self.parts: list[MotionPart] = []
         self.impacts: list[Impact] = []
         self.lost, self.plastic = np.zeros(system.number + 1), 0.0
-        self.rubbing = rubbing
 
     def run_until(self, end: float, progress: Callable[[float], None] | None = None) -> None:
         """Advance to a time [s]; a contact in progress is cut off there.
@@ -167,7 +162,6 @@ class March:
     def append_free(self, free: FreeMotion, length: float) -> None:
         """Append a free motion of a length [s] to the history."""
         motion = FreePhase(free, length, tuple((number, contact.local) for number, contact in self.active.items()))
-        self.rubbing = None if self.rubbing is None else self.rubbing.flown(length)
         state = free.state_after(length)
         self.append_motion(motion, state, motion.lost_at(state))
 
@@ -235,8 +229,6 @@ class March:
                 self.update_memory(contact)
         span, speed = min(contact.span for contact in pushing), max(contact.speed for contact in self.active.values())
         energy = max(contact.energy for contact in pushing)
-        if self.rubbing is not None:
-            longest = min(longest, longest_with_friction(self.tolerance) * span)
         if self.next_length < 1e-12 * span:
             raise NotIntegrable(f"the contact at {self.time:g} s can't be integrated to the tolerance")
         time_map: Map = "touch" if any(contact.fresh for contact in pushing) else "inside"
@@ -323,7 +315,6 @@ class March:
             self.state,
             begun,
             trend,
-            rubbing=self.rubbing,
         )
 
     def accept(self, pushing: list[ActiveContact], stretch: VibratingStretch) -> None:
@@ -338,7 +329,6 @@ class March:
             if not contact.pushes:  # recoiling contacts, which are not part of the stretch
                 self.lost[-1] += float(recoil_loss(self.system, contact.number, contact.local, self.state, end))
         self.append_motion(stretch, end, lost)
-        self.rubbing = None if stretch.rubbed is None else stretch.rubbed.end
         stretch.keep()
 
     def append_motion(self, motion: VibratingStretch | FreePhase, state: State, lost: Floats) -> None:

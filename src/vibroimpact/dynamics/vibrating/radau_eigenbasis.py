@@ -19,6 +19,9 @@ NODES_PER_STRETCH = 12
 
 _MAPS: tuple[Map, ...] = ("touch", "inside", "release")
 
+STEPS_BETWEEN = 4
+"""Steps in which friction is followed from each node to the next."""
+
 GRID = np.linspace(0.0, 1.0, 33)
 """Values of x at which a stretch is searched for events."""
 
@@ -45,6 +48,8 @@ def radau_eigenbasis(time_map: Map, root: int) -> RadauEigenbasis:
     back = np.zeros((len(half), 2, NODES_PER_STRETCH))
     back[kept] = np.linalg.inv(parts[:, kept])  # inverse of the real matrix, so that a round trip is exact to rounding
     inverse = back[:, 0] + 1j * back[:, 1]
+    ends = np.append(0.0, rule.nodes)
+    between = (ends[:-1, None] + np.diff(ends)[:, None] * np.arange(1, STEPS_BETWEEN + 1) / STEPS_BETWEEN).ravel()
     filters = (vectors.T[:, :, None] * inverse[:, None, :]).reshape(len(half), -1)
     basis = Basis(
         time=rule.time,
@@ -56,6 +61,8 @@ def radau_eigenbasis(time_map: Map, root: int) -> RadauEigenbasis:
         places=np.append(0.0, rule.nodes),
         barycentric=rule.barycentric,
         grid=rule.weights(GRID).T,
+        forces_between=rule.interpolate(between, np.eye(NODES_PER_STRETCH)),
+        displacements_between=rule.weights(between)[1:].T,  # which are zero at the start
         time_map=MAPS.index(time_map),
         root=root,
         eigenvalues=_parts(values),

@@ -47,10 +47,11 @@ class RubbedContact:
                 turned[:, within], turned_way[:, within] = stretch.turned(now[within] - start)
             if later.any():
                 end, rest = stretch.end, now[later] - start - stretch.length
-                velocity[:, later] = end.velocity[:, None] + end.pull[:, None] * rest
-                displacement[:, later] = end.displacement[:, None] + (end.velocity[:, None] + 0.5 * end.pull[:, None] * rest) * rest
+                pull = stretch.sphere.pull[:, None]
+                velocity[:, later] = end.velocity[:, None] + pull * rest
+                displacement[:, later] = end.displacement[:, None] + (end.velocity[:, None] + 0.5 * pull * rest) * rest
                 force[:, later], taken[later], turned[:, later] = 0.0, end.work, end.turned[:, None]
-                turned_way[:, later] = end.turned_way[:, None] + end.radius * end.turned[:2, None] * rest
+                turned_way[:, later] = end.turned_way[:, None] + stretch.sphere.radius * end.turned[:2, None] * rest
         return state_after(sphere, before, now, (velocity, displacement), (turned, turned_way)), -force, taken
 
     @property

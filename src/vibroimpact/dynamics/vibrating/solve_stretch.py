@@ -11,27 +11,24 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.collocation import Map
 from vibroimpact.dynamics.core.histories import contact_histories
-from vibroimpact.dynamics.core.receptance import surface_motion
-from vibroimpact.dynamics.core.records import Contacts, Motion, Nodes, Start
+from vibroimpact.dynamics.core.records import Contacts, End, Motion, Nodes, Start
+from vibroimpact.dynamics.core.rubbing import first_friction, free_motions
+from vibroimpact.dynamics.core.rubbing_records import Rubbed
 from vibroimpact.dynamics.core.stretch import (
     AT_LEVEL,
     AT_NO_FORCE,
     AT_TURN,
     GIVEN_LENGTH,
-    MOST_ITERATIONS,
     begun_indentations,
     first_guess,
-    force_scale,
-    improved,
-    is_converged,
     solve_stretch,
 )
 from vibroimpact.dynamics.vibrating.contact_history import ContactHistory
 from vibroimpact.dynamics.vibrating.contact_view import ContactView
 from vibroimpact.dynamics.vibrating.linear_system import State
 from vibroimpact.dynamics.vibrating.local import LocalContact, contacts_of
-from vibroimpact.dynamics.vibrating.radau_eigenbasis import RadauEigenbasis, radau_eigenbasis
-from vibroimpact.dynamics.vibrating.rubbing import Friction, Rubbing
+from vibroimpact.dynamics.vibrating.radau_eigenbasis import NODES_PER_STRETCH, RadauEigenbasis, radau_eigenbasis
+from vibroimpact.dynamics.vibrating.rubbing import NO_RUBBING
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 
 _END = {"parted": AT_LEVEL, "breakpoint": AT_LEVEL, "no push": AT_NO_FORCE, "turn": AT_TURN}
@@ -50,12 +47,12 @@ class EndCondition:
     contact: int = 0
 
     @property
-    def event(self) -> tuple[int, float, int]:
-        """What ends the stretch, at which level, and at which contact, as the core takes it."""
-        return _END[self.name], self.level, self.contact
+    def record(self) -> End:
+        """The same as the core takes it."""
+        return End(_END[self.name], self.level, self.contact)
 
 
-_NO_EVENT = (GIVEN_LENGTH, 0.0, 0)
+_GIVEN_LENGTH = End(GIVEN_LENGTH, 0.0, 0)
 
 
 @dataclass(frozen=True)
@@ -82,8 +79,6 @@ class StretchProblem:
         Initial guess of the indentations of the laws [m] and of the forces [N] at the nodes.
     end_condition : EndCondition, optional
         Condition at the end, from which the length is found.
-    rubbing : Rubbing, optional
-        Friction at the start, of a drop that has any.
     """
 
     view: ContactView
@@ -95,7 +90,6 @@ class StretchProblem:
     trend: Sequence[float] = ()
     guess: tuple[Floats, Floats] | None = None
     end_condition: EndCondition | None = None
-    rubbing: Rubbing | None = None
 
     def solve(self) -> VibratingStretch:
         """Return the solved stretch."""
@@ -104,24 +98,20 @@ class StretchProblem:
         start = self.view.start(self.start)
         contacts = contacts_of(self.contacts)
         begun = begun_indentations(contacts, start, np.array(self.begun, dtype=float))
-        motion = surface_motion(basis.basis, surfaces, start, self.length)
-        friction = None
-        if self.rubbing is not None:
-            friction = Friction(self.view, self.start, self.rubbing, basis)
-            friction.set_length(self.length)
-        moved = motion if friction is None else friction.moving(motion)
+        rubbed = Rubbed(surfaces, start, NO_RUBBING)
+        motions = free_motions(basis.basis, surfaces, start, rubbed, self.length)
         if self.guess is None:
             trend = np.array(self.trend, dtype=float)
-            guess = first_guess(basis.basis, surfaces, contacts, start, moved, begun, trend, self.length)
+            guess = first_guess(basis.basis, surfaces, contacts, start, motions.across, begun, trend, self.length)
         else:
             delta, force = (np.ascontiguousarray(part).ravel() for part in self.guess)
             guess = Nodes(np.zeros_like(force), force, delta)
-        event = _NO_EVENT if self.end_condition is None else self.end_condition.event
-        if friction is None:
-            nodes, motion, length, solved = solve_stretch(basis.basis, surfaces, contacts, start, guess, motion, self.length, *event)
-        else:
-            nodes, motion, length, solved = _solve_under_friction(basis, self, contacts, start, guess, motion, friction, event)
-        return self._read(basis, contacts, start, begun, nodes, motion, length, solved, friction)
+        friction = first_friction(NO_RUBBING, NODES_PER_STRETCH)
+        end = _GIVEN_LENGTH if self.end_condition is None else self.end_condition.record
+        nodes, motions, _, length, solved = solve_stretch(
+            basis.basis, surfaces, contacts, start, rubbed, guess, motions, friction, self.length, end
+        )
+        return self._read(basis, contacts, start, begun, nodes, motions.across, length, solved)
 
     def _read(
         self,
@@ -133,7 +123,6 @@ class StretchProblem:
         motion: Motion,
         length: float,
         solved: bool,
-        friction: Friction | None,
     ) -> VibratingStretch:
         """Return the stretch from its indentations and forces at the nodes."""
         found = contact_histories(basis.basis, self.view.surfaces, contacts, start, begun, nodes, motion, length)
@@ -155,37 +144,4 @@ class StretchProblem:
             )
             for place, local in enumerate(self.contacts)
         )
-        rubbed = None if friction is None else friction.stretch(nodes.force)
-        return VibratingStretch(self.view, basis, length, self.start, histories, solved, found.roughness, rubbed)
-
-
-def _solve_under_friction(
-    basis: RadauEigenbasis,
-    problem: StretchProblem,
-    contacts: Contacts,
-    start: Start,
-    guess: Nodes,
-    motion: Motion,
-    friction: Friction,
-    event: tuple[int, float, int],
-) -> tuple[Nodes, Motion, float, bool]:
-    """Return what `solve_stretch` does, with friction followed beside Newton's method; the motion is that under friction."""
-    surfaces = problem.view.surfaces
-    length = problem.length
-    moved = friction.moving(motion)
-    scale = force_scale(surfaces, moved, length)
-    now, size = guess, np.inf
-    for _ in range(MOST_ITERATIONS):
-        last_size = size
-        now, length, size, well_posed = improved(basis.basis, surfaces, contacts, start, moved, now, length, scale, *event)
-        if not (well_posed and np.isfinite(size)):
-            break
-        if event[0] != GIVEN_LENGTH:
-            motion = surface_motion(basis.basis, surfaces, start, length)
-            friction.set_length(length)
-        changed = friction.follow(now.force)
-        size = max(size, changed / (scale + float(np.abs(now.force).max())))
-        moved = friction.moving(motion)
-        if is_converged(size, last_size):
-            return now, moved, length, True
-    return now, moved, length, False
+        return VibratingStretch(self.view, basis, length, self.start, histories, solved, found.roughness)

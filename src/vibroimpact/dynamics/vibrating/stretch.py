@@ -210,8 +210,5 @@ class VibratingStretch:
         """
         if not (self.solved and self.roughness**2 <= 0.1 * tolerance):
             return False
-        if self.rubbed is not None and abs(self.rubbed.imbalance) > 0.06 * tolerance * energy:
-            return False
         gain = self.motion.gain + sum(contact.work for contact in self.contacts)
-        gain -= 0.0 if self.rubbed is None else self.rubbed.surface_work
         return bool(abs(gain + self.lost.sum()) <= 0.06 * tolerance * energy + self.motion.rounding)

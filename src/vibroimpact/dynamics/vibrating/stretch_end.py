@@ -125,8 +125,4 @@ def _problem_to_event(stretch: VibratingStretch, event: Event) -> StretchProblem
     )
     laws, begun = [contact.local for contact in contacts], [float(contact.delta[0]) for contact in contacts]
     length = part * stretch.length
-    rubbing = None if stretch.rubbed is None else stretch.rubbed.start
-    guess = delta, force
-    return StretchProblem(
-        stretch.view, laws, time_map, length, stretch.start, begun, guess=guess, end_condition=event.condition, rubbing=rubbing
-    )
+    return StretchProblem(stretch.view, laws, time_map, length, stretch.start, begun, guess=(delta, force), end_condition=event.condition)

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.core import records
+from vibroimpact.dynamics.core import contact_records
 from vibroimpact.dynamics.core.tangent import propagate
 from vibroimpact.dynamics.vibrating.linear_system import State
 from vibroimpact.dynamics.vibrating.local import LocalContact, contacts_of
@@ -32,7 +32,7 @@ def propagate_difference(
     first = stretches[0]
     local = first.contacts[0].local
     histories = [stretch.contacts[0] for stretch in stretches]
-    solved = records.Solved(
+    solved = contact_records.Solved(
         time_map=np.array([stretch.basis.basis.time_map for stretch in stretches]),
         length=np.array([stretch.length for stretch in stretches]),
         delta=np.array([history.delta for history in histories]),

@@ -17,28 +17,26 @@ from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.quasi_static import QuasiStatic
 from vibroimpact.dynamics.contact import CAPTURED, FAILED, RELEASED, RIDING, SETTLED
 from vibroimpact.dynamics.core import contact as core
+from vibroimpact.dynamics.core.rubbing import flown
+from vibroimpact.dynamics.core.rubbing_records import Rubbing
 from vibroimpact.dynamics.vibrating.active_contact import ContactDefinition, closing_speed, locate_highest_peak, motion_speed
 from vibroimpact.dynamics.vibrating.carried_oscillations import SteadyResponse, steady_response
 from vibroimpact.dynamics.vibrating.compiled_contact import CompiledContact, Limits
 from vibroimpact.dynamics.vibrating.contact_equilibrium import (
     ContactEquilibrium,
-    least_energy,
     near_equilibrium,
     rides_for_good,
     separates_slower_than,
 )
-from vibroimpact.dynamics.vibrating.events import ROUNDING
 from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.vibrating.local import LocalContact
-from vibroimpact.dynamics.vibrating.march import March, MotionPart, NotIntegrable
+from vibroimpact.dynamics.vibrating.march import March, MotionPart
 from vibroimpact.dynamics.vibrating.next_touch import next_touch, time_to_separation
-from vibroimpact.dynamics.vibrating.rubbing import Rubbing
+from vibroimpact.dynamics.vibrating.rubbing import NO_RUBBING, longest_with_friction
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 
 MOST_STEPS, MOST_STEPS_TO_A_TIME = 5_000, 20_000
 """Largest number of stretches of contact in a visit, some ten seconds' work; and where the run has an end in time."""
-
-_LONG = 10.0  # in durations of a contact: a sphere in contact for longer rides
 
 
 @dataclass
@@ -48,7 +46,7 @@ class Visit:
     `state`: at the end. `duration`: from first touch to last release [s]. `contacts`: number of contacts. `max_indentation`, `max_force`
     and their times since first touch [m, N, s]. `lost` [J], (n + 1,): energy lost in each coordinate, and in the contact. `plastic`:
     plastic work [J]. `law`: with its memory at the end. `stored`: energy left in the contact [J]. `local`: the contact in which the sphere
-    rests, if so. `rubbing`: friction at the end, if any.
+    rests, if so.
     """
 
     system: LinearSystem
@@ -66,7 +64,6 @@ class Visit:
     plastic: float
     stored: float
     local: LocalContact
-    rubbing: Rubbing | None = None
 
 
 def follow_visit(
@@ -79,7 +76,7 @@ def follow_visit(
     fresh_surface: bool = False,
     rest_speed: float = 0.0,
     until: float = np.inf,
-    rubbing: Rubbing | None = None,
+    rubbing: Rubbing = NO_RUBBING,
 ) -> Visit:
     """Follow one drop from first touch to its last release, or to rest.
 
@@ -103,19 +100,19 @@ def follow_visit(
         A sphere that separates more slowly, and can no longer separate faster, is at rest [m/s].
     until : float, default infinite
         End of a ride [s since first touch]; a contact of usual duration is completed.
-    rubbing : Rubbing, optional
+    rubbing : Rubbing, default none
         Friction at first touch.
     """
     speed = motion_speed(system, 0, law, closing_speed(system, state, 0))
-    march = March(system, [ContactDefinition(law, series, fresh_surface)], state, tolerance, (speed, contact_duration), rubbing)
-    return _VisitMarch(march, rest_speed, until).run()
+    march = March(system, [ContactDefinition(law, series, fresh_surface)], state, tolerance, (speed, contact_duration))
+    return _VisitMarch(march, rest_speed, until, rubbing).run()
 
 
 class _VisitMarch:
     """March of one contact with the rules that end a visit."""
 
-    def __init__(self, march: March, rest_speed: float, until: float) -> None:
-        self.march, self.rest_speed, self.until = march, rest_speed, until
+    def __init__(self, march: March, rest_speed: float, until: float, rubbing: Rubbing) -> None:
+        self.march, self.rest_speed, self.until, self.rubbing = march, rest_speed, until, rubbing
         self.system, self.gravity = march.system, float(march.system.gravity[0])
         self.stretches, self.most_stretches = 0, MOST_STEPS if np.isinf(until) else MOST_STEPS_TO_A_TIME
         self.separation_time, self.stored, self.longest = 0.0, 0.0, _period_along(march.system, march.state)
@@ -164,33 +161,17 @@ class _VisitMarch:
             march.plastic,
             self.stored,
             local,
-            march.rubbing,
         )
 
     # one contact -----------------------------------------------------------------------------------
 
     def contact(self) -> int:
-        """March through one contact; return its outcome."""
-        march, begun = self.march, self.march.time
-        if march.rubbing is None:
-            return self.contact_of_core()
-        while 0 in march.active:
-            self.stretches += self.active.pushes
-            rides, remaining = march.time - begun > _LONG * self.active.span, self.until - march.time
-            if self.stretches > self.most_stretches or (rides and remaining <= ROUNDING * self.active.span):
-                return self.end_in_contact(RIDING)
-            try:
-                taken = march.step(min(remaining if rides else np.inf, self.longest) if self.active.pushes else np.inf)
-            except NotIntegrable:
-                return self.end_in_contact(FAILED)
-            if taken and 0 in march.active and self.active.pushes and (self.captured() or self.at_rest()):
-                return self.end_in_contact(CAPTURED)
-        return RELEASED
-
-    def contact_of_core(self) -> int:
-        """Follow one contact without friction in the core; return its outcome."""
-        limits = Limits(self.until, self.longest, self.most_stretches - self.stretches)
-        contact = CompiledContact(self.march, self.active, limits)
+        """Follow one contact in the core; return its outcome."""
+        longest = self.longest
+        if self.rubbing.directions:
+            longest = min(longest, longest_with_friction(self.march.tolerance) * self.active.span)
+        limits = Limits(self.until, longest, self.most_stretches - self.stretches)
+        contact = CompiledContact(self.march, self.active, limits, self.rubbing)
         outcome = contact.follow()
         while outcome == core.NEAR_REST:
             if self.at_rest():
@@ -198,6 +179,7 @@ class _VisitMarch:
                 break
             outcome = contact.follow()
         self.stretches += contact.steps
+        self.rubbing = contact.progress.rubbing
         if outcome != core.RELEASED:
             return self.end_in_contact({core.CAPTURED: CAPTURED, core.RIDES: RIDING, core.TOO_STIFF: FAILED}[outcome])
         self.march.end_contact(self.active)
@@ -209,18 +191,6 @@ class _VisitMarch:
             self.march.update_memory(self.active)
         self.stored = float(self.active.local.energy_at_indentation(self.active.delta))
         return outcome
-
-    def captured(self) -> bool:
-        """Whether the energy is too small to lift the sphere out of its indentation; never where a drive brings more."""
-        if self.system.driven:
-            return False
-        active, local = self.active, self.active.local
-        state = self.march.state
-        energy = float(self.system.mechanical_energy(state) - self.system.common_energy(state)) + float(
-            local.work_at_indentation(active.delta)
-        )
-        barrier = least_energy(self.system, local.release_level, float(local.energy_at_indentation(local.release_indentation)))
-        return energy < barrier + self.march.tolerance**2 * active.energy
 
     def at_rest(self) -> bool:
         """Whether the contact carries the weight, and the bound of its force excludes separation."""
@@ -278,6 +248,7 @@ class _VisitMarch:
         if shaken and separation_speed >= 0.0 and float(free.motion(np.array(time))[1][0]) >= self.rest_speed:
             return False
         march.append_free(free, time)
+        self.rubbing = flown(self.rubbing, time)
         self.active = march.begin_contact(0, law)
         return True
 
