@@ -33,7 +33,7 @@ LAWS = {
 
 
 def numbers() -> dict[str, dict[str, list[float]]]:
-    """The first impacts of each law on a plate with two modes, with a compliance in series; and of oblique drops on a rigid one, and on it."""
+    """The first impacts of each law on a plate with two modes and a compliance in series; and oblique drops on a rigid plate, and on it."""
     plate = ModalBasis(np.array([300.0, 2e3]), np.array([0.01, 0.02]), np.array([1.0, 0.5]), np.zeros((2, 3)))
     found = {}
     for name, law in LAWS.items():
