@@ -231,6 +231,22 @@ def test_to_rest_captured_and_in_blocks(monkeypatch: pytest.MonkeyPatch) -> None
         np.testing.assert_allclose(parts.impacts[name][kept], values[kept], rtol=1e-7, atol=1e-9, err_msg=name)
 
 
+@pytest.mark.parametrize("oblique", [False, True])
+def test_threads_change_no_digit(oblique: bool) -> None:
+    ball, pair = balls(40, 8)
+    law = vi.find_contact_law("flores").example(pair)
+    along = vi.Oblique(velocity=(0.5, 0.0), friction=vi.find_friction_law("coulomb")(coefficient=0.2)) if oblique else None
+    stated = problem(sphere=ball, laws=(law,), height=ball.contact_offset + np.geomspace(0.01, 1.0, 40), impacts=None, oblique=along)
+    told: list[float] = []
+    one, several = vi.tabulate(stated), vi.tabulate(stated, told.append, threads=3)
+    assert told == pytest.approx([14 / 40, 28 / 40, 1.0])
+    assert several.outcomes == one.outcomes
+    for name, values in one.impacts.items():
+        np.testing.assert_array_equal(several.impacts[name], values, err_msg=name)
+    with pytest.raises(vi.InputError, match="0 is no number of threads; give 1 or more"):
+        vi.tabulate(stated, threads=0)
+
+
 def test_the_same_rules_end_a_run() -> None:
     for changes in (
         {"duration": 0.6, "impacts": None},

@@ -1,4 +1,4 @@
-"""Indentation of a contact law without damping: under a constant force, and at the turning point of an impact."""
+"""Indentation of a contact law under a constant force."""
 
 from __future__ import annotations
 
@@ -31,27 +31,6 @@ def static_indentation(law: CompliantLaw, weight: Array) -> Array:
     return _solve(force_and_power, lambda _: weight, law.release_level, 1e-14)
 
 
-def undamped_depth(law: CompliantLaw, energy: Array, weight: Array) -> Array:
-    """Return the largest indentation of an impact without damping [m], to a relative 1e-3.
-
-    Parameters
-    ----------
-    law : CompliantLaw
-        The law.
-    energy : array
-        Kinetic energy at first touch [J], > 0.
-    weight : array
-        A constant force in the direction of the indentation [N], whose work adds to the energy.
-    """
-    touch = law.touch_level
-
-    def work_and_power(delta: Array) -> tuple[Array, Array]:
-        work = static_work(law, delta)
-        return work, (delta - touch) * _force(law, delta) / work
-
-    return _solve(work_and_power, lambda delta: energy + weight * (delta - touch), touch, 1e-3, origin=touch)
-
-
 def _force(law: CompliantLaw, delta: Array) -> Array:
     return law.forces(delta, np.zeros_like(delta), np.ones_like(delta))[0]
 
@@ -61,12 +40,10 @@ def static_work(law: CompliantLaw, delta: Array) -> Array:
     return law.elastic_energy(delta) + law.plastic_work(delta) if law.yields else law.elastic_energy(delta)
 
 
-def _solve(
-    function: Callable[[Array], tuple[Array, Array]], wanted: Callable[[Array], Array], least: Array, within: float, origin: Array = 0.0
-) -> Array:
+def _solve(function: Callable[[Array], tuple[Array, Array]], wanted: Callable[[Array], Array], least: Array, within: float) -> Array:
     """Return the indentation, at least `least`, at which an increasing function of it has the value `wanted`.
 
-    `function` returns the value and an estimate of the local exponent d ln(value) / d ln(delta - origin): the iteration is exact after one
+    `function` returns the value and an estimate of the local exponent d ln(value) / d ln(delta): the iteration is exact after one
     step for a power law. Where it does not converge, the root is bracketed.
     """
 
@@ -81,7 +58,7 @@ def _solve(
         for _ in range(30):
             value, power = function(delta)
             step = (wanted(delta) / value) ** (1.0 / power)
-            delta = origin + (delta - origin) * np.where(unloaded | converged, 1.0, step)  # whatever the others still need
+            delta = delta * np.where(unloaded | converged, 1.0, step)  # whatever the others still need
             converged |= np.abs(step - 1.0) < within
             if np.all(converged | unloaded | ~np.isfinite(delta)):
                 break

@@ -7,8 +7,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from vibroimpact.arrays import Floats, Indices
+from vibroimpact.compiled import law_addresses
 from vibroimpact.contact.law import CompliantLaw
-from vibroimpact.contact.static import static_indentation, undamped_depth
+from vibroimpact.contact.static import static_indentation
+from vibroimpact.dynamics.core.depths import write_undamped_depths
+from vibroimpact.dynamics.law_coefficients import coefficients_of
 
 
 @dataclass(frozen=True)
@@ -36,13 +39,6 @@ class Encounter:
         arrays = (self.mass, self.gravity, self.approach_speed, self.depth, self.speed_scale, self.floor)
         return Encounter(self.law.take(drops), *(array[drops] for array in arrays))
 
-    def alone(self, drop: int) -> Encounter:
-        """Return the encounter of one drop as it is without the others, with which the iteration for its depth ends later."""
-        if len(self.mass) == 1:
-            return self
-        here = np.array([drop])
-        return encounter_of(self.law.take(here), self.mass[here], self.gravity[here], self.approach_speed[here])
-
     def under(self, law: CompliantLaw) -> Encounter:
         """Return the encounter with another law, or with the same law and another memory."""
         return self if law is self.law else replace(self, law=law, floor=law.release_level + np.zeros(len(self.mass)))
@@ -51,8 +47,27 @@ class Encounter:
 def encounter_of(law: CompliantLaw, mass: Floats, gravity: Floats, approach_speed: Floats) -> Encounter:
     """Return the encounter of B drops, with the undamped depth from the balance of energy."""
     weight = mass * gravity
-    depth = undamped_depth(law, 0.5 * mass * approach_speed**2, weight)
+    depth = undamped_depths(law, 0.5 * mass * approach_speed**2, weight)
     squared = approach_speed**2 + gravity * (depth - law.touch_level)
     if law.contact_end == "pull-off":
         squared = squared - 2.0 * law.elastic_energy(static_indentation(law, weight)) / mass  # negative: the energy of adhesion
     return Encounter(law, mass, gravity, approach_speed, depth, np.sqrt(squared), law.release_level + np.zeros(len(mass)))
+
+
+def undamped_depths(law: CompliantLaw, energy: Floats, weight: Floats) -> Floats:
+    """Return the largest indentations of B impacts without damping [m], to a relative 1e-3, each as it is without the others.
+
+    Parameters
+    ----------
+    law : CompliantLaw
+        The law.
+    energy : array, shape (B,)
+        Kinetic energies at touch [J], > 0.
+    weight : array, shape (B,)
+        Constant forces in the direction of the indentation [N], whose work adds to the energy.
+    """
+    size = len(energy)
+    depths = np.empty(size)
+    with coefficients_of(law, size) as coefficients:
+        write_undamped_depths(law_addresses(type(law)), coefficients, law.touch_level + np.zeros(size), energy, weight, depths)
+    return depths

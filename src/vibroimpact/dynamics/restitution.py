@@ -5,16 +5,18 @@ Always without gravity: for a mass that comes with a speed and leaves with anoth
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from dataclasses import fields
 from typing import TypeVar
 
 import numpy as np
 
 from vibroimpact.arrays import Array
+from vibroimpact.compiled import interpreted
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, InstantaneousLaw
 from vibroimpact.contact.roots import solve_monotonic
 from vibroimpact.dynamics.encounter import encounter_of
-from vibroimpact.dynamics.rigid.line_contact import release_rates
+from vibroimpact.dynamics.rigid.line_contact import FEW, release_rates
 from vibroimpact.dynamics.tolerance import check_tolerance
 from vibroimpact.errors import ComputationError, InputError
 from vibroimpact.ranges import Range
@@ -110,7 +112,8 @@ def _by_integration(law: ContactLaw, mass: Array, speed: Array, tolerance: float
     masses, speeds = (np.broadcast_to(np.asarray(value, dtype=float), shape).ravel() for value in (mass, speed))
     arrays = {item.name: value for item in fields(law) if np.ndim(value := getattr(law, item.name))}
     flat = law.changed({name: np.broadcast_to(value, shape).ravel() for name, value in arrays.items()})
-    encounter = encounter_of(flat, masses, np.zeros(len(masses)), speeds)
+    with interpreted() if len(masses) < FEW else nullcontext():
+        encounter = encounter_of(flat, masses, np.zeros(len(masses)), speeds)
     with np.errstate(all="ignore"):  # Newton iterates may overflow
         return np.abs(release_rates(encounter, tolerance) / speeds).reshape(shape)[()]
 

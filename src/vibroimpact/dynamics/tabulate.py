@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
@@ -18,7 +19,7 @@ from vibroimpact.errors import InputError
 _BLOCK, _OBLIQUE_BLOCK = 2000, 16000  # drops run together, for the cache; oblique ones take more calls, each of some drops
 
 
-def tabulate(problem: StatesProblem, progress: Callable[[float], None] | None = None) -> Response:
+def tabulate(problem: StatesProblem, progress: Callable[[float], None] | None = None, *, threads: int = 1) -> Response:
     """Return the response of drops without their histories.
 
     The numbers are those of `simulate` to the tolerance, for every problem. It keeps no histories, which are read within the
@@ -30,6 +31,8 @@ def tabulate(problem: StatesProblem, progress: Callable[[float], None] | None = 
         What falls on what, how, and when to stop.
     progress : callable, optional
         Called after each block of drops with the fraction done, in (0, 1].
+    threads : int, default 1
+        How many blocks are computed at once; the numbers do not depend on it.
 
     Returns
     -------
@@ -39,7 +42,7 @@ def tabulate(problem: StatesProblem, progress: Callable[[float], None] | None = 
     Raises
     ------
     InputError
-        If it is not given a problem.
+        If it is not given a problem, or the number of threads is not positive.
 
     See Also
     --------
@@ -56,15 +59,22 @@ def tabulate(problem: StatesProblem, progress: Callable[[float], None] | None = 
     """
     if not hasattr(problem, "to_problem"):
         raise InputError(f"tabulate takes a Problem, or a case as vi.load_case(...) reads it, not {problem!r}")
+    if threads < 1:
+        raise InputError(f"{threads} is no number of threads; give 1 or more", "threads")
     stated = problem.to_problem()
-    size, block = math.prod(stated.shape), _BLOCK if stated.oblique is None else _OBLIQUE_BLOCK
+    size = math.prod(stated.shape)
+    block = min(_BLOCK if stated.oblique is None else _OBLIQUE_BLOCK, math.ceil(size / threads))
+    blocks = [stated]
+    if block < size:
+        blocks = [stated.take(slice(begin, begin + block)) for begin in range(0, size, block)]
     parts = []
-    for begin in range(0, size, block):
-        parts.append(_table_of(stated if size <= block else stated.take(slice(begin, begin + block))))
-        if progress is not None:
-            progress(min((begin + block) / size, 1.0))
-    found = parts[0] if len(parts) == 1 else _joined(stated, parts)
-    return found.squeezed() if stated.shape == () else found
+    with ThreadPoolExecutor(threads) as pool:  # compiled code releases the interpreter's lock
+        for part in pool.map(_table_of, blocks) if threads > 1 else map(_table_of, blocks):
+            parts.append(part)
+            if progress is not None:
+                progress(min(len(parts) * block / size, 1.0))
+    table = parts[0] if len(parts) == 1 else _joined(stated, parts)
+    return table.squeezed() if stated.shape == () else table
 
 
 def _table_of(problem: Problem) -> Response:

@@ -25,6 +25,7 @@ from vibroimpact.cases.limits.plate_mesh import PLATE_MESH_COMPLIANCE
 from vibroimpact.cases.limits.plate_waves import PLATE_THEORY_INERTIA
 from vibroimpact.cases.pair import contact_pair, is_free_sphere
 from vibroimpact.cases.rigid import PLATE_FALLS, contact_laws_of, elastic_names, touch_speed
+from vibroimpact.compiled import interpreted
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.quasi_static import QuasiStatic
 from vibroimpact.dynamics.encounter import encounter_of
@@ -244,7 +245,8 @@ def _first_contact(case: CaseTable) -> tuple[CompliantLaw, float]:
     if not isinstance(law, CompliantLaw):
         raise InputError(f"{law.name} gives no force, and bodies that deform need one; take another law", "contact.law")
     mass, gravity, speed = (np.array([value]) for value in (contact_pair(case).effective_mass, case.drop.gravity, touch_speed(case)))
-    return law, float(encounter_of(law, mass, gravity, speed).depth[0])
+    with interpreted():
+        return law, float(encounter_of(law, mass, gravity, speed).depth[0])
 
 
 def _contact_radius(case: CaseTable) -> float:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
@@ -25,11 +23,14 @@ from vibroimpact.dynamics.core.phase_contact import collocate_contact
 from vibroimpact.dynamics.core.phase_records import ROWS, PhaseRules
 from vibroimpact.dynamics.core.records import Law
 from vibroimpact.dynamics.encounter import Encounter
+from vibroimpact.dynamics.law_coefficients import coefficients_of
 from vibroimpact.dynamics.rigid.phase_rules import normal_grid, phase_rules
 
 _OUTCOMES = np.array([RELEASED, CAPTURED, FAILED], dtype=np.int8)
 _MOST_STEPS = 1_000_000  # the stiffest sensible contacts need thousands
-_FEW = 5  # contacts: fewer take less time in plain Python than numba takes to load
+FEW = 5
+"""Number of contacts: fewer take less time in plain Python than numba takes to load."""
+
 _ROOM = 200  # steps of a contact, at first
 _SEGMENTS = 2  # of a contact, at first
 _PARTS = 4  # of a step in a history
@@ -58,7 +59,7 @@ def follow_contacts(encounter: Encounter, tolerance: float, friction_steps: int 
     touches = np.array([encounter.mass, encounter.gravity, encounter.approach_speed, encounter.depth, encounter.speed_scale])
     rules = _rules(law, tolerance)
     contacts, solved, written = _room_for(size, friction_steps), 0, 0
-    with _coefficients(law, size) as coefficients:
+    with coefficients_of(law, size) as coefficients:
         known = rules, normal_grid(friction_steps), collocates, law_addresses(type(law)), coefficients, touches
         while True:
             solved, written = follow_lines(_manner(encounter, 0, tolerance), *known, contacts, solved, written)
@@ -103,7 +104,7 @@ def release_rates(encounter: Encounter, tolerance: float) -> Floats:
     """
     size = len(encounter.mass)
     rates = np.full(size, np.nan)
-    if size < _FEW and _collocates(encounter.law, tolerance):
+    if size < FEW and _collocates(encounter.law, tolerance):
         with interpreted():
             rates = np.array([_collocated_rate(encounter.pick(np.array([drop])), tolerance) for drop in range(size)])
     left = np.flatnonzero(np.isnan(rates))
@@ -268,19 +269,6 @@ class RecordedContact:
         within = starts[(variables[:-1] == BY_ROOT) | (variables[:-1] == FREE) | (variables[1:] == FREE)]
         times = np.unique(np.append(within, self.contact.time_of_deepest))
         return np.concatenate([[0.0], times[(times > _ON_CORNER * end) & (times < (1.0 - _ON_CORNER) * end)], [end]])
-
-
-@contextmanager
-def _coefficients(law: CompliantLaw, size: int) -> Iterator[Floats]:
-    """Give the coefficients of a law for each of B drops (B, K); laws without functions of floats are kept as long as they are used."""
-    if type(law).missing_functions():
-        laws = [law.take(drop) for drop in range(size)]
-        yield np.array([law_coefficients(one) for one in laws])
-        return
-    coefficients = np.zeros((size, len(law.coefficients)))
-    for number, values in enumerate(law.coefficients):
-        coefficients[:, number] = values
-    yield coefficients
 
 
 def _manner(encounter: Encounter, drop: int, tolerance: float) -> records.LineManner:

@@ -262,7 +262,7 @@ class VibratingBodies:
         (gaps, velocities), (rest_speed, until) = place, limits
         starts, visits = [], []
         for number, drop in enumerate(drops):
-            one, problem = encounter.alone(number), self.problem
+            one, problem = encounter.take(np.array([number])), self.problem
             # the duration of Hertz's contact goes with the 0.4th power of the mass; a free plate reduces the effective mass
             lighter = float(self.systems[drop].mass[0] / one.mass[0]) ** 0.4
             start, pace = self.state(drop, gaps[number], velocities[number]), 3.0 * lighter * float(one.depth[0] / one.speed_scale[0])

@@ -15,8 +15,8 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.contact.law import CompliantLaw
-from vibroimpact.contact.static import undamped_depth
 from vibroimpact.dynamics.collocation import Map
+from vibroimpact.dynamics.encounter import undamped_depths
 from vibroimpact.dynamics.vibrating.active_contact import (
     ActiveContact,
     ContactDefinition,
@@ -195,7 +195,7 @@ class March:
     def _scale(self, number: int, law: CompliantLaw, closing: float) -> tuple[float, float]:
         """Return the speed of the motion in a contact [m/s] and its approximate duration [s]."""
         mass, speed = float(self.system.mass[number]), motion_speed(self.system, number, law, closing)
-        depth = float(undamped_depth(law, np.array([0.5 * mass * speed**2]), np.zeros(1))[0] - law.touch_level)
+        depth = float(undamped_depths(law, np.array([0.5 * mass * speed**2]), np.zeros(1))[0] - law.touch_level)
         return speed, 3.0 * depth / speed
 
     def end_contact(self, contact: ActiveContact) -> None:
