@@ -10,7 +10,7 @@ from vibroimpact.dynamics.core.contact_records import Attempt, Balance, Beginnin
 from vibroimpact.dynamics.core.events import BREAKPOINT, NO_EVENT, NO_PUSH, PARTED, TURN, first_event
 from vibroimpact.dynamics.core.flight import approach_of
 from vibroimpact.dynamics.core.histories import contact_histories
-from vibroimpact.dynamics.core.law import static_work
+from vibroimpact.dynamics.core.law import contacts_of, law_of, static_work
 from vibroimpact.dynamics.core.path import stretch_path
 from vibroimpact.dynamics.core.records import Bases, Basis, Contacts, Coordinates, End, Event, Law, Nodes, Start, State, Surfaces, System
 from vibroimpact.dynamics.core.rubbing import first_friction, free_motions, rubbed_part, under_friction
@@ -90,52 +90,33 @@ def surface_start(system: System, surfaces: Surfaces, coordinates: Coordinates, 
     return Start(displacement, velocity, state.local, approach, outer_rate, inner_rate)
 
 
-@compiled(lambda t: t.of(Contacts)(t.of(Law)))
-def contacts_of(law: Law) -> Contacts:
-    """Return the law of one contact as stretches take it."""
-    return Contacts(
-        law.addresses[:1].copy(),
-        law.coefficients.copy().reshape(1, len(law.coefficients)),
-        np.array([law.speed]),
-        np.array([law.release]),
-        np.array([law.release_level]),
-        law.series.copy().reshape(1, len(law.series)),
-    )
-
-
-@compiled(lambda t: t.of(Beginning)(t.of(Bodies), t.of(Law), t.of(State), t.of(Rubbing), t.real))
-def beginning_of(bodies: Bodies, law: Law, state: State, rubbing: Rubbing, delta: float) -> Beginning:
-    """Return what a stretch begins with; `delta`: about the indentation of the law [m]."""
+@compiled(lambda t: t.of(Beginning)(t.of(Bodies), t.of(Law), t.of(Manner), t.of(State), t.of(Rubbing), t.real))
+def beginning_of(bodies: Bodies, law: Law, manner: Manner, state: State, rubbing: Rubbing, delta: float) -> Beginning:
+    """Return what a stretch of one contact begins with; `delta`: about the indentation of the law [m]."""
     start = surface_start(bodies.system, bodies.surfaces, bodies.coordinates, state)
     along = start
     if rubbing.directions:
         along = surface_start(bodies.system, bodies.rubbed_surfaces, bodies.rubbed_coordinates, state)
-    contacts = contacts_of(law)
+    contacts = contacts_of(law, manner.tension)
     rubbed = Rubbed(bodies.rubbed_surfaces, along, rubbing)
     return Beginning(state, start, contacts, begun_indentations(contacts, start, np.array([delta])), rubbed)
 
 
-@compiled(
-    lambda t: t.of(Attempt)(
-        t.of(Basis), t.of(Bodies), t.of(Law), t.of(Manner), t.of(Beginning), t.of(Nodes), t.real, t.boolean, t.of(Event)
-    )
-)
+@compiled(lambda t: t.of(Attempt)(t.of(Basis), t.of(Bodies), t.of(Manner), t.of(Beginning), t.of(Nodes), t.vector, t.boolean, t.of(Event)))
 def attempt(
     basis: Basis,
     bodies: Bodies,
-    law: Law,
     manner: Manner,
     beginning: Beginning,
     guess: Nodes,
-    trend: float,
+    trend: Floats,
     guessed: bool,
     event: Event,
 ) -> Attempt:
     """Return a stretch solved up to an event, or of the length that `event.x` gives [s] where there is none.
 
-    `guess`: forces and indentations to begin with, if `guessed`; else they are extrapolated by the `trend` of the force [N/s].
+    `guess`: forces and indentations to begin with, if `guessed`; else they are extrapolated by the `trend` of the forces [N/s] (c,).
     """
-    system = bodies.system
     surfaces = bodies.surfaces
     start = beginning.start
     contacts = beginning.contacts
@@ -146,7 +127,7 @@ def attempt(
     friction = first_friction(rubbed.rubbing, len(basis.time))
     if not guessed:
         motion = under_friction(motions, friction.force)
-        guess = first_guess(basis, surfaces, contacts, start, motion, begun, np.array([trend]), length)
+        guess = first_guess(basis, surfaces, contacts, start, motion, begun, trend, length)
     ends = GIVEN_LENGTH
     if event.kind == PARTED or event.kind == BREAKPOINT:
         ends = AT_LEVEL
@@ -154,71 +135,76 @@ def attempt(
         ends = AT_NO_FORCE
     elif event.kind == TURN:
         ends = AT_TURN
-    end = End(ends, event.level, 0)
+    end = End(ends, event.level, event.contact)
     nodes, motions, friction, length, solved = solve_stretch(
         basis, surfaces, contacts, start, rubbed, guess, motions, friction, length, end
     )
     motion = under_friction(motions, friction.force)
     part = rubbed_part(basis, motions, rubbed.rubbing, length, nodes.force, friction)
     contact = contact_histories(basis, surfaces, contacts, start, begun, nodes, motion, length)
-    seen = Event(NO_EVENT, 0.0, np.inf)
+    seen = Event(NO_EVENT, 0.0, np.inf, 0)
     if solved:
-        seen = first_event(basis, system, law, manner.tension, contact, nodes, manner.motion_speed, manner.span)
+        seen = first_event(basis, surfaces, contacts, contact, nodes, manner.motion_speed, manner.span)
     return Attempt(nodes, contact, part, length, solved, seen)
 
 
-@compiled(lambda t: t.of(Balance)(t.of(Basis), t.of(Bodies), t.of(Law), t.of(Manner), t.of(State), t.of(Attempt)))
-def balance_of(basis: Basis, bodies: Bodies, law: Law, manner: Manner, state: State, tried: Attempt) -> Balance:
-    """Return the motion of all coordinates through a stretch from a state, and whether it is resolved by two measures of its error."""
-    system = bodies.system
-    contact = tried.contact
+@compiled(lambda t: t.of(Balance)(t.of(Basis), t.of(Bodies), t.of(Manner), t.of(Beginning), t.of(Attempt)))
+def balance_of(basis: Basis, bodies: Bodies, manner: Manner, beginning: Beginning, tried: Attempt) -> Balance:
+    """Return the motion of all coordinates through a stretch, and whether it is resolved by two measures of its error."""
+    histories = tried.contact
     nodes = tried.nodes
     directions, number = tried.rubbed.force.shape
-    force = np.zeros((1 + directions) * number)
-    static = np.zeros((1 + directions) * number)
-    for node in range(number):
+    size = len(nodes.force)
+    force = np.zeros(size + directions * number)
+    static = np.zeros(size + directions * number)
+    for node in range(size):
         force[node] = nodes.force[node]
         static[node] = nodes.static[node]
-        for direction in range(directions):
-            force[(1 + direction) * number + node] = tried.rubbed.force[direction, node]
+    for direction in range(directions):
+        for node in range(number):
+            force[size + direction * number + node] = tried.rubbed.force[direction, node]
     surfaces = bodies.surfaces
     coordinates = bodies.coordinates
     if directions:
         surfaces = bodies.rubbed_surfaces
         coordinates = bodies.rubbed_coordinates
-    path = stretch_path(basis, surfaces, coordinates, state, tried.length, force, static, False)
-    work = 0.0
-    if tried.solved:
-        work = static_work(law, contact.delta[0, len(basis.time)]) - static_work(law, contact.delta[0, 0])
-    imbalance = path.energies[0] + work + contact.dissipated[0] - tried.rubbed.surface_work
+    path = stretch_path(basis, surfaces, coordinates, beginning.state, tried.length, force, static, False)
+    work = np.zeros(len(histories.dissipated))
+    imbalance = path.energies[0] - tried.rubbed.surface_work
+    for contact in range(len(work)):
+        if tried.solved:
+            law = law_of(beginning.contacts, contact)
+            work[contact] = static_work(law, histories.delta[contact, number]) - static_work(law, histories.delta[contact, 0])
+        imbalance += work[contact] + histories.dissipated[contact]
     for coordinate in range(len(path.lost)):
         imbalance += path.lost[coordinate]
-    energy = 0.5 * system.mass * manner.motion_speed * manner.motion_speed
-    allowed = 0.06 * manner.tolerance * energy
-    smooth = contact.roughness * contact.roughness <= 0.1 * manner.tolerance
+    allowed = 0.06 * manner.tolerance * manner.energy
+    smooth = histories.roughness * histories.roughness <= 0.1 * manner.tolerance
     balanced = abs(imbalance) <= allowed + path.energies[1] and tried.rubbed.imbalance <= allowed
     return Balance(path, work, tried.solved and smooth and balanced)
 
 
-@compiled(lambda t: t.of(Nodes)(t.of(Basis), t.of(Basis), t.of(Law), t.of(Attempt), t.real))
-def guess_from(basis: Basis, other: Basis, law: Law, solved: Attempt, share: float) -> Nodes:
+@compiled(lambda t: t.of(Nodes)(t.of(Basis), t.of(Basis), t.of(Contacts), t.of(Attempt), t.real))
+def guess_from(basis: Basis, other: Basis, contacts: Contacts, solved: Attempt, share: float) -> Nodes:
     """Return forces and indentations at the nodes of another rule, over a share of the time of a solved stretch."""
     number = len(basis.time)
-    force = np.empty(number)
-    delta = np.empty(number)
+    size = len(contacts.speed) * number
+    force = np.empty(size)
+    delta = np.empty(size)
     weights = np.empty(number + 1)
-    force_of = force_at(law.addresses[0])
     for node in range(number):
         weights_at(basis, place_at(basis, share * other.time[node]), weights)
-        reached = 0.0
-        rate = 0.0
-        for point in range(number + 1):
-            reached += weights[point] * solved.contact.delta[0, point]
-            rate += weights[point] * solved.contact.rate[0, point]
-        static, dissipative = force_of(max(reached, law.release), rate, law.speed, law.coefficients)
-        delta[node] = reached
-        force[node] = static + dissipative
-    return Nodes(np.zeros(number), force, delta)
+        for contact in range(len(contacts.speed)):
+            law = law_of(contacts, contact)
+            reached = 0.0
+            rate = 0.0
+            for point in range(number + 1):
+                reached += weights[point] * solved.contact.delta[contact, point]
+                rate += weights[point] * solved.contact.rate[contact, point]
+            static, dissipative = force_at(law.addresses[0])(max(reached, law.release), rate, law.speed, law.coefficients)
+            delta[contact * number + node] = reached
+            force[contact * number + node] = static + dissipative
+    return Nodes(np.zeros(size), force, delta)
 
 
 @compiled(lambda t: t.of(Basis)(t.of(Bases), t.integer))
@@ -233,11 +219,11 @@ def basis_of(bases: Bases, time_map: int) -> Basis:
 
 @compiled(
     lambda t: t.tuple(t.boolean, t.of(Attempt), t.integer, t.of(Event))(
-        t.of(Bases), t.of(Bodies), t.of(Law), t.of(Manner), t.of(Beginning), t.of(Attempt), t.integer
+        t.of(Bases), t.of(Bodies), t.of(Manner), t.of(Beginning), t.of(Attempt), t.integer
     )
 )
 def up_to_event(
-    bases: Bases, bodies: Bodies, law: Law, manner: Manner, beginning: Beginning, tried: Attempt, time_map: int
+    bases: Bases, bodies: Bodies, manner: Manner, beginning: Beginning, tried: Attempt, time_map: int
 ) -> tuple[bool, Attempt, int, Event]:
     """Return whether it succeeds to solve a stretch again up to its first event, the solution, its map of time, and the event.
 
@@ -245,6 +231,7 @@ def up_to_event(
     """
     seen = tried.event
     ended = tried
+    no_trend = np.zeros(len(beginning.delta))
     for _ in range(_MOST_ATTEMPTS):
         source = ended
         source_basis = basis_of(bases, time_map)
@@ -252,9 +239,9 @@ def up_to_event(
             time_map = 2 if seen.kind == PARTED or seen.kind == NO_PUSH else 1
         basis = basis_of(bases, time_map)
         share = time_at(source_basis, seen.x)
-        guess = guess_from(source_basis, basis, law, source, share)
-        aim = Event(seen.kind, seen.level, share * source.length)
-        ended = attempt(basis, bodies, law, manner, beginning, guess, 0.0, True, aim)
+        guess = guess_from(source_basis, basis, beginning.contacts, source, share)
+        aim = Event(seen.kind, seen.level, share * source.length, seen.contact)
+        ended = attempt(basis, bodies, manner, beginning, guess, no_trend, True, aim)
         if not ended.solved or not 0.0 < ended.length <= (1.0 + _AT_END) * source.length:
             break
         if ended.event.kind == NO_EVENT or ended.event.x > _BEFORE_END:

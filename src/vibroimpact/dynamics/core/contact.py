@@ -49,12 +49,11 @@ def separates_at_no_force(system: System, law: Law, manner: Manner, state: State
     return bool(np.isfinite(time_to_separation(system, state, law.release_level)))
 
 
-@compiled(lambda t: t.real(t.of(System), t.of(Law), t.of(Manner), t.real))
-def energy_held(system: System, law: Law, manner: Manner, delta: float) -> float:
+@compiled(lambda t: t.real(t.of(Law), t.of(Manner), t.real))
+def energy_held(law: Law, manner: Manner, delta: float) -> float:
     """Return the energy that a contact stores at an indentation of its law [J], with rounding errors set to zero."""
     held = stored_energy(law, delta)
-    energy = 0.5 * system.mass * manner.motion_speed * manner.motion_speed
-    return held if abs(held) > _NOTHING * energy else 0.0
+    return held if abs(held) > _NOTHING * manner.energy else 0.0
 
 
 @compiled(
@@ -110,7 +109,7 @@ def follow_contact(
     changes = 0  # of the law's memory, in this call
     outcome = FULL
     parts.late_loss[0] = 0.0
-    no_event = Event(NO_EVENT, 0.0, 0.0)
+    no_event = Event(NO_EVENT, 0.0, 0.0, 0)
     no_guess = Nodes(np.zeros(0), np.zeros(0), np.zeros(0))
     while part < len(parts.start) and changes + 1 < len(parts.turned_at):  # two changes at most are made on the way
         if not pushes:  # recoil
@@ -151,12 +150,12 @@ def follow_contact(
             approach, rate = approach_of(system, state)
             overlap = max(approach - law.release_level, 0.0)
             if overlap <= _ROUNDING * deepest and rate < 0.0:
-                lose_at_end(parts, part, lost, energy_held(system, law, manner, law.release))
+                lose_at_end(parts, part, lost, energy_held(law, manner, law.release))
                 outcome = RELEASED
                 break
             if manner.tension == TENSION_CUT and force <= _NO_FORCE * largest_force and trend < 0.0:
                 if separates_at_no_force(system, law, manner, state):
-                    lose_at_end(parts, part, lost, energy_held(system, law, manner, delta))
+                    lose_at_end(parts, part, lost, energy_held(law, manner, delta))
                     outcome = RELEASED
                     break
                 pushes = False
@@ -171,16 +170,16 @@ def follow_contact(
             break
 
         time_map = 0 if fresh else 1
-        beginning = beginning_of(bodies, law, state, rubbing, delta)
-        given = Event(NO_EVENT, 0.0, min(next_length, longest))
-        tried = attempt(basis_of(bases, time_map), bodies, law, manner, beginning, no_guess, trend, False, given)
+        beginning = beginning_of(bodies, law, manner, state, rubbing, delta)
+        given = Event(NO_EVENT, 0.0, min(next_length, longest), 0)
+        tried = attempt(basis_of(bases, time_map), bodies, manner, beginning, no_guess, np.array([trend]), False, given)
         event = no_event
         if tried.event.kind != NO_EVENT:
             # also tried if the stretch is not resolved, as the event may be the only reason
-            success, ended, ended_map, seen = up_to_event(bases, bodies, law, manner, beginning, tried, time_map)
-            balance = balance_of(basis_of(bases, ended_map), bodies, law, manner, state, ended)
+            success, ended, ended_map, seen = up_to_event(bases, bodies, manner, beginning, tried, time_map)
+            balance = balance_of(basis_of(bases, ended_map), bodies, manner, beginning, ended)
             if not (success and balance.resolved):
-                balance = balance_of(basis_of(bases, time_map), bodies, law, manner, state, tried)
+                balance = balance_of(basis_of(bases, time_map), bodies, manner, beginning, tried)
                 near = max(tried.event.x, 1.0 / (len(bases.inside.grid) - 1)) if balance.resolved else 1.0
                 next_length = 0.5 * min(next_length, tried.length * time_at(basis_of(bases, time_map), near))
                 continue
@@ -188,7 +187,7 @@ def follow_contact(
             time_map = ended_map
             event = seen
         else:
-            balance = balance_of(basis_of(bases, time_map), bodies, law, manner, state, tried)
+            balance = balance_of(basis_of(bases, time_map), bodies, manner, beginning, tried)
             if not balance.resolved:
                 next_length *= 0.5
                 continue
@@ -220,7 +219,7 @@ def follow_contact(
             next_length = tried.length * min(max(growth, 0.7), 4.0)
         elif event.kind == PARTED or (event.kind == NO_PUSH and separates_at_no_force(system, law, manner, state)):
             # stored energy is lost where a sticking contact breaks, or where the surface recovers more slowly than the bodies part
-            lose_at_end(parts, part, lost, energy_held(system, law, manner, delta))
+            lose_at_end(parts, part, lost, energy_held(law, manner, delta))
             outcome = RELEASED
             break
         elif event.kind == NO_PUSH:

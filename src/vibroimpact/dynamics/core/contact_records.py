@@ -43,7 +43,7 @@ class Bodies(NamedTuple):
 
 
 class Beginning(NamedTuple):
-    """What a stretch of one contact begins with: the state, also as that of the surfaces, the law, and its indentation (1,) [m].
+    """What a stretch of c contacts begins with: the state, also as that of the surfaces, the laws, and their indentations (c,) [m].
 
     rubbed: the surfaces that rub.
     """
@@ -56,7 +56,7 @@ class Beginning(NamedTuple):
 
 
 class Attempt(NamedTuple):
-    """A stretch of one contact as Newton's method leaves it.
+    """A stretch of contacts as Newton's method leaves it.
 
     nodes, contact: its forces and histories. rubbed: what friction does. length [s]. solved: did Newton's method converge? event: the first
     one within it.
@@ -84,27 +84,29 @@ class Solved(NamedTuple):
 
 
 class Balance(NamedTuple):
-    """Motion of all coordinates through a solved stretch of one contact, and its balance of energy.
+    """Motion of all coordinates through a solved stretch of contacts, and its balance of energy.
 
-    work: increase of the energy stored by the law and of the plastic work [J]. resolved: is it solved with an error within the tolerance?
+    work (c,): increase of the energy stored by the laws and of the plastic work [J]. resolved: is it solved with an error within the
+    tolerance?
     """
 
     path: Path
-    work: Real
+    work: Vector
     resolved: Boolean
 
 
 class Manner(NamedTuple):
     """What stays the same through a contact.
 
-    tension, contact_end: numbers of the law's, of `events`. motion_speed: speed of the motion [m/s]. span: approximate duration of a
-    contact [s]. tolerance: relative error allowed at the end of each stretch. begun: time of touch [s]. until: end of a ride [s]. longest:
-    length of a stretch [s]. most_steps: how many stretches are tried.
+    tension, contact_end: numbers of the law's, of `events`. motion_speed: speed of the motion [m/s]; energy: that of it [J]. span:
+    approximate duration of a contact [s]. tolerance: relative error allowed at the end of each stretch. begun: time of touch [s]. until:
+    end of a ride [s]. longest: length of a stretch [s]. most_steps: how many stretches are tried.
     """
 
     tension: Integer
     contact_end: Integer
     motion_speed: Real
+    energy: Real
     span: Real
     tolerance: Real
     begun: Real

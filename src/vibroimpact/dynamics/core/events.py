@@ -6,8 +6,9 @@ import numpy as np
 
 from vibroimpact.arrays import Bools, Floats
 from vibroimpact.compiled import compiled, force_at
+from vibroimpact.dynamics.core.law import law_of
 from vibroimpact.dynamics.core.linear import product
-from vibroimpact.dynamics.core.records import Basis, Event, Histories, Law, Nodes, System
+from vibroimpact.dynamics.core.records import Basis, Contacts, Event, Histories, Nodes, Surfaces
 
 NO_EVENT, PARTED, NO_PUSH, BREAKPOINT, TURN = 0, 1, 2, 3, 4
 """Kinds of events: none; the surfaces separate; the force is zero; the law's indentation is at a breakpoint; the approach turns."""
@@ -42,28 +43,52 @@ def crossing(values: Floats, reached: Bools) -> tuple[float, bool]:
     return 1.0, False
 
 
-@compiled(lambda t: t.of(Event)(t.of(Basis), t.of(System), t.of(Law), t.integer, t.of(Histories), t.of(Nodes), t.real, t.real))
-def first_event(basis: Basis, system: System, law: Law, tension: int, contact: Histories, nodes: Nodes, speed: float, span: float) -> Event:
-    """Return the first event in a stretch of a contact of about a speed [m/s] and a duration [s]."""
-    delta = product(basis.grid, contact.delta[0])
-    rate = product(basis.grid, contact.rate[0])
+@compiled(lambda t: t.of(Event)(t.of(Basis), t.of(Surfaces), t.of(Contacts), t.of(Histories), t.of(Nodes), t.real, t.real))
+def first_event(
+    basis: Basis, surfaces: Surfaces, contacts: Contacts, histories: Histories, nodes: Nodes, speed: float, span: float
+) -> Event:
+    """Return the first event in a stretch of contacts of about a speed [m/s] and a duration [s]."""
+    first = Event(NO_EVENT, 0.0, np.inf, 0)
+    for contact in range(len(contacts.speed)):
+        event = first_event_of(basis, surfaces, contacts, histories, nodes, speed, span, contact)
+        if event.x < first.x:
+            first = event
+    return first
+
+
+@compiled(lambda t: t.of(Event)(t.of(Basis), t.of(Surfaces), t.of(Contacts), t.of(Histories), t.of(Nodes), t.real, t.real, t.integer))
+def first_event_of(
+    basis: Basis,
+    surfaces: Surfaces,
+    contacts: Contacts,
+    histories: Histories,
+    nodes: Nodes,
+    speed: float,
+    span: float,
+    contact: int,
+) -> Event:
+    """Return the first event of one of the contacts in a stretch."""
+    law = law_of(contacts, contact)
+    delta = product(basis.grid, histories.delta[contact])
+    rate = product(basis.grid, histories.rate[contact])
     points = len(delta)
     deepest = delta.max()
     reached = np.zeros(points, dtype=np.bool_)
-    first = Event(NO_EVENT, 0.0, np.inf)
+    first = Event(NO_EVENT, 0.0, np.inf, contact)
 
     above = delta - law.release
     for point in range(points):
         reached[point] = above[point] < -_ROUNDING * above.max()
     x, crosses = crossing(above, reached)
     if crosses:
-        first = Event(PARTED, law.release, x)
+        first = Event(PARTED, law.release, x, contact)
 
-    if tension != TENSION_KEPT:  # also a law without tension gives a negative force where the surfaces recoil fast enough
+    if contacts.tension[contact] != TENSION_KEPT:  # also without tension the force is negative where the surfaces recoil fast enough
+        number = len(basis.time)
         largest = 0.0
-        for node in range(len(nodes.force)):
+        for node in range(contact * number, (contact + 1) * number):
             largest = max(largest, abs(nodes.force[node]))
-        slack = _SLACK * (largest + system.mass * speed / span)
+        slack = _SLACK * (largest + surfaces.mass[contact] * speed / span)
         force_of = force_at(law.addresses[0])
         force = np.empty(points)
         for point in range(points):
@@ -72,7 +97,7 @@ def first_event(basis: Basis, system: System, law: Law, tension: int, contact: H
             reached[point] = force[point] < -slack
         x, crosses = crossing(force, reached)
         if crosses and x < first.x:
-            first = Event(NO_PUSH, 0.0, x)
+            first = Event(NO_PUSH, 0.0, x, contact)
 
     for number in range(2):
         level = law.first_breakpoint if number == 0 else law.second_breakpoint
@@ -86,15 +111,15 @@ def first_event(basis: Basis, system: System, law: Law, tension: int, contact: H
             reached[point] = beyond[point] < 0.0
         x, crosses = crossing(beyond, reached)
         if crosses and x < first.x:
-            first = Event(BREAKPOINT, level, x)
+            first = Event(BREAKPOINT, level, x, contact)
 
     if deepest > law.memory_level:
-        rates = product(basis.grid, contact.closing[0])
+        rates = product(basis.grid, histories.closing[contact])
         fastest = -np.inf
         for point in range(points):
             fastest = max(fastest, rates[point])
             reached[point] = rates[point] < 0.0 and fastest > _ZERO_RATE * speed
         x, crosses = crossing(rates, reached)
         if crosses and x < first.x:
-            first = Event(TURN, 0.0, x)
+            first = Event(TURN, 0.0, x, contact)
     return first

@@ -12,7 +12,7 @@ import numpy as np
 
 from vibroimpact.arrays import Floats, Integers
 from vibroimpact.compiled import compiled, compressed_at, energies_at, force_at, levels_at
-from vibroimpact.dynamics.core.records import Law
+from vibroimpact.dynamics.core.records import Contacts, Law
 
 _LEAST_RADIUS = 1e-9
 _STEP = 1e-7  # relative step of finite differences
@@ -181,6 +181,43 @@ def static_work(law: Law, delta: float) -> float:
     """Return the sum of the stored energy and the plastic work [J] at an indentation of a law [m]."""
     _, plastic = energies_at(law.addresses[1])(max(delta, law.release), law.coefficients)
     return float(stored_energy(law, delta) + plastic)
+
+
+@compiled(lambda t: t.of(Law)(t.of(Contacts), t.integer))
+def law_of(contacts: Contacts, contact: int) -> Law:
+    """Return the law of one of several contacts."""
+    return Law(
+        contacts.addresses[4 * contact : 4 * contact + 4],
+        contacts.coefficients[contact],
+        contacts.series[contact],
+        contacts.speed[contact],
+        contacts.touch[contact],
+        contacts.release[contact],
+        contacts.release_level[contact],
+        contacts.memory_level[contact],
+        contacts.first_breakpoint[contact],
+        contacts.second_breakpoint[contact],
+        contacts.jump[contact],
+    )
+
+
+@compiled(lambda t: t.of(Contacts)(t.of(Law), t.integer))
+def contacts_of(law: Law, tension: int) -> Contacts:
+    """Return the law of one contact as stretches take it."""
+    return Contacts(
+        law.addresses.copy(),
+        law.coefficients.copy().reshape(1, len(law.coefficients)),
+        law.series.copy().reshape(1, len(law.series)),
+        np.array([law.speed]),
+        np.array([law.touch]),
+        np.array([law.release]),
+        np.array([law.release_level]),
+        np.array([law.memory_level]),
+        np.array([law.first_breakpoint]),
+        np.array([law.second_breakpoint]),
+        np.array([law.jump]),
+        np.array([tension]),
+    )
 
 
 @compiled(lambda t: t.of(Law)(t.integers, t.vector, t.vector, t.real))

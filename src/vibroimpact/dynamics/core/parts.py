@@ -55,7 +55,7 @@ def write_stretch(parts: Parts, part: int, basis: Basis, system: System, solved:
     parts.rate[part] = solved.contact.rate[0]
     parts.closing[part] = solved.contact.closing[0]
     parts.delta[part] = solved.contact.delta[0]
-    parts.work[part] = balance.work
+    parts.work[part] = balance.work[0]
     parts.dissipated[part] = solved.contact.dissipated[0]
     parts.roughness[part] = solved.contact.roughness
     depth = system.offset

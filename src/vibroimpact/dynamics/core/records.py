@@ -180,19 +180,24 @@ class Start(NamedTuple):
 
 
 class Contacts(NamedTuple):
-    """The laws at c contacts that push.
+    """The laws at c contacts that push, each as in `Law`, one after the other.
 
-    laws (c,): their forces, as `native.force_of` gives them. coefficients (c, K). speed (c,): closing speed at touch [m/s]. release,
-    release_level (c,): indentation of the law, and approach of the surfaces, at release [m]. series (c, 7): numbers of the compliance in
-    series.
+    addresses (4 c,). coefficients (c, K). series (c, 7). speed, touch, release, release_level, memory_level, first_breakpoint,
+    second_breakpoint, jump (c,). tension (c,): may the force be tensile? Numbers of `events`.
     """
 
-    laws: Integers
+    addresses: Integers
     coefficients: Matrix
+    series: Matrix
     speed: Vector
+    touch: Vector
     release: Vector
     release_level: Vector
-    series: Matrix
+    memory_level: Vector
+    first_breakpoint: Vector
+    second_breakpoint: Vector
+    jump: Vector
+    tension: Integers
 
 
 class Nodes(NamedTuple):
@@ -204,11 +209,14 @@ class Nodes(NamedTuple):
 
 
 class Event(NamedTuple):
-    """An event within a stretch: its kind, the indentation of the law at it [m], and x, the part of the stretch at which it is met."""
+    """An event within a stretch: its kind, the indentation of the law at it [m], x, the part of the stretch at which it is met, and the
+    contact that it belongs to.
+    """
 
     kind: Integer
     level: Real
     x: Real
+    contact: Integer
 
 
 class End(NamedTuple):

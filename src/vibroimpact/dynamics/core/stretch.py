@@ -32,7 +32,7 @@ _TINY = 1e-300
 def linearise_contact(contacts: Contacts, contact: int, delta: Floats, rate: Floats, linear: Floats) -> None:
     """Write forces, approach and derivatives of the law of one contact at N nodes into `linear` (7, N), as `law.linearise` does."""
     linearise(
-        contacts.laws[contact],
+        contacts.addresses[4 * contact],
         contacts.coefficients[contact],
         contacts.speed[contact],
         contacts.release[contact],
@@ -80,7 +80,7 @@ def first_guess(
     for contact in range(len(begun)):
         rate = begun_rate(surfaces, start, contact)
         reached = max(begun[contact], contacts.release[contact])
-        law = force_at(contacts.laws[contact])
+        law = force_at(contacts.addresses[4 * contact])
         begun_static, begun_dissipative = law(reached, rate, contacts.speed[contact], contacts.coefficients[contact])
         for node in range(nodes):
             later = trend[contact] * length * basis.time[node]
@@ -95,7 +95,7 @@ def first_guess(
         for node in range(nodes):
             row = contact * nodes + node
             delta[row] = indentation_at(
-                contacts.laws[contact],
+                contacts.addresses[4 * contact],
                 contacts.coefficients[contact],
                 contacts.speed[contact],
                 contacts.release[contact],
@@ -103,7 +103,7 @@ def first_guess(
                 max(approach[row], contacts.release_level[contact]),
             )
             reached = max(delta[row], contacts.release[contact])
-            law = force_at(contacts.laws[contact])
+            law = force_at(contacts.addresses[4 * contact])
             of_law, dissipative = law(reached, rates[row], contacts.speed[contact], contacts.coefficients[contact])
             static[row] = 0.0
             force[row] = of_law + dissipative
@@ -128,10 +128,10 @@ def linearised_laws(contacts: Contacts, motion: Motion, now: Nodes) -> Floats:
     """Return forces, approach and derivatives of all laws at the nodes (7, M), as `law.linearise` gives them."""
     rate = motion.rate - product(motion.rate_by_force, now.force)
     size = len(rate)
-    nodes = size // len(contacts.laws)
+    nodes = size // len(contacts.speed)
     linear = np.empty((7, size))
     of_contact = np.empty((7, nodes))
-    for contact in range(len(contacts.laws)):
+    for contact in range(len(contacts.speed)):
         first = contact * nodes
         linearise_contact(contacts, contact, now.delta[first : first + nodes], rate[first : first + nodes], of_contact)
         for row in range(7):

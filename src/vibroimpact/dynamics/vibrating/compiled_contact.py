@@ -48,6 +48,7 @@ class CompiledContact:
             tension=TENSIONS.index(law.tension),
             contact_end=ENDS.index(law.contact_end),
             motion_speed=active.speed,
+            energy=active.energy,
             span=active.span,
             tolerance=march.tolerance,
             begun=march.time,
@@ -144,7 +145,7 @@ class CompiledContact:
         )
         length = float(parts.length[part])
         rubbed = self._rubbed(parts, part, basis, length)
-        return VibratingStretch(self.view, basis, length, begun, (history,), True, float(parts.roughness[part]), rubbed)
+        return VibratingStretch(self.view, basis, length, begun, (history,), float(parts.roughness[part]), rubbed)
 
     def _rubbed(self, parts: Parts, part: int, basis: RadauEigenbasis, length: float) -> RubbedStretch | None:
         rubbing = self.progress.rubbing

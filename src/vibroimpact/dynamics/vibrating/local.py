@@ -13,7 +13,8 @@ from vibroimpact.arrays import Array
 from vibroimpact.compiled import law_addresses, law_coefficients
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.quasi_static import QuasiStatic
-from vibroimpact.dynamics.core.law import law_at_touch
+from vibroimpact.dynamics.core import law as core
+from vibroimpact.dynamics.core.events import TENSIONS
 from vibroimpact.dynamics.core.records import Contacts, Law
 
 _MOST_ITERATIONS = 40
@@ -57,20 +58,12 @@ class LocalContact:
         """The law with the levels and the energy that follow from it and the compliance in series, as the core finds them."""
         series = self.series
         numbers = np.array([series.linear, series.unit, *series.factors, series.force], dtype=float)
-        return law_at_touch(law_addresses(type(self.law)), law_coefficients(self.law), numbers, float(self.approach_speed))
+        return core.law_at_touch(law_addresses(type(self.law)), law_coefficients(self.law), numbers, float(self.approach_speed))
 
     @cached_property
     def record(self) -> Contacts:
         """The contact as the core takes it."""
-        law = self.with_levels
-        return Contacts(
-            laws=law.addresses[:1],
-            coefficients=law.coefficients[None],
-            speed=np.array([law.speed]),
-            release=np.array([law.release]),
-            release_level=np.array([law.release_level]),
-            series=law.series[None],
-        )
+        return core.contacts_of(self.with_levels, TENSIONS.index(self.law.tension))
 
     # in terms of the indentation of the law ---------------------------------------------------------
 

@@ -15,7 +15,9 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.contact.law import CompliantLaw
-from vibroimpact.dynamics.collocation import Map
+from vibroimpact.dynamics.core.contact_records import Manner
+from vibroimpact.dynamics.core.events import NO_EVENT, NO_PUSH, NO_TENSION, PARTED, TURN
+from vibroimpact.dynamics.core.records import Event
 from vibroimpact.dynamics.encounter import undamped_depths
 from vibroimpact.dynamics.vibrating.active_contact import (
     ActiveContact,
@@ -26,22 +28,16 @@ from vibroimpact.dynamics.vibrating.active_contact import (
     record_peaks,
 )
 from vibroimpact.dynamics.vibrating.contact_view import contact_view
-from vibroimpact.dynamics.vibrating.events import ZERO_RATE, Event, OtherEvent, first_crossing, first_event
+from vibroimpact.dynamics.vibrating.events import ZERO_RATE, OtherEvent, first_crossing
 from vibroimpact.dynamics.vibrating.free_motion import FreePhase, recoil_loss
 from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.vibrating.local import LocalContact
 from vibroimpact.dynamics.vibrating.next_touch import next_touch, time_to_separation
 from vibroimpact.dynamics.vibrating.radau_eigenbasis import GRID
 from vibroimpact.dynamics.vibrating.recoil import end_of_recoil, recoil_end_value
-from vibroimpact.dynamics.vibrating.solve_stretch import StretchProblem
+from vibroimpact.dynamics.vibrating.solve_stretch import StretchAhead
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
-from vibroimpact.dynamics.vibrating.stretch_end import (
-    length_before_event,
-    length_growth,
-    solve_to_event,
-    solve_to_zero,
-    with_separation_loss,
-)
+from vibroimpact.dynamics.vibrating.stretch_end import length_growth, solve_to_zero, with_separation_loss
 from vibroimpact.errors import ComputationError
 
 _FIRST_LENGTH = 0.125  # of the duration of a contact: length of the first stretch
@@ -231,50 +227,59 @@ class March:
         energy = max(contact.energy for contact in pushing)
         if self.next_length < 1e-12 * span:
             raise NotIntegrable(f"the contact at {self.time:g} s can't be integrated to the tolerance")
-        time_map: Map = "touch" if any(contact.fresh for contact in pushing) else "inside"
-        stretch = self.stretch_problem(pushing, time_map, min(self.next_length, longest)).solve()
-        event = first_event(stretch, speed, span) if stretch.solved else None
-        other = self.first_other_event(stretch) if stretch.solved else None
+        ahead = self.stretch_ahead(pushing, speed, energy, span)
+        time_map = 0 if any(contact.fresh for contact in pushing) else 1
+        tried = ahead.solve(time_map, min(self.next_length, longest))
+        if not tried.solved:
+            self.next_length *= 0.5
+            return False
+        balance = ahead.balance(tried, time_map)
+        stretch = ahead.stretch(tried, balance, time_map)
+        other = self.first_other_event(stretch)
         # an event of the pushing contacts: also tried if the stretch is not resolved, as the event may be the only reason
-        if event is not None and (other is None or event.x <= other.x):
-            found = solve_to_event(stretch, event, self.tolerance, energy, speed, span)
-            if found is None:
-                self.next_length = 0.5 * min(self.next_length, length_before_event(stretch, event, self.tolerance, energy))
+        if tried.event.kind != NO_EVENT and (other is None or tried.event.x <= other.x):
+            success, solved, ended_map, event = ahead.up_to_event(tried, time_map)
+            to_event = ahead.balance(solved, ended_map)
+            if not (success and to_event.resolved):
+                # short of the event if the stretch is resolved; otherwise the event is not certain
+                near = max(tried.event.x, GRID[1]) if balance.resolved else 1.0
+                self.next_length = 0.5 * min(self.next_length, stretch.length * float(stretch.rule.map_time(np.array([near]))[0]))
                 return False
-            missed = self.first_other_event(found[1])
+            ended = ahead.stretch(solved, to_event, ended_map)
+            missed = self.first_other_event(ended)
             if missed is not None:  # an event at another contact lies between the estimate and the solved event
-                self.next_length = 0.5 * found[1].length * float(found[1].rule.map_time(np.array([missed.x]))[0])
+                self.next_length = 0.5 * ended.length * float(ended.rule.map_time(np.array([missed.x]))[0])
                 return False
-            self.end(pushing, *found)
+            self.end(pushing, event, ended)
             return True
-        if not stretch.resolved(self.tolerance, energy):
+        if not balance.resolved:
             self.next_length *= 0.5
             return False
         if other is None:
             self.accept(pushing, stretch)
             self.next_length = stretch.length * length_growth(stretch, self.tolerance)
             return True
-        ended = solve_to_zero(stretch, other.value, other.x, partial(self.stretch_problem, pushing, stretch.rule.time_map))
-        if ended is None or first_event(ended, speed, span) is not None:
+        shorter = solve_to_zero(ahead, stretch, time_map, other.value, other.x)
+        if shorter is None:
             self.next_length = 0.5 * stretch.length
             return False
-        self.accept(pushing, ended)
+        self.accept(pushing, shorter)
         other.act()
         return True
 
     def end(self, pushing: list[ActiveContact], event: Event, stretch: VibratingStretch) -> None:
         """Accept a stretch that ends with an event of one of its contacts."""
-        name, place = event.condition.name, event.condition.contact
+        place = event.contact
         contact = pushing[place]
-        parts = name == "parted" or (name == "no push" and self.separates_at_zero_force(contact, stretch.end))
+        parts = event.kind == PARTED or (event.kind == NO_PUSH and self.separates_at_zero_force(contact, stretch.end))
         if parts:  # stored energy is lost where a sticking contact breaks, or where the surface recovers more slowly than the bodies part
             stretch = with_separation_loss(stretch, place, contact.stored_energy_at(float(stretch.contacts[place].delta[-1])))
         self.accept(pushing, stretch)
         if parts:
             self.end_contact(contact)
-        elif name == "no push":
+        elif event.kind == NO_PUSH:
             contact.pushes = False
-        elif name == "turn":
+        elif event.kind == TURN:
             self.update_memory(contact)
 
     def update_memory(self, contact: ActiveContact) -> None:
@@ -304,18 +309,24 @@ class March:
             return False
         return bool(np.isfinite(time_to_separation(FreeMotion(self.system, state), contact.local.release_level, contact.number)))
 
-    def stretch_problem(self, pushing: list[ActiveContact], time_map: Map, length: float) -> StretchProblem:
-        """Return the problem of a stretch of a length [s] from the current state."""
-        contacts, begun, trend = zip(*((contact.local, contact.delta, contact.trend) for contact in pushing), strict=True)
-        return StretchProblem(
-            contact_view(self.system, (contact.number for contact in pushing)),
-            contacts,
-            time_map,
-            length,
-            self.state,
-            begun,
-            trend,
+    def stretch_ahead(self, pushing: list[ActiveContact], speed: float, energy: float, span: float) -> StretchAhead:
+        """Return the next stretch, of contacts of about a speed [m/s], an energy [J] and a duration [s]."""
+        manner = Manner(
+            tension=NO_TENSION,  # each contact has its own
+            contact_end=0,
+            motion_speed=speed,
+            energy=energy,
+            span=span,
+            tolerance=self.tolerance,
+            begun=self.time,
+            until=np.inf,
+            longest=np.inf,
+            most_steps=0,
         )
+        view = contact_view(self.system, (contact.number for contact in pushing))
+        begun = np.array([contact.delta for contact in pushing])
+        trend = np.array([contact.trend for contact in pushing])
+        return StretchAhead.of(view, [contact.local for contact in pushing], self.state, begun, trend, manner)
 
     def accept(self, pushing: list[ActiveContact], stretch: VibratingStretch) -> None:
         """Append a stretch to the history, and update the contacts at its end."""

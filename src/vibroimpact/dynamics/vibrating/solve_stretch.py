@@ -4,144 +4,93 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.collocation import Map
-from vibroimpact.dynamics.core.histories import contact_histories
-from vibroimpact.dynamics.core.records import Contacts, End, Motion, Nodes, Start
-from vibroimpact.dynamics.core.rubbing import first_friction, free_motions
+from vibroimpact.dynamics.core import attempt as core
+from vibroimpact.dynamics.core.contact_records import Attempt, Balance, Beginning, Manner
+from vibroimpact.dynamics.core.events import NO_EVENT
+from vibroimpact.dynamics.core.records import MAPS, Event, Nodes
 from vibroimpact.dynamics.core.rubbing_records import Rubbed
-from vibroimpact.dynamics.core.stretch import (
-    AT_LEVEL,
-    AT_NO_FORCE,
-    AT_TURN,
-    GIVEN_LENGTH,
-    begun_indentations,
-    first_guess,
-    solve_stretch,
-)
+from vibroimpact.dynamics.core.stretch import begun_indentations
 from vibroimpact.dynamics.vibrating.contact_history import ContactHistory
 from vibroimpact.dynamics.vibrating.contact_view import ContactView
 from vibroimpact.dynamics.vibrating.linear_system import State
 from vibroimpact.dynamics.vibrating.local import LocalContact, contacts_of
-from vibroimpact.dynamics.vibrating.radau_eigenbasis import NODES_PER_STRETCH, RadauEigenbasis, radau_eigenbasis
+from vibroimpact.dynamics.vibrating.radau_eigenbasis import bases_of, radau_eigenbasis
 from vibroimpact.dynamics.vibrating.rubbing import NO_RUBBING
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 
-_END = {"parted": AT_LEVEL, "breakpoint": AT_LEVEL, "no push": AT_NO_FORCE, "turn": AT_TURN}
+_NO_GUESS = Nodes(np.zeros(0), np.zeros(0), np.zeros(0))
 
 
 @dataclass(frozen=True)
-class EndCondition:
-    """Condition at the end of a stretch whose length is unknown.
+class StretchAhead:
+    """The next stretch of contacts that push.
 
-    "parted", where the surfaces separate, and "breakpoint": the law's indentation comes to a `level` [m]; "no push": zero force; "turn":
-    zero rate of the approach. `contact`: index among the contacts that push.
-    """
-
-    name: Literal["parted", "no push", "breakpoint", "turn"]
-    level: float = 0.0
-    contact: int = 0
-
-    @property
-    def record(self) -> End:
-        """The same as the core takes it."""
-        return End(_END[self.name], self.level, self.contact)
-
-
-_GIVEN_LENGTH = End(GIVEN_LENGTH, 0.0, 0)
-
-
-@dataclass(frozen=True)
-class StretchProblem:
-    """A stretch of contact to be solved.
-
-    Parameters
-    ----------
-    view : ContactView
-        The system, reduced to the contacts that push.
-    contacts : sequence of LocalContact
-        The law of each, and the compliance in series with it.
-    time_map : {"touch", "inside", "release"}
-        Time map in which the forces are smooth.
-    length : float
-        Length of the stretch [s]; with an end condition, its initial guess.
-    start : State
-        State at the start.
-    begun : sequence of float
-        Indentations of the laws at the start [m], approximately.
-    trend : sequence of float
-        Approximate rates of change of the forces at the start [N/s], used where there is no guess.
-    guess : tuple of two arrays, shape (c, N), optional
-        Initial guess of the indentations of the laws [m] and of the forces [N] at the nodes.
-    end_condition : EndCondition, optional
-        Condition at the end, from which the length is found.
+    `view`: the system, reduced to the contacts. `contacts`: their laws, and what is in series with them. `state`: at the start. `trend`:
+    about the rates of change of the forces then [N/s]. `manner`, `beginning`: as the core takes them.
     """
 
     view: ContactView
     contacts: Sequence[LocalContact]
-    time_map: Map
-    length: float
-    start: State
-    begun: Sequence[float]
-    trend: Sequence[float] = ()
-    guess: tuple[Floats, Floats] | None = None
-    end_condition: EndCondition | None = None
+    state: State
+    trend: Floats
+    manner: Manner
+    beginning: Beginning
 
-    def solve(self) -> VibratingStretch:
-        """Return the solved stretch."""
-        basis = radau_eigenbasis(self.time_map, max(local.law.root for local in self.contacts))
-        surfaces = self.view.surfaces
-        start = self.view.start(self.start)
-        contacts = contacts_of(self.contacts)
-        begun = begun_indentations(contacts, start, np.array(self.begun, dtype=float))
-        rubbed = Rubbed(surfaces, start, NO_RUBBING)
-        motions = free_motions(basis.basis, surfaces, start, rubbed, self.length)
-        if self.guess is None:
-            trend = np.array(self.trend, dtype=float)
-            guess = first_guess(basis.basis, surfaces, contacts, start, motions.across, begun, trend, self.length)
-        else:
-            delta, force = (np.ascontiguousarray(part).ravel() for part in self.guess)
-            guess = Nodes(np.zeros_like(force), force, delta)
-        friction = first_friction(NO_RUBBING, NODES_PER_STRETCH)
-        end = _GIVEN_LENGTH if self.end_condition is None else self.end_condition.record
-        nodes, motions, _, length, solved = solve_stretch(
-            basis.basis, surfaces, contacts, start, rubbed, guess, motions, friction, self.length, end
-        )
-        return self._read(basis, contacts, start, begun, nodes, motions.across, length, solved)
+    @classmethod
+    def of(
+        cls, view: ContactView, contacts: Sequence[LocalContact], state: State, begun: Floats, trend: Floats, manner: Manner
+    ) -> StretchAhead:
+        """Return the stretch from a state on; `begun`: indentations of the laws then [m], approximately."""
+        start, laws = view.start(state), contacts_of(contacts)
+        rubbed = Rubbed(view.surfaces, start, NO_RUBBING)
+        beginning = Beginning(state.record, start, laws, begun_indentations(laws, start, begun), rubbed)
+        return cls(view, contacts, state, trend, manner, beginning)
 
-    def _read(
-        self,
-        basis: RadauEigenbasis,
-        contacts: Contacts,
-        start: Start,
-        begun: Floats,
-        nodes: Nodes,
-        motion: Motion,
-        length: float,
-        solved: bool,
-    ) -> VibratingStretch:
-        """Return the stretch from its indentations and forces at the nodes."""
-        found = contact_histories(basis.basis, self.view.surfaces, contacts, start, begun, nodes, motion, length)
-        static = nodes.static.reshape(len(begun), -1)
-        dissipative = nodes.force.reshape(len(begun), -1) - static
+    @property
+    def root(self) -> int:
+        """The power of time in whose root the forces are smooth."""
+        return max(local.law.root for local in self.contacts)
+
+    def solve(self, time_map: int, length: float) -> Attempt:
+        """Return the stretch of a length [s] under a map of time, of `MAPS`."""
+        basis = radau_eigenbasis(MAPS[time_map], self.root).basis
+        given = Event(NO_EVENT, 0.0, length, 0)
+        return core.attempt(basis, self.view.bodies, self.manner, self.beginning, _NO_GUESS, self.trend, False, given)
+
+    def up_to_event(self, tried: Attempt, time_map: int) -> tuple[bool, Attempt, int, Event]:
+        """Return whether the stretch is solved again up to its first event, the solution, its map of time, and the event."""
+        return core.up_to_event(bases_of(self.root), self.view.bodies, self.manner, self.beginning, tried, time_map)
+
+    def balance(self, tried: Attempt, time_map: int) -> Balance:
+        """Return the motion through a solution, and whether it is resolved."""
+        return core.balance_of(radau_eigenbasis(MAPS[time_map], self.root).basis, self.view.bodies, self.manner, self.beginning, tried)
+
+    def stretch(self, solved: Attempt, balance: Balance, time_map: int) -> VibratingStretch:
+        """Return a solution with its histories."""
+        basis = radau_eigenbasis(MAPS[time_map], self.root)
+        static, force = (values.reshape(len(self.contacts), -1) for values in (solved.nodes.static, solved.nodes.force))
+        motion = solved.contact
         histories = tuple(
             ContactHistory(
-                self.view.contacts[place],
+                self.view.contacts[number],
                 local,
                 basis.rule,
-                static[place],
-                dissipative[place],
-                found.approach[place],
-                found.rate[place],
-                found.closing[place],
-                found.delta[place],
-                work=float(np.subtract(*local.work_at_indentation(found.delta[place, [-1, 0]]))),
-                dissipated=float(found.dissipated[place]),
+                static[number],
+                force[number] - static[number],
+                motion.approach[number],
+                motion.rate[number],
+                motion.closing[number],
+                motion.delta[number],
+                work=float(balance.work[number]),
+                dissipated=float(motion.dissipated[number]),
             )
-            for place, local in enumerate(self.contacts)
+            for number, local in enumerate(self.contacts)
         )
-        return VibratingStretch(self.view, basis, length, self.start, histories, solved, found.roughness)
+        stretch = VibratingStretch(self.view, basis, solved.length, self.state, histories, motion.roughness)
+        path = balance.path
+        stretch.__dict__["end"] = State(path.displacement, path.speed, path.local)  # which it would compute anew
+        return stretch

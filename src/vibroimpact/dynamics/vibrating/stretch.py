@@ -62,8 +62,8 @@ class VibratingStretch:
     """A solved stretch of one system.
 
     `view`: the system reduced to the contacts that push. `length` [s]. `start`: state at the start. `contacts`: histories of the contacts
-    that push. `solved`: whether Newton's method converged. `roughness`: the last Legendre coefficients of the forces, relative to their
-    scale; the error at the end is of the order of its square. `rubbed`: friction, of a drop that has any.
+    that push. `roughness`: the last Legendre coefficients of the forces, relative to their scale; the error at the end is of the order of
+    its square. `rubbed`: friction, of a drop that has any.
     """
 
     view: ContactView
@@ -71,7 +71,6 @@ class VibratingStretch:
     length: float
     start: State
     contacts: tuple[ContactHistory, ...]
-    solved: bool
     roughness: float
     rubbed: RubbedStretch | None = None
 
@@ -202,13 +201,3 @@ class VibratingStretch:
     def _x(self, time: Floats) -> Floats:
         """Return x at times since the start [s]."""
         return self.rule.unmap_time(np.asarray(time) / self.length)
-
-    def resolved(self, tolerance: float, energy: float) -> bool:
-        """Whether the stretch is solved with an error within a relative tolerance, for motions of about an energy [J].
-
-        Two independent error measures: the roughness of the forces, and the balance of energy.
-        """
-        if not (self.solved and self.roughness**2 <= 0.1 * tolerance):
-            return False
-        gain = self.motion.gain + sum(contact.work for contact in self.contacts)
-        return bool(abs(gain + self.lost.sum()) <= 0.06 * tolerance * energy + self.motion.rounding)
