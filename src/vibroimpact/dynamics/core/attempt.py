@@ -188,20 +188,21 @@ def balance_of(basis: Basis, bodies: Bodies, manner: Manner, beginning: Beginnin
 def guess_from(basis: Basis, other: Basis, contacts: Contacts, solved: Attempt, share: float) -> Nodes:
     """Return forces and indentations at the nodes of another rule, over a share of the time of a solved stretch."""
     number = len(basis.time)
-    size = len(contacts.speed) * number
+    size = len(contacts.numbers) * number
     force = np.empty(size)
     delta = np.empty(size)
     weights = np.empty(number + 1)
-    for node in range(number):
-        weights_at(basis, place_at(basis, share * other.time[node]), weights)
-        for contact in range(len(contacts.speed)):
-            law = law_of(contacts, contact)
+    for contact in range(len(contacts.numbers)):
+        law = law_of(contacts, contact)
+        force_of = force_at(law.addresses[0])
+        for node in range(number):
+            weights_at(basis, place_at(basis, share * other.time[node]), weights)
             reached = 0.0
             rate = 0.0
             for point in range(number + 1):
                 reached += weights[point] * solved.contact.delta[contact, point]
                 rate += weights[point] * solved.contact.rate[contact, point]
-            static, dissipative = force_at(law.addresses[0])(max(reached, law.release), rate, law.speed, law.coefficients)
+            static, dissipative = force_of(max(reached, law.release), rate, law.speed, law.coefficients)
             delta[contact * number + node] = reached
             force[contact * number + node] = static + dissipative
     return Nodes(np.zeros(size), force, delta)

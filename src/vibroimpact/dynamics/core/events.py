@@ -49,7 +49,7 @@ def first_event(
 ) -> Event:
     """Return the first event in a stretch of contacts of about a speed [m/s] and a duration [s]."""
     first = Event(NO_EVENT, 0.0, np.inf, 0)
-    for contact in range(len(contacts.speed)):
+    for contact in range(len(contacts.numbers)):
         event = first_event_of(basis, surfaces, contacts, histories, nodes, speed, span, contact)
         if event.x < first.x:
             first = event

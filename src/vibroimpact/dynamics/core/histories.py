@@ -7,7 +7,7 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.linear import product
-from vibroimpact.dynamics.core.records import Basis, Contacts, Histories, Motion, Nodes, Start, Surfaces
+from vibroimpact.dynamics.core.records import RELEASE_LEVEL, Basis, Contacts, Histories, Motion, Nodes, Start, Surfaces
 from vibroimpact.dynamics.core.stretch import begun_rate
 
 
@@ -34,7 +34,7 @@ def contact_histories(
     roughness = 0.0
     for contact in range(number):
         first = contact * nodes
-        approach[contact, 0] = max(start.approach[contact], contacts.release_level[contact])
+        approach[contact, 0] = max(start.approach[contact], contacts.numbers[contact, RELEASE_LEVEL])
         delta[contact, 0] = begun[contact]
         first_rate = begun_rate(surfaces, start, contact)
         if surfaces.incidence[contact].any():  # the rate of a massless element jumps with the force

@@ -12,7 +12,18 @@ import numpy as np
 
 from vibroimpact.arrays import Floats, Integers
 from vibroimpact.compiled import compiled, compressed_at, energies_at, force_at, levels_at
-from vibroimpact.dynamics.core.records import Contacts, Law
+from vibroimpact.dynamics.core.records import (
+    FIRST_BREAKPOINT,
+    JUMP,
+    MEMORY_LEVEL,
+    RELEASE,
+    RELEASE_LEVEL,
+    SECOND_BREAKPOINT,
+    SPEED,
+    TOUCH,
+    Contacts,
+    Law,
+)
 
 _LEAST_RADIUS = 1e-9
 _STEP = 1e-7  # relative step of finite differences
@@ -190,32 +201,34 @@ def law_of(contacts: Contacts, contact: int) -> Law:
         contacts.addresses[4 * contact : 4 * contact + 4],
         contacts.coefficients[contact],
         contacts.series[contact],
-        contacts.speed[contact],
-        contacts.touch[contact],
-        contacts.release[contact],
-        contacts.release_level[contact],
-        contacts.memory_level[contact],
-        contacts.first_breakpoint[contact],
-        contacts.second_breakpoint[contact],
-        contacts.jump[contact],
+        contacts.numbers[contact, SPEED],
+        contacts.numbers[contact, TOUCH],
+        contacts.numbers[contact, RELEASE],
+        contacts.numbers[contact, RELEASE_LEVEL],
+        contacts.numbers[contact, MEMORY_LEVEL],
+        contacts.numbers[contact, FIRST_BREAKPOINT],
+        contacts.numbers[contact, SECOND_BREAKPOINT],
+        contacts.numbers[contact, JUMP],
     )
 
 
 @compiled(lambda t: t.of(Contacts)(t.of(Law), t.integer))
 def contacts_of(law: Law, tension: int) -> Contacts:
     """Return the law of one contact as stretches take it."""
+    numbers = np.empty((1, 8))
+    numbers[0, SPEED] = law.speed
+    numbers[0, TOUCH] = law.touch
+    numbers[0, RELEASE] = law.release
+    numbers[0, RELEASE_LEVEL] = law.release_level
+    numbers[0, MEMORY_LEVEL] = law.memory_level
+    numbers[0, FIRST_BREAKPOINT] = law.first_breakpoint
+    numbers[0, SECOND_BREAKPOINT] = law.second_breakpoint
+    numbers[0, JUMP] = law.jump
     return Contacts(
         law.addresses.copy(),
         law.coefficients.copy().reshape(1, len(law.coefficients)),
         law.series.copy().reshape(1, len(law.series)),
-        np.array([law.speed]),
-        np.array([law.touch]),
-        np.array([law.release]),
-        np.array([law.release_level]),
-        np.array([law.memory_level]),
-        np.array([law.first_breakpoint]),
-        np.array([law.second_breakpoint]),
-        np.array([law.jump]),
+        numbers,
         np.array([tension]),
     )
 

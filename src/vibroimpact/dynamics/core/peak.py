@@ -6,7 +6,7 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled, force_at
-from vibroimpact.dynamics.core.records import Basis, Contacts
+from vibroimpact.dynamics.core.records import RELEASE, SPEED, Basis, Contacts
 
 _POINTS = 33
 _ROUNDS = 3  # each narrows the search to a sixteenth
@@ -49,7 +49,9 @@ def nodal_value_between(basis: Basis, values: Floats, x: float) -> float:
 def force_between(basis: Basis, law: Contacts, delta: Floats, rate: Floats, x: float) -> float:
     """Return the force of a law [N] at x in [0, 1], from its indentation and its rate at the start and the nodes (N + 1,)."""
     reached, speed = values_between(basis, delta, rate, x)
-    static, dissipative = force_at(law.addresses[0])(max(reached, law.release[0]), speed, law.speed[0], law.coefficients[0])
+    static, dissipative = force_at(law.addresses[0])(
+        max(reached, law.numbers[0, RELEASE]), speed, law.numbers[0, SPEED], law.coefficients[0]
+    )
     return float(static + dissipative)
 
 

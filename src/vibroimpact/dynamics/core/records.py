@@ -179,24 +179,21 @@ class Start(NamedTuple):
     inner_rate: Vector
 
 
-class Contacts(NamedTuple):
-    """The laws at c contacts that push, each as in `Law`, one after the other.
+SPEED, TOUCH, RELEASE, RELEASE_LEVEL, MEMORY_LEVEL, FIRST_BREAKPOINT, SECOND_BREAKPOINT, JUMP = range(8)
+"""Columns of the numbers of a law, which are named as in `Law`."""
 
-    addresses (4 c,). coefficients (c, K). series (c, 7). speed, touch, release, release_level, memory_level, first_breakpoint,
-    second_breakpoint, jump (c,). tension (c,): may the force be tensile? Numbers of `events`.
+
+class Contacts(NamedTuple):
+    """The laws at c contacts that push, one after the other.
+
+    addresses (4 c,), coefficients (c, K), series (c, 7): as in `Law`. numbers (c, 8): the columns above. tension (c,): may the force be
+    tensile? Of `events`.
     """
 
     addresses: Integers
     coefficients: Matrix
     series: Matrix
-    speed: Vector
-    touch: Vector
-    release: Vector
-    release_level: Vector
-    memory_level: Vector
-    first_breakpoint: Vector
-    second_breakpoint: Vector
-    jump: Vector
+    numbers: Matrix
     tension: Integers
 
 

@@ -13,7 +13,7 @@ from vibroimpact.compiled import compiled, force_at
 from vibroimpact.dynamics.core.law import indentation_at, is_in_series, linearise
 from vibroimpact.dynamics.core.linear import product, solve_in_place
 from vibroimpact.dynamics.core.receptance import motion_by_length
-from vibroimpact.dynamics.core.records import Basis, Contacts, End, Motion, Nodes, Start, Surfaces
+from vibroimpact.dynamics.core.records import RELEASE, RELEASE_LEVEL, SPEED, Basis, Contacts, End, Motion, Nodes, Start, Surfaces
 from vibroimpact.dynamics.core.rubbing import follow_friction, free_motions, under_friction
 from vibroimpact.dynamics.core.rubbing_records import FrictionAtNodes, Motions, Rubbed
 
@@ -34,8 +34,8 @@ def linearise_contact(contacts: Contacts, contact: int, delta: Floats, rate: Flo
     linearise(
         contacts.addresses[4 * contact],
         contacts.coefficients[contact],
-        contacts.speed[contact],
-        contacts.release[contact],
+        contacts.numbers[contact, SPEED],
+        contacts.numbers[contact, RELEASE],
         contacts.series[contact],
         delta,
         rate,
@@ -59,12 +59,12 @@ def begun_indentations(contacts: Contacts, start: Start, estimates: Floats) -> F
     linear = np.empty((7, 1))
     still = np.zeros(1)
     for contact in range(len(found)):
-        approach = max(start.approach[contact], contacts.release_level[contact])
+        approach = max(start.approach[contact], contacts.numbers[contact, RELEASE_LEVEL])
         found[contact] = approach
         if is_in_series(contacts.series[contact]):
             linearise_contact(contacts, contact, estimates[contact : contact + 1], still, linear)
             nearer = estimates[contact] + (approach - linear[2, 0]) / linear[3, 0]
-            found[contact] = max(nearer, contacts.release[contact])
+            found[contact] = max(nearer, contacts.numbers[contact, RELEASE])
     return found
 
 
@@ -79,9 +79,9 @@ def first_guess(
     force = np.empty(size)
     for contact in range(len(begun)):
         rate = begun_rate(surfaces, start, contact)
-        reached = max(begun[contact], contacts.release[contact])
+        reached = max(begun[contact], contacts.numbers[contact, RELEASE])
         law = force_at(contacts.addresses[4 * contact])
-        begun_static, begun_dissipative = law(reached, rate, contacts.speed[contact], contacts.coefficients[contact])
+        begun_static, begun_dissipative = law(reached, rate, contacts.numbers[contact, SPEED], contacts.coefficients[contact])
         for node in range(nodes):
             later = trend[contact] * length * basis.time[node]
             static[contact * nodes + node] = begun_static + later
@@ -97,14 +97,14 @@ def first_guess(
             delta[row] = indentation_at(
                 contacts.addresses[4 * contact],
                 contacts.coefficients[contact],
-                contacts.speed[contact],
-                contacts.release[contact],
+                contacts.numbers[contact, SPEED],
+                contacts.numbers[contact, RELEASE],
                 contacts.series[contact],
-                max(approach[row], contacts.release_level[contact]),
+                max(approach[row], contacts.numbers[contact, RELEASE_LEVEL]),
             )
-            reached = max(delta[row], contacts.release[contact])
+            reached = max(delta[row], contacts.numbers[contact, RELEASE])
             law = force_at(contacts.addresses[4 * contact])
-            of_law, dissipative = law(reached, rates[row], contacts.speed[contact], contacts.coefficients[contact])
+            of_law, dissipative = law(reached, rates[row], contacts.numbers[contact, SPEED], contacts.coefficients[contact])
             static[row] = 0.0
             force[row] = of_law + dissipative
     return Nodes(static, force, delta)
@@ -128,10 +128,10 @@ def linearised_laws(contacts: Contacts, motion: Motion, now: Nodes) -> Floats:
     """Return forces, approach and derivatives of all laws at the nodes (7, M), as `law.linearise` gives them."""
     rate = motion.rate - product(motion.rate_by_force, now.force)
     size = len(rate)
-    nodes = size // len(contacts.speed)
+    nodes = size // len(contacts.numbers)
     linear = np.empty((7, size))
     of_contact = np.empty((7, nodes))
-    for contact in range(len(contacts.speed)):
+    for contact in range(len(contacts.numbers)):
         first = contact * nodes
         linearise_contact(contacts, contact, now.delta[first : first + nodes], rate[first : first + nodes], of_contact)
         for row in range(7):

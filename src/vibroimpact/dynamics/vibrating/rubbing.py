@@ -10,7 +10,7 @@ from vibroimpact.arrays import Floats
 from vibroimpact.contact.friction.law import CompliantFriction
 from vibroimpact.dynamics.collocation import Rule
 from vibroimpact.dynamics.core import rubbing_records as records
-from vibroimpact.dynamics.core.rubbing import slowing
+from vibroimpact.dynamics.core.rubbing_motions import slowing
 from vibroimpact.dynamics.core.rubbing_records import Rubbing
 from vibroimpact.dynamics.core.tangential_history import TangentialHistory
 from vibroimpact.dynamics.oblique.state import Sphere, State
