@@ -7,7 +7,7 @@ import numpy as np
 from vibroimpact.arrays import Bools, Floats
 from vibroimpact.compiled import compiled, force_at
 from vibroimpact.dynamics.core.law import law_of
-from vibroimpact.dynamics.core.linear import product
+from vibroimpact.dynamics.core.linear import largest_of, least_of, product
 from vibroimpact.dynamics.core.records import Basis, Contacts, Event, Histories, Nodes, Surfaces
 
 NO_EVENT, PARTED, NO_PUSH, BREAKPOINT, TURN = 0, 1, 2, 3, 4
@@ -72,13 +72,14 @@ def first_event_of(
     delta = product(basis.grid, histories.delta[contact])
     rate = product(basis.grid, histories.rate[contact])
     points = len(delta)
-    deepest = delta.max()
+    deepest = largest_of(delta)
     reached = np.zeros(points, dtype=np.bool_)
     first = Event(NO_EVENT, 0.0, np.inf, contact)
 
-    above = delta - law.release
+    above = np.empty(points)
     for point in range(points):
-        reached[point] = above[point] < -_ROUNDING * above.max()
+        above[point] = delta[point] - law.release
+        reached[point] = above[point] < -_ROUNDING * (deepest - law.release)
     x, crosses = crossing(above, reached)
     if crosses:
         first = Event(PARTED, law.release, x, contact)
@@ -103,11 +104,11 @@ def first_event_of(
         level = law.first_breakpoint if number == 0 else law.second_breakpoint
         if not np.isfinite(level):
             continue
-        beyond = delta - level
-        on_it = abs(beyond[0]) <= _ON_LEVEL * max(abs(level), deepest - delta.min())
-        side = np.sign(beyond[1] if on_it else beyond[0])
+        on_it = abs(delta[0] - level) <= _ON_LEVEL * max(abs(level), deepest - least_of(delta))
+        side = np.sign(delta[1 if on_it else 0] - level)
+        beyond = np.empty(points)
         for point in range(points):
-            beyond[point] *= side
+            beyond[point] = side * (delta[point] - level)
             reached[point] = beyond[point] < 0.0
         x, crosses = crossing(beyond, reached)
         if crosses and x < first.x:

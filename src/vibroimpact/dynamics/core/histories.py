@@ -6,7 +6,7 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled
-from vibroimpact.dynamics.core.linear import product
+from vibroimpact.dynamics.core.linear import less_product
 from vibroimpact.dynamics.core.records import RELEASE_LEVEL, Basis, Contacts, Histories, Motion, Nodes, Start, Surfaces
 from vibroimpact.dynamics.core.stretch import begun_rate
 
@@ -18,14 +18,13 @@ def contact_histories(
     """Return motion and energy of the contacts through a solved stretch; `begun`: indentations of the laws at the start [m] (c,)."""
     nodes = len(basis.time)
     number = len(begun)
-    approaches = motion.approach - product(motion.approach_by_force, found.force)
+    approaches = less_product(motion.approach, motion.approach_by_force, found.force)
     if len(motion.approach_by_static):
-        approaches -= product(motion.approach_by_static, found.static)
-    slowed = product(motion.rate_by_force, found.force)
-    rates = motion.rate - slowed
-    closings = motion.closing - slowed
+        approaches = less_product(approaches, motion.approach_by_static, found.static)
+    rates = less_product(motion.rate, motion.rate_by_force, found.force)
+    closings = less_product(motion.closing, motion.rate_by_force, found.force)
     if len(motion.closing_by_static):
-        closings -= product(motion.closing_by_static, found.static)
+        closings = less_product(closings, motion.closing_by_static, found.static)
     approach = np.empty((number, nodes + 1))
     rate = np.empty((number, nodes + 1))
     closing = np.empty((number, nodes + 1))

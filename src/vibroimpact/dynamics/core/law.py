@@ -12,6 +12,7 @@ import numpy as np
 
 from vibroimpact.arrays import Floats, Integers
 from vibroimpact.compiled import compiled, compressed_at, energies_at, force_at, levels_at
+from vibroimpact.dynamics.core.linear import write_row
 from vibroimpact.dynamics.core.records import (
     FIRST_BREAKPOINT,
     JUMP,
@@ -215,6 +216,10 @@ def law_of(contacts: Contacts, contact: int) -> Law:
 @compiled(lambda t: t.of(Contacts)(t.of(Law), t.integer))
 def contacts_of(law: Law, tension: int) -> Contacts:
     """Return the law of one contact as stretches take it."""
+    coefficients = np.empty((1, len(law.coefficients)))
+    write_row(coefficients, 0, law.coefficients)
+    series = np.empty((1, len(law.series)))
+    write_row(series, 0, law.series)
     numbers = np.empty((1, 8))
     numbers[0, SPEED] = law.speed
     numbers[0, TOUCH] = law.touch
@@ -226,8 +231,8 @@ def contacts_of(law: Law, tension: int) -> Contacts:
     numbers[0, JUMP] = law.jump
     return Contacts(
         law.addresses.copy(),
-        law.coefficients.copy().reshape(1, len(law.coefficients)),
-        law.series.copy().reshape(1, len(law.series)),
+        coefficients,
+        series,
         numbers,
         np.array([tension]),
     )

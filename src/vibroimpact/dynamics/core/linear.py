@@ -48,6 +48,64 @@ def solve_in_place(matrix: Floats, right: Floats) -> None:
             right[row, column] = value * inverse
 
 
+@compiled(lambda t: t.vector(t.vector, t.matrix, t.vector))
+def less_product(values: Floats, matrix: Floats, vector: Floats) -> Floats:
+    """Return values less the product of a matrix and a vector."""
+    left = np.empty(len(values))
+    for row in range(len(values)):
+        total = 0.0
+        for column in range(len(vector)):
+            total += matrix[row, column] * vector[column]
+        left[row] = values[row] - total
+    return left
+
+
+@compiled(lambda t: t.void(t.matrix, t.integer, t.vector))
+def write_row(matrix: Floats, row: int, values: Floats) -> None:
+    """Write values into the first columns of a row."""
+    for column in range(len(values)):
+        matrix[row, column] = values[column]
+
+
+@compiled(lambda t: t.void(t.cube, t.integer, t.matrix))
+def write_layer(cube: Floats, layer: int, values: Floats) -> None:
+    """Write the values of a matrix into a layer of a cube."""
+    for row in range(values.shape[0]):
+        for column in range(values.shape[1]):
+            cube[layer, row, column] = values[row, column]
+
+
+@compiled(lambda t: t.real(t.vector))
+def largest_of(values: Floats) -> float:
+    """Return the largest value."""
+    largest = -np.inf
+    for value in values:
+        largest = max(largest, value)
+    return largest
+
+
+@compiled(lambda t: t.real(t.vector))
+def least_of(values: Floats) -> float:
+    """Return the least value; NaN if one is."""
+    least = np.inf
+    for value in values:
+        if not value >= least:
+            least = value
+        if value != value:
+            break
+    return least
+
+
+@compiled(lambda t: t.real(t.vector))
+def largest_magnitude_of(values: Floats) -> float:
+    """Return the largest magnitude of values; infinite if one is no number."""
+    largest = 0.0
+    for value in values:
+        if not abs(value) <= largest:
+            largest = abs(value) if abs(value) < np.inf else np.inf
+    return largest
+
+
 @compiled(lambda t: t.vector(t.matrix, t.vector))
 def product(matrix: Floats, vector: Floats) -> Floats:
     """Return the product of a matrix and a vector."""

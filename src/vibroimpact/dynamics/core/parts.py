@@ -5,7 +5,7 @@ from __future__ import annotations
 from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.contact_records import Attempt, Balance, Parts
-from vibroimpact.dynamics.core.linear import product
+from vibroimpact.dynamics.core.linear import product, write_layer, write_row
 from vibroimpact.dynamics.core.records import Basis, State, System
 from vibroimpact.dynamics.core.rubbing_records import (
     DISPLACEMENT_X,
@@ -24,9 +24,9 @@ from vibroimpact.dynamics.core.rubbing_records import (
 def write_part(parts: Parts, part: int, start: float, state: State, memories: int) -> None:
     """Write what all parts of a motion have: their start [s], the state then, and the changes of the law's memory before."""
     parts.start[part] = start
-    parts.displacement[part] = state.displacement
-    parts.velocity[part] = state.velocity
-    parts.local[part] = state.local
+    write_row(parts.displacement, part, state.displacement)
+    write_row(parts.velocity, part, state.velocity)
+    write_row(parts.local, part, state.local)
     parts.memories[part] = memories
     parts.separation_loss[part] = 0.0
 
@@ -49,12 +49,12 @@ def write_stretch(parts: Parts, part: int, basis: Basis, system: System, solved:
     parts.kind[part] = 1
     parts.time_map[part] = basis.time_map
     parts.length[part] = solved.length
-    parts.static[part] = solved.nodes.static
-    parts.force[part] = solved.nodes.force
-    parts.approach[part] = solved.contact.approach[0]
-    parts.rate[part] = solved.contact.rate[0]
-    parts.closing[part] = solved.contact.closing[0]
-    parts.delta[part] = solved.contact.delta[0]
+    write_row(parts.static, part, solved.nodes.static)
+    write_row(parts.force, part, solved.nodes.force)
+    write_row(parts.approach, part, solved.contact.approach[0])
+    write_row(parts.rate, part, solved.contact.rate[0])
+    write_row(parts.closing, part, solved.contact.closing[0])
+    write_row(parts.delta, part, solved.contact.delta[0])
     parts.work[part] = balance.work[0]
     parts.dissipated[part] = solved.contact.dissipated[0]
     parts.roughness[part] = solved.contact.roughness
@@ -75,8 +75,8 @@ def write_rubbed(parts: Parts, part: int, begun: Rubbing, rubbed: RubbedPart) ->
     """Write what friction does through a stretch that begins in a state."""
     if begun.directions == 0:
         return
-    parts.friction[part] = rubbed.force
-    parts.slip[part] = rubbed.slip
+    write_layer(parts.friction, part, rubbed.force)
+    write_layer(parts.slip, part, rubbed.slip)
     write_rubbing(begun, parts.rubbing[part, 0])
     write_rubbing(rubbed.end, parts.rubbing[part, 1])
 

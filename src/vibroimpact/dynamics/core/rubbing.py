@@ -25,6 +25,7 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled
+from vibroimpact.dynamics.core.linear import write_row
 from vibroimpact.dynamics.core.receptance import surface_motion
 from vibroimpact.dynamics.core.records import Basis, Motion, Start, Surfaces
 from vibroimpact.dynamics.core.rubbing_moments import slowing_spins, sphere_spins, spin_imbalance, turned_after, write_moments
@@ -166,7 +167,7 @@ def follow_friction(
         last_y = y
     friction = np.empty((1 + steps, 2))
     slid = np.empty(1 + steps)
-    friction[0] = rubbing.force
+    write_row(friction, 0, rubbing.force)
     slid[0] = rubbing.history.slid
     history = follow_history(rubbing.history, pressed[1:], steps_moved, friction[1:], slid[1:])
     force = before.force.copy()
@@ -206,11 +207,13 @@ def rubbed_part(basis: Basis, motions: Motions, rubbing: Rubbing, length: float,
             weight = length * basis.integral[last, node]
             taken += weight * force[direction, node] * slip[direction, node]
             given -= weight * force[direction, node] * surface[direction, node]
+    end_force = np.empty(2)
     end_velocity = np.empty(2)
     end_displacement = np.empty(2)
     for direction in range(2):
         begun = rubbing.velocity[direction]
         ended = velocity[direction, last]
+        end_force[direction] = force[direction, last]
         end_velocity[direction] = ended
         end_displacement[direction] = rubbing.displacement[direction] + moved[direction, last]
         imbalance += rubbing.mass * (0.5 * (ended - begun) * (ended + begun) - rubbing.pull[direction] * moved[direction, last])
@@ -222,7 +225,9 @@ def rubbed_part(basis: Basis, motions: Motions, rubbing: Rubbing, length: float,
     turned_way = rubbing.turned_way
     if directions == WITH_MOMENTS:
         imbalance += abs(spin_imbalance(basis, rubbing, length, force, spins))
-        spin = spins[:, last].copy()
+        spin = np.empty(3)
+        for axis in range(3):
+            spin[axis] = spins[axis, last]
         turned, turned_way = turned_after(basis, rubbing, length, force)
     microslip = lost_in_microslip(rubbing.history, friction.pressed, friction.on_the_way, friction.moved, friction.slid)
     end = Rubbing(
@@ -235,7 +240,7 @@ def rubbed_part(basis: Basis, motions: Motions, rubbing: Rubbing, length: float,
         end_velocity,
         end_displacement,
         spin,
-        force[:2, last].copy(),
+        end_force,
         turned,
         turned_way,
         friction.pressed[len(friction.pressed) - 1],

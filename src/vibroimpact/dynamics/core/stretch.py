@@ -11,7 +11,7 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled, force_at
 from vibroimpact.dynamics.core.law import indentation_at, is_in_series, linearise
-from vibroimpact.dynamics.core.linear import product, solve_in_place
+from vibroimpact.dynamics.core.linear import largest_magnitude_of, least_of, less_product, product, solve_in_place
 from vibroimpact.dynamics.core.receptance import motion_by_length
 from vibroimpact.dynamics.core.records import RELEASE, RELEASE_LEVEL, SPEED, Basis, Contacts, End, Motion, Nodes, Start, Surfaces
 from vibroimpact.dynamics.core.rubbing import follow_friction, free_motions, under_friction
@@ -86,10 +86,10 @@ def first_guess(
             later = trend[contact] * length * basis.time[node]
             static[contact * nodes + node] = begun_static + later
             force[contact * nodes + node] = begun_static + begun_dissipative + later
-    approach = motion.approach - product(motion.approach_by_force, force)
-    rates = motion.rate - product(motion.rate_by_force, force)
+    approach = less_product(motion.approach, motion.approach_by_force, force)
+    rates = less_product(motion.rate, motion.rate_by_force, force)
     if len(motion.approach_by_static):
-        approach -= product(motion.approach_by_static, static)
+        approach = less_product(approach, motion.approach_by_static, static)
     delta = np.empty(size)
     for contact in range(len(begun)):
         for node in range(nodes):
@@ -126,7 +126,7 @@ def force_scale(surfaces: Surfaces, motion: Motion, length: float) -> float:
 @compiled(lambda t: t.matrix(t.of(Contacts), t.of(Motion), t.of(Nodes)))
 def linearised_laws(contacts: Contacts, motion: Motion, now: Nodes) -> Floats:
     """Return forces, approach and derivatives of all laws at the nodes (7, M), as `law.linearise` gives them."""
-    rate = motion.rate - product(motion.rate_by_force, now.force)
+    rate = less_product(motion.rate, motion.rate_by_force, now.force)
     size = len(rate)
     nodes = size // len(contacts.numbers)
     linear = np.empty((7, size))
@@ -198,9 +198,11 @@ def newton_step(
     inside = len(motion.approach_by_static) > 0
     # approach by forces, residual of the approach, and minus the approach by the length, each divided by that of the indentations
     columns = np.empty((size, size + 2))
-    missing = linear[2] - motion.approach + product(motion.approach_by_force, now.force)
-    if inside:
-        missing += product(motion.approach_by_static, linear[0])
+    caused = product(motion.approach_by_force, now.force)
+    caused_within = product(motion.approach_by_static, linear[0]) if inside else np.zeros(size)
+    missing = np.empty(size)
+    for row in range(size):
+        missing[row] = linear[2, row] - motion.approach[row] + caused[row] + caused_within[row]
     by_length = np.zeros((3, size))
     if end.kind != GIVEN_LENGTH:
         by_length = motion_by_length(basis, surfaces, start, motion, length, now.force, linear[0])
@@ -289,7 +291,7 @@ def improved(
     """Return the next iterate of the nodes and of the length [s], the relative size of the step, and whether the problem is well posed."""
     linear = linearised_laws(contacts, motion, now)
     # a negative compliance in series that exceeds that of the law makes the problem ill-posed
-    if not linear[3].min() > 0.0:
+    if not least_of(linear[3]) > 0.0:
         return now, length, np.inf, False
     delta_step, force_step, length_step = newton_step(basis, surfaces, start, motion, linear, now, length, end)
     size = len(now.force)
@@ -310,7 +312,7 @@ def improved(
         length_step = min(max(length_step, -_LENGTH_FACTOR * length), _LENGTH_FACTOR / (1.0 + _LENGTH_FACTOR) * length)
         length -= length_step
         step_size = max(step_size, abs(length_step) / length)
-    return Nodes(static, force, delta), length, step_size, bool(np.isfinite(force).all())
+    return Nodes(static, force, delta), length, step_size, largest_magnitude_of(force) < np.inf
 
 
 @compiled(lambda t: t.real(t.matrix, t.matrix))
@@ -384,7 +386,7 @@ def solve_stretch(
         if rubbed.rubbing.directions:
             before = friction
             friction = follow_friction(basis, motions, rubbed, length, now.force, before)
-            size = max(size, largest_change(friction.force, before.force) / (scale + np.abs(now.force).max()))
+            size = max(size, largest_change(friction.force, before.force) / (scale + largest_magnitude_of(now.force)))
             motion = under_friction(motions, friction.force)
         if is_converged(size, last_size):
             return now, motions, friction, length, True
