@@ -46,16 +46,23 @@ class DeferredFunction:
 
     @cached_property
     def compiled(self) -> Any:
-        """The compiled function; the Python function if numba turns out not to load."""
+        """The compiled function, as Python calls it; the Python function if numba turns out not to load."""
         if self._why_not():
             return self.py_func
         from vibroimpact.compiler.functions import CompiledFunction
 
         return CompiledFunction(self.py_func, self._signature)
 
+    @cached_property
+    def inner(self) -> Any:
+        """The function as compiled code calls it."""
+        from vibroimpact.compiler.functions import CompiledFunction
+
+        return CompiledFunction(self.py_func, self._signature, inner=True)
+
     @property
     def _numba_type_(self) -> Any:  # what numba asks for where a function that it compiles calls this one
-        return self.compiled._numba_type_
+        return self.inner._numba_type_
 
     def __call__(self, *arguments: Any) -> Any:
         """Compile the function, unless that was done, and call it."""
