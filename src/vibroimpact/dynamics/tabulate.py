@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
@@ -68,13 +68,21 @@ def tabulate(problem: StatesProblem, progress: Callable[[float], None] | None = 
     if block < size:
         blocks = [stated.take(slice(begin, begin + block)) for begin in range(0, size, block)]
     parts = []
-    with ThreadPoolExecutor(threads) as pool:  # compiled code releases the interpreter's lock
-        for part in pool.map(_table_of, blocks) if threads > 1 else map(_table_of, blocks):
-            parts.append(part)
-            if progress is not None:
-                progress(min(len(parts) * block / size, 1.0))
+    for part in _tables_of(blocks, threads):
+        parts.append(part)
+        if progress is not None:
+            progress(min(len(parts) * block / size, 1.0))
     table = parts[0] if len(parts) == 1 else _joined(stated, parts)
     return table.squeezed() if stated.shape == () else table
+
+
+def _tables_of(blocks: Sequence[Problem], threads: int) -> Iterator[Response]:
+    """Yield the responses of blocks of drops in order, some of them computed at once: compiled code releases the interpreter's lock."""
+    if threads == 1:
+        yield from map(_table_of, blocks)
+        return
+    with ThreadPoolExecutor(threads) as pool:
+        yield from pool.map(_table_of, blocks)
 
 
 def _table_of(problem: Problem) -> Response:

@@ -16,11 +16,8 @@ from typing import ClassVar
 import numpy as np
 
 from vibroimpact.arrays import Array, Floats
-from vibroimpact.contact.friction.twisting import twisting_share
+from vibroimpact.contact.friction.twisting import FULL_TWISTING, twisting_share
 from vibroimpact.contact.parameters import Parameters, parameter
-
-_TWISTING = 3.0 * np.pi / 16.0
-"""Moment of full twisting under Hertz's pressure, over friction force and contact radius [-]."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -49,7 +46,7 @@ class FrictionLaw(Parameters):
 
     def twisting_moment(self, force: Floats) -> Floats:
         """Return the moment of full twisting under a normal force [N m]: 3 pi/16 mu F a (Johnson 1985, section 7.2; Lubkin 1951)."""
-        return np.asarray(_TWISTING * self.coefficient * force * self.contact_radius(force))
+        return np.asarray(FULL_TWISTING * self.coefficient * force * self.contact_radius(force))
 
     def twisting_part(self, force: Floats, friction: Floats, slip: Floats, spin: Floats) -> Floats:
         """Return the part of the moment of full twisting that a contact has beside its friction [-], of the shape of `force`.

@@ -18,6 +18,9 @@ from vibroimpact.arrays import Array
 from vibroimpact.compiled import scalar
 from vibroimpact.contact.choice import where
 
+FULL_TWISTING = 3.0 * np.pi / 16.0
+"""Moment of full twisting under Hertz's pressure, over friction force and contact radius [-]."""
+
 _OF_SLIDING = 16.0 / (15.0 * np.pi)
 _CLOSED_FROM = 0.25  # square of q: below, the closed form of F loses digits
 _TINY = 1e-300

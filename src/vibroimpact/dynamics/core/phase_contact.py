@@ -13,7 +13,7 @@ from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled, energies_at, force_at, multiply_row
 from vibroimpact.dynamics.core.events import ENDS_AT_NO_FORCE, TENSION_CUT
 from vibroimpact.dynamics.core.law import law_remembering
-from vibroimpact.dynamics.core.line import RELEASED, next_level
+from vibroimpact.dynamics.core.line import RELEASED, line_under, next_level
 from vibroimpact.dynamics.core.line_events import after_glide, end_of_glide, energy_to_part, narrowed, secant_of
 from vibroimpact.dynamics.core.line_records import Bracket, Line, LineContact, LineManner, LineState
 from vibroimpact.dynamics.core.line_step import energies_of, force_of
@@ -262,26 +262,6 @@ def tension_in(line: Line, rules: PhaseRules, segment: Segment, phase: Phase, is
     return True, math.inf
 
 
-@compiled(lambda t: t.of(Line)(t.of(Law), t.of(LineManner)))
-def plain_line(law: Law, manner: LineManner) -> Line:
-    """Return the two bodies under a law, with its memory, without the errors that steps are allowed."""
-    return Line(
-        law.addresses[0],
-        law.addresses[1],
-        law.coefficients,
-        law.speed,
-        law.release,
-        manner.root,
-        manner.mass,
-        manner.gravity,
-        (manner.depth - law.release) / manner.speed_scale,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-    )
-
-
 @compiled(lambda t: t.tuple(t.boolean, t.of(LineContact))(t.of(Law), t.of(LineManner), t.of(PhaseRules), t.of(NormalGrid), t.matrix))
 def collocate_contact(law: Law, manner: LineManner, rules: PhaseRules, grid: NormalGrid, room: Floats) -> tuple[bool, LineContact]:
     """Return whether the contact of two rigid bodies is solved to the tolerance, and the contact.
@@ -300,7 +280,7 @@ def collocate_contact(law: Law, manner: LineManner, rules: PhaseRules, grid: Nor
         Room.
     """
     grid.extent[:] = 0
-    line = plain_line(law, manner)
+    line = line_under(law, manner)
     touch = law.speed * law.speed
     rounding = _ON_LEVEL * (manner.depth - law.release)
     deepest = law.touch
@@ -347,7 +327,7 @@ def collocate_contact(law: Law, manner: LineManner, rules: PhaseRules, grid: Nor
     time_of_deepest = time
     plastic = energies_of(line, deepest)[1]
     law = law_remembering(law, deepest)
-    line = plain_line(law, manner)
+    line = line_under(law, manner)
     state = LineState(time, deepest, 0.0, lost)
     least_energy = 0.5 * line.mass * (rules.tolerance * manner.speed_scale) ** 2
     if energy_to_part(line, state) < least_energy or line.gravity >= force_of(line, state) / line.mass:

@@ -11,12 +11,12 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled
-from vibroimpact.contact.friction.twisting import twisting_share
+from vibroimpact.contact.friction.twisting import FULL_TWISTING, twisting_share
+from vibroimpact.dynamics.core.linear import product
 from vibroimpact.dynamics.core.records import Basis
 from vibroimpact.dynamics.core.rubbing_motions import slowing, sphere_velocities, surface_along
 from vibroimpact.dynamics.core.rubbing_records import ABOUT_NORMAL, AT_X, AT_Y, ROLLING_X, ROLLING_Y, Motions, Rubbing
-
-_FULL_TWISTING = 3.0 * math.pi / 16.0  # moment of full twisting, over friction force and contact radius
+from vibroimpact.dynamics.core.tangential_history import depth_under
 
 
 @compiled(lambda t: t.matrix(t.of(Rubbing), t.matrix))
@@ -38,11 +38,9 @@ def sphere_spins(basis: Basis, rubbing: Rubbing, length: float, slowed: Floats) 
     nodes = len(basis.time)
     spins = np.empty((3, nodes))
     for axis in range(3):
+        lost = product(basis.integral, slowed[axis])
         for node in range(nodes):
-            lost = 0.0
-            for other in range(nodes):
-                lost += basis.integral[node, other] * slowed[axis, other]
-            spins[axis, node] = rubbing.spin[axis] - length * lost
+            spins[axis, node] = rubbing.spin[axis] - length * lost[node]
     return spins
 
 
@@ -50,10 +48,10 @@ def sphere_spins(basis: Basis, rubbing: Rubbing, length: float, slowed: Floats) 
 def twisting_moment(rubbing: Rubbing, load: float, friction: float, slip: float, spin: float) -> float:
     """Return the moment against twisting at a rate `spin` [rad/s] under a normal force, beside friction [N], at a slip speed [m/s]."""
     history = rubbing.history
-    contact_radius = math.sqrt(history.radius * (load / history.hertz) ** (2.0 / 3.0))
+    contact_radius = math.sqrt(history.radius * depth_under(history, load))
     most = history.coefficient * load
     used = friction / most if most > 0.0 else 1.0
-    return float(_FULL_TWISTING * most * contact_radius * twisting_share(contact_radius * spin, slip, used))
+    return float(FULL_TWISTING * most * contact_radius * twisting_share(contact_radius * spin, slip, used))
 
 
 @compiled(lambda t: t.void(t.of(Basis), t.of(Motions), t.of(Rubbing), t.real, t.vector, t.matrix))

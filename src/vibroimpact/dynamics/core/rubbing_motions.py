@@ -9,6 +9,7 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled
+from vibroimpact.dynamics.core.linear import product
 from vibroimpact.dynamics.core.records import Basis
 from vibroimpact.dynamics.core.rubbing_records import ROLLING_X, WITH_MOMENTS, Rubbing
 
@@ -54,13 +55,11 @@ def sphere_displacements(basis: Basis, rubbing: Rubbing, length: float, slowed: 
     nodes = len(basis.time)
     moved = np.empty((2, nodes))
     for direction in range(2):
+        held_back = product(basis.integral_twice, slowed[direction])
         for node in range(nodes):
             time = length * basis.time[node]
-            held_back = 0.0
-            for other in range(nodes):
-                held_back += basis.integral_twice[node, other] * slowed[direction, other]
             free = (rubbing.velocity[direction] + 0.5 * rubbing.pull[direction] * time) * time
-            moved[direction, node] = free - length * length * held_back
+            moved[direction, node] = free - length * length * held_back[node]
     return moved
 
 
@@ -70,10 +69,8 @@ def sphere_velocities(basis: Basis, rubbing: Rubbing, length: float, slowed: Flo
     nodes = len(basis.time)
     velocities = np.empty((2, nodes))
     for direction in range(2):
+        lost = product(basis.integral, slowed[direction])
         for node in range(nodes):
-            lost = 0.0
-            for other in range(nodes):
-                lost += basis.integral[node, other] * slowed[direction, other]
             free = rubbing.velocity[direction] + rubbing.pull[direction] * (length * basis.time[node])
-            velocities[direction, node] = free - length * lost
+            velocities[direction, node] = free - length * lost[node]
     return velocities

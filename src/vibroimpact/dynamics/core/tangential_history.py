@@ -228,8 +228,7 @@ def follow_history(history: TangentialHistory, normal: Floats, moved: Floats, fr
 @compiled(lambda t: t.real(t.of(TangentialHistory), t.real))
 def energy_in_sliding(history: TangentialHistory, load: float) -> float:
     """Return the work that stretches a contact along the plate, while all of it slides up to a normal force [J]."""
-    depth = (load / history.hertz) ** (2.0 / 3.0)
-    return float(history.sliding_energy * history.coefficient * load * history.ratio * depth)
+    return float(history.sliding_energy * history.coefficient * load * history.ratio * depth_under(history, load))
 
 
 @compiled(lambda t: t.real(t.of(TangentialHistory), t.vector, t.matrix, t.matrix, t.vector))

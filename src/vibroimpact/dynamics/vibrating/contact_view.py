@@ -89,14 +89,18 @@ class ContactView:
             rounding=np.where(system.rigid, _RIGID_ROUNDING * self.active_rigid, _ROUNDING),
         )
 
+    @property
+    def rubbed(self) -> ContactView:
+        """The system of a drop reduced to its contact and to the directions of friction at it; itself where there are none."""
+        if self.system.along is None:
+            return self
+        return contact_view(self.system.rubbed, range(1 + len(self.system.along)))
+
     @cached_property
     def bodies(self) -> Bodies:
-        """The system, of one contact, as the core takes it, with the directions of friction as further contacts where there are any."""
-        rubbed = self
-        if self.system.along is not None:
-            rubbed = contact_view(self.system.rubbed, range(1 + len(self.system.along)))
+        """The system as the core takes it, with the directions of friction as further contacts where there are any."""
         system = self.system.record_of(self.contacts[0])
-        return Bodies(system, self.surfaces, self.coordinates, rubbed.surfaces, rubbed.coordinates)
+        return Bodies(system, self.surfaces, self.coordinates, self.rubbed.surfaces, self.rubbed.coordinates)
 
     @cached_property
     def without_load(self) -> ContactView:

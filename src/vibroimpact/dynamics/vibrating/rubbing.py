@@ -15,7 +15,6 @@ from vibroimpact.dynamics.core.rubbing_records import Rubbing
 from vibroimpact.dynamics.core.tangential_history import TangentialHistory
 from vibroimpact.dynamics.oblique.state import Sphere, State
 from vibroimpact.dynamics.oblique.tangential_history import tangential_history
-from vibroimpact.dynamics.vibrating.contact_view import ContactView, contact_view
 
 _LONGEST = 0.03  # of the duration of a contact, at the default tolerance
 _DEFAULT_TOLERANCE = 1e-9
@@ -153,8 +152,3 @@ class RubbedStretch:
         integral, slowed = length * rule.integral_to(rule.unmap_time(time / length)), (self.force[2:] / inertia).T
         more = (integral @ (length * (rule.integral @ slowed[:, :2]))).T
         return turned - (integral @ slowed).T, way - radius * more
-
-
-def rubbed_view(view: ContactView) -> ContactView:
-    """Return the system of a drop reduced to its contact and to the directions of friction at it."""
-    return contact_view(view.system.rubbed, tuple(range(len(view.system.rubbed.shape))))

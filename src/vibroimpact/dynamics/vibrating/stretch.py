@@ -19,7 +19,7 @@ from vibroimpact.dynamics.vibrating.contact_history import ContactHistory
 from vibroimpact.dynamics.vibrating.contact_view import ContactView
 from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State
 from vibroimpact.dynamics.vibrating.radau_eigenbasis import RadauEigenbasis
-from vibroimpact.dynamics.vibrating.rubbing import RubbedStretch, rubbed_view
+from vibroimpact.dynamics.vibrating.rubbing import RubbedStretch
 
 _KEPT = 64
 """Number of stretches whose motion a thread keeps in memory, the last ones that were solved or read: those of a few impacts."""
@@ -105,7 +105,7 @@ class VibratingStretch:
         view, force = self.view, self.force
         static = np.stack([contact.static for contact in self.contacts])
         if self.rubbed is not None:
-            view = rubbed_view(view)
+            view = view.rubbed
             force = np.concatenate([force, self.rubbed.force])
             static = np.concatenate([static, np.zeros_like(self.rubbed.force)])
         start = self.start.record
