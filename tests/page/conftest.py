@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+import vibroimpact as vi
+from live_page import ELASTIC, RIGID
 from serving import Server
 
 if TYPE_CHECKING:
@@ -37,6 +39,13 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
         if Path(__file__).parent in item.path.parents:
             item.add_marker(pytest.mark.page)
+
+
+@pytest.fixture(scope="session", autouse=True)
+def compiled() -> None:
+    """Compile the solver before a page waits for it: that may take longer than a page is given to show a drop."""
+    for table in (RIGID, ELASTIC):
+        vi.simulate(vi.read_case(table).to_problem())
 
 
 @pytest.fixture(scope="module")

@@ -249,6 +249,21 @@ def test_code_is_loaded_by_the_next_process(toy: Toy) -> None:
 
 
 @needs_compiler
+def test_a_large_function_is_called_by_its_symbol(toy: Toy) -> None:
+    toy.program.write_text("from vibroimpact.compiler import symbols\nsymbols.LARGE = 1\n" + _MODULE)
+    assert toy.run() == ["24.0", "compiled"]
+    (caller,), (callee,) = ([path for path in toy.files() if path.name.startswith(name)] for name in ("twice", "total"))
+    assert toy.run() == ["24.0", "loaded"]
+    callee.unlink()  # the caller needs it, so that it is compiled again, under the same symbol
+    assert toy.run() == ["24.0", "loaded"]
+    assert callee.exists()
+    callee.write_bytes(b"damaged")
+    assert toy.run() == ["24.0", "loaded"]
+    toy.callee.write_text(_CALLEE.replace("2.0", "3.0"))
+    assert toy.run() == ["36.0", "compiled"]
+    assert caller.exists()
+
+
 def test_functions_of_one_name_from_several_processes_are_told_apart(tmp_path: Path) -> None:
     """Two laws made by one function that makes functions, compiled apart and loaded together."""
     program = tmp_path / "laws.py"
@@ -393,6 +408,16 @@ def test_the_digest_heeds_signatures_and_members_of_named_tuples() -> None:
 
 
 # what is said
+
+
+def test_a_long_compilation_is_told_to_a_listener_each_time(capsys: pytest.CaptureFixture[str]) -> None:
+    sentences: list[str] = []
+    with notice.heard_by(sentences.append):
+        for seconds in (42.0, 1.0, 23.0):
+            notice.say_how_long(lambda seconds=seconds: seconds)
+    notice.say_how_long(lambda: 42.0)
+    assert sentences == [f"Compiling the solver for this machine, once; about {seconds} s." for seconds in (40, 25)]
+    assert capsys.readouterr() == ("", "")
 
 
 def test_a_long_compilation_is_said_once_in_a_terminal(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:

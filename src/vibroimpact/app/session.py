@@ -15,6 +15,7 @@ from vibroimpact.app.offer import offer
 from vibroimpact.app.state import MODES, State, Tell, state_of
 from vibroimpact.cases.reader import load_table, parse_case, shipped_cases
 from vibroimpact.charts.pack import pack
+from vibroimpact.compiler.notice import heard_by
 from vibroimpact.errors import ComputationError, InputError, choices
 from vibroimpact.files.hdf5 import short_reason
 from vibroimpact.files.plain_names import identifier, plain_names
@@ -138,8 +139,12 @@ class Session:
                 asked = self._wanted or message  # modes are computed for the case that was asked for last
                 asyncio.run_coroutine_threadsafe(self._tell("progress", asked.number, {"what": what, "part": part}), loop)
 
+        def tell_compiling(sentence: str) -> None:
+            asyncio.run_coroutine_threadsafe(self._tell("progress", message.number, {"what": sentence, "part": 0.0}), loop)
+
         told[0] = loop.time() + _SECONDS_BETWEEN  # what is done at once needs no progress
-        state, answer = await asyncio.to_thread(_answered, message, tell)
+        with heard_by(tell_compiling):
+            state, answer = await asyncio.to_thread(_answered, message, tell)
         if message.content["detail"] == "full":
             self._last = state
         await self._send(answer)

@@ -14,6 +14,7 @@ from numba.core.codegen import ll
 from numba.core.runtime import _nrt_python, rtsys
 
 from vibroimpact.compiler.code_store import has_code, load_code, machine_folder, save_code
+from vibroimpact.compiler.symbols import are_linked, called_by_symbol
 
 
 class CodeCache(caching._Cache):  # type: ignore[misc]
@@ -33,10 +34,15 @@ class CodeCache(caching._Cache):  # type: ignore[misc]
     """
 
     def __init__(self, name: str, digest: str, is_own: bool) -> None:
-        self._file = f"{name}-{hashlib.sha256(digest.encode()).hexdigest()[:32]}"
+        code = hashlib.sha256(digest.encode()).hexdigest()
+        self._file = f"{name}-{code[:32]}"
+        self.number = int(code[:15], 16)
+        """A number that only this code has."""
         self._is_own = is_own
         self.trouble = ""
         """Why the code is not on the disk, or ""."""
+        self.size = 0
+        """Size of the machine code [bytes], once it is compiled or loaded; 0 if it can't be kept."""
 
     @property
     def cache_path(self) -> str:
@@ -59,10 +65,13 @@ class CodeCache(caching._Cache):  # type: ignore[misc]
         try:
             if self._is_own:
                 _register_runtime(target_context)
-                parts = _Unpickler(io.BytesIO(data)).load()
+                called, parts = _Unpickler(io.BytesIO(data)).load()
             else:
                 target_context.refresh()  # packages that extend numba may be needed
-                parts = pickle.loads(data)
+                called, parts = pickle.loads(data)
+            if not are_linked(called):
+                return None
+            self.size = _size_of(parts)
             return compiler.CompileResult._rebuild(target_context, *parts)
         except Exception:  # whatever a pickle raises
             return None
@@ -71,7 +80,10 @@ class CodeCache(caching._Cache):  # type: ignore[misc]
         """Keep a compiled function, unless its code holds addresses of this process."""
         if data.library.has_dynamic_globals or not all(lifted.can_cache for lifted in data.lifted):
             return
-        self.trouble = save_code(self.folder(data.target_context), self._file, serialize.dumps(data._reduce()))
+        parts = data._reduce()
+        self.size = _size_of(parts)
+        content = serialize.dumps((called_by_symbol(data.library), parts))
+        self.trouble = save_code(self.folder(data.target_context), self._file, content)
 
     def enable(self) -> None:
         """Do nothing: it is always enabled."""
@@ -81,6 +93,12 @@ class CodeCache(caching._Cache):  # type: ignore[misc]
 
     def flush(self) -> None:
         """Do nothing."""
+
+
+def _size_of(parts: tuple[Any, ...]) -> int:
+    """Return the size of the machine code among what numba keeps of a compiled function [bytes]."""
+    (_name, _kind, (machine_code, _bitcode)), *_others = parts
+    return len(machine_code)
 
 
 def _register_runtime(target_context: Any) -> None:

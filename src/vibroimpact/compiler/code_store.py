@@ -25,7 +25,7 @@ from vibroimpact.files.working_files import alone
 PLACE = "VIBROIMPACT_CODE_STORE"
 """Environment variable with the folder of compiled code."""
 
-FORMAT = 2
+FORMAT = 3
 """Part of every folder's name: to be increased when the files, or the options of the compiler, change."""
 
 LARGEST = 100_000_000

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from contextlib import nullcontext
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, nullcontext
 from importlib import import_module
 from inspect import signature
-from itertools import count
+from itertools import chain, count
 from secrets import randbits
 from typing import Any
 
@@ -21,11 +21,12 @@ from vibroimpact.compiler.code_store import compiling_alone
 from vibroimpact.compiler.digest import Digest, NotDigestible
 from vibroimpact.compiler.marks import DEFERRED, SCALAR
 from vibroimpact.compiler.notice import say_how_long, say_trouble
+from vibroimpact.compiler.symbols import call_by_symbol, is_large
 
 _OPTIONS = {"error_model": "numpy"}
 """Division by zero gives infinity, as in NumPy; no `fastmath`, so that sums do not depend on the compiler."""
 
-_SECONDS = 8e-4
+_SECONDS = 6e-4
 """Time to compile a byte of Python's code [s]."""
 
 _BITS = 62
@@ -84,10 +85,17 @@ class CompiledFunction(CPUDispatcher):  # type: ignore[misc]
                 say_trouble(self._cache.trouble)
 
     def _make_ready(self) -> None:
-        _number_anew()
-        self.compile(self._signature_of(types))  # or load
+        with _numbers_from(self._own_number()):
+            self.compile(self._signature_of(types))  # or load
         self.disable_compile()
         self._is_ready = True
+        if self._is_inner and self.is_kept and is_large(self._cache.size):
+            (result,) = self.overloads.values()
+            call_by_symbol(self, result)
+
+    def _own_number(self) -> int:
+        """Return the number of this function, which is that of its code: other code finds it by a name with this number in any process."""
+        return self._cache.number if self.is_kept else randbits(_BITS)
 
     @property
     def signature_text(self) -> str:
@@ -156,13 +164,19 @@ def _compiled_named(module: str, name: str, inner: bool) -> Any:
     return function.inner if inner else function.compiled
 
 
-def _number_anew() -> None:
-    """Let numba number functions from a random number on.
+@contextmanager
+def _numbers_from(own: int) -> Iterator[None]:
+    """Let numba number a function as given, and those that are compiled with it from a random number on.
 
     It tells functions of one name apart by these numbers, which begin with 1 in each process. Two of one name (made by a function, such as
     the forces of two laws) that had one number in two processes would be one function to the linker in a process that loads both.
     """
-    FunctionIdentity._unique_ids = count(randbits(_BITS))
+    outer = FunctionIdentity._unique_ids
+    FunctionIdentity._unique_ids = chain([own], count(randbits(_BITS)))
+    try:
+        yield
+    finally:
+        FunctionIdentity._unique_ids = outer
 
 
 def _seconds() -> float:

@@ -1,29 +1,52 @@
-"""What the terminal says of a compilation that takes long."""
+"""What the terminal, and whoever listens, is told of a compilation that takes long."""
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+
+Hear = Callable[[str], None]
+"""Function that is given a sentence."""
 
 _LONG = 2.0  # seconds
 _ROUNDED = 5  # seconds
 _SAID: set[str] = set()
+_LISTENER: ContextVar[Hear | None] = ContextVar("_LISTENER", default=None)
+
+
+@contextmanager
+def heard_by(hear: Hear) -> Iterator[None]:
+    """Tell a function, too, that the solver is being compiled, while the block lasts and in the threads that it starts with its context."""
+    token = _LISTENER.set(hear)
+    try:
+        yield
+    finally:
+        _LISTENER.reset(token)
 
 
 def say_how_long(estimate: Callable[[], float]) -> None:
-    """Say in a terminal, once, that the solver is being compiled, and about how long that takes, if it takes long.
+    """Say that the solver is being compiled, and about how long that takes, if it takes long: in a terminal once, to a listener each time.
 
     Parameters
     ----------
     estimate : callable
         Returns the time [s].
     """
-    if "how long" in _SAID or not _is_terminal():
+    hear = _LISTENER.get()
+    prints = "how long" not in _SAID and _is_terminal()
+    if hear is None and not prints:
         return
     seconds = estimate()
-    if seconds > _LONG:
+    if seconds <= _LONG:
+        return
+    sentence = f"Compiling the solver for this machine, once; about {_ROUNDED * max(1, round(seconds / _ROUNDED))} s."
+    if hear is not None:
+        hear(sentence)
+    if prints:
         _SAID.add("how long")
-        print(f"Compiling the solver for this machine, once; about {_ROUNDED * max(1, round(seconds / _ROUNDED))} s.", file=sys.stderr)
+        print(sentence, file=sys.stderr)
 
 
 def say_trouble(trouble: str) -> None:

@@ -13,14 +13,15 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled
-from vibroimpact.dynamics.core.attempt import attempt, balance_of, basis_of, beginning_of, time_at, up_to_event
-from vibroimpact.dynamics.core.contact_records import Bodies, Manner, Parts, Progress
+from vibroimpact.dynamics.core.attempt import beginning_of
+from vibroimpact.dynamics.core.contact_records import Begun, Bodies, Manner, Parts, Progress
 from vibroimpact.dynamics.core.events import ENDS_AT_NO_FORCE, NO_EVENT, NO_PUSH, PARTED, TENSION_CUT, TURN
 from vibroimpact.dynamics.core.flight import approach_of, lost_in_flight, state_after
 from vibroimpact.dynamics.core.law import law_after, law_indentation, stored_energy
-from vibroimpact.dynamics.core.parts import lose_at_end, write_part, write_rubbed, write_stretch
+from vibroimpact.dynamics.core.next_stretch import end_of, next_stretch
+from vibroimpact.dynamics.core.parts import lose_at_end, write_next, write_part
 from vibroimpact.dynamics.core.recoil import end_of_recoil
-from vibroimpact.dynamics.core.records import Bases, Event, Law, Nodes, State, System
+from vibroimpact.dynamics.core.records import Bases, Law, State, System
 from vibroimpact.dynamics.core.rest import is_captured, is_near_rest
 from vibroimpact.dynamics.core.rubbing import flown
 from vibroimpact.dynamics.core.touch import time_to_separation
@@ -105,12 +106,11 @@ def follow_contact(
     deepest = progress.deepest
     rubbing = progress.rubbing
     elements = len(lost) - 1
+    nodes = parts.force.shape[1]
     part = 0
     changes = 0  # of the law's memory, in this call
     outcome = FULL
     parts.late_loss[0] = 0.0
-    no_event = Event(NO_EVENT, 0.0, 0.0, 0)
-    no_guess = Nodes(np.zeros(0), np.zeros(0), np.zeros(0))
     while part < len(parts.start) and changes + 1 < len(parts.turned_at):  # two changes at most are made on the way
         if not pushes:  # recoil
             length, separates = end_of_recoil(system, law, manner, state)
@@ -169,54 +169,29 @@ def follow_contact(
             outcome = TOO_STIFF
             break
 
-        time_map = 0 if fresh else 1
         beginning = beginning_of(bodies, law, manner, state, rubbing, delta)
-        given = Event(NO_EVENT, 0.0, min(next_length, longest), 0)
-        tried = attempt(basis_of(bases, time_map), bodies, manner, beginning, no_guess, np.array([trend]), False, given)
-        event = no_event
-        if tried.event.kind != NO_EVENT:
-            # also tried if the stretch is not resolved, as the event may be the only reason
-            success, ended, ended_map, seen = up_to_event(bases, bodies, manner, beginning, tried, time_map)
-            balance = balance_of(basis_of(bases, ended_map), bodies, manner, beginning, ended)
-            if not (success and balance.resolved):
-                balance = balance_of(basis_of(bases, time_map), bodies, manner, beginning, tried)
-                near = max(tried.event.x, 1.0 / (len(bases.inside.grid) - 1)) if balance.resolved else 1.0
-                next_length = 0.5 * min(next_length, tried.length * time_at(basis_of(bases, time_map), near))
-                continue
-            tried = ended
-            time_map = ended_map
-            event = seen
-        else:
-            balance = balance_of(basis_of(bases, time_map), bodies, manner, beginning, tried)
-            if not balance.resolved:
-                next_length *= 0.5
-                continue
-
-        # the stretch is accepted
-        write_part(parts, part, time, state, memories)
-        basis = basis_of(bases, time_map)
-        write_stretch(parts, part, basis, system, tried, balance, state)
-        write_rubbed(parts, part, rubbing, tried.rubbed)
+        stretch = next_stretch(bases, bodies, manner, beginning, 0 if fresh else 1, min(next_length, longest), trend)
+        if not stretch.accepted:
+            next_length = 0.5 * min(next_length, stretch.event_time)
+            continue
+        write_next(parts, part, bases, system, stretch, Begun(time, state, memories, rubbing), lost)
+        end = end_of(bases, stretch)
         part += 1
-        number = len(basis.time)
-        for coordinate in range(len(lost)):
-            lost[coordinate] += balance.path.lost[coordinate]
-        lost[elements] += tried.contact.dissipated[0]
-        state = State(balance.path.displacement, balance.path.speed, balance.path.local)
-        rubbing = tried.rubbed.end
-        time += tried.length
-        delta = tried.contact.delta[0, number]
-        force = tried.nodes.force[number - 1]
-        closing = tried.contact.closing[0, number]
-        trend = 0.0
-        for node in range(number):
-            trend += basis.at_end[node] * tried.nodes.force[node] / tried.length
-            largest_force = max(largest_force, tried.nodes.force[node])
-            deepest = max(deepest, parts.indentation[part - 1, node + 1])
+        state = end.state
+        rubbing = end.rubbing
+        time += end.length
+        delta = end.delta
+        force = end.force
+        closing = end.closing
+        trend = end.trend
+        largest_force = max(largest_force, end.largest_force)
+        for node in range(1, parts.indentation.shape[1]):
+            deepest = max(deepest, parts.indentation[part - 1, node])
+        event = stretch.event
         fresh = False
         if event.kind == NO_EVENT:
-            growth = (_EASY * math.sqrt(manner.tolerance) / max(tried.contact.roughness, _TINY)) ** (1.0 / number)
-            next_length = tried.length * min(max(growth, 0.7), 4.0)
+            growth = (_EASY * math.sqrt(manner.tolerance) / max(end.roughness, _TINY)) ** (1.0 / nodes)
+            next_length = end.length * min(max(growth, 0.7), 4.0)
         elif event.kind == PARTED or (event.kind == NO_PUSH and separates_at_no_force(system, law, manner, state)):
             # stored energy is lost where a sticking contact breaks, or where the surface recovers more slowly than the bodies part
             lose_at_end(parts, part, lost, energy_held(law, manner, delta))

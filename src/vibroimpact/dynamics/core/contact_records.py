@@ -95,6 +95,48 @@ class Balance(NamedTuple):
     resolved: Boolean
 
 
+class NextStretch(NamedTuple):
+    """A stretch that is accepted, or rejected and to be tried again with a shorter length.
+
+    accepted. tried, balance: the stretch. time_map: its map of time, of `MAPS`. event: the one that ends it, if any. event_time: of a
+    rejected stretch with an event that is certain, about its time since the start [s], else infinite.
+    """
+
+    accepted: Boolean
+    tried: Attempt
+    balance: Balance
+    time_map: Integer
+    event: Event
+    event_time: Real
+
+
+class Begun(NamedTuple):
+    """What a part of the motion begins with: time [s], the state, the changes of the law's memory before, and friction."""
+
+    time: Real
+    state: State
+    memories: Integer
+    rubbing: Rubbing
+
+
+class StretchEnd(NamedTuple):
+    """The end of a stretch of one contact.
+
+    length: of the stretch [s]. state, rubbing: then. delta: indentation of the law [m], force [N], its rate of change trend [N/s], and
+    closing, the whole rate of the approach [m/s]. largest_force: at a node [N]. roughness: as in `Histories`.
+    """
+
+    length: Real
+    state: State
+    rubbing: Rubbing
+    delta: Real
+    force: Real
+    trend: Real
+    closing: Real
+    largest_force: Real
+    roughness: Real
+
+
 class Manner(NamedTuple):
     """What stays the same through a contact.
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled
-from vibroimpact.dynamics.core.contact_records import Attempt, Balance, Parts
+from vibroimpact.dynamics.core.attempt import basis_of
+from vibroimpact.dynamics.core.contact_records import Attempt, Balance, Begun, NextStretch, Parts
 from vibroimpact.dynamics.core.linear import product, write_layer, write_row
-from vibroimpact.dynamics.core.records import Basis, State, System
+from vibroimpact.dynamics.core.records import Bases, Basis, State, System
 from vibroimpact.dynamics.core.rubbing_records import (
     DISPLACEMENT_X,
     FORCE_X,
@@ -39,6 +40,18 @@ def lose_at_end(parts: Parts, part: int, lost: Floats, energy: float) -> None:
         parts.separation_loss[part - 1] += energy
     else:
         parts.late_loss[0] += energy
+
+
+@compiled(lambda t: t.void(t.of(Parts), t.integer, t.of(Bases), t.of(System), t.of(NextStretch), t.of(Begun), t.vector))
+def write_next(parts: Parts, part: int, bases: Bases, system: System, stretch: NextStretch, begun: Begun, lost: Floats) -> None:
+    """Write a stretch that is accepted, and add what is lost in it [J] to `lost` (n + 1,): by each coordinate, and last in the contact."""
+    write_part(parts, part, begun.time, begun.state, begun.memories)
+    write_stretch(parts, part, basis_of(bases, stretch.time_map), system, stretch.tried, stretch.balance, begun.state)
+    write_rubbed(parts, part, begun.rubbing, stretch.tried.rubbed)
+    lost_on_path = stretch.balance.path.lost
+    for coordinate in range(len(lost)):
+        lost[coordinate] += lost_on_path[coordinate]
+    lost[len(lost) - 1] += stretch.tried.contact.dissipated[0]
 
 
 @compiled(lambda t: t.void(t.of(Parts), t.integer, t.of(Basis), t.of(System), t.of(Attempt), t.of(Balance), t.of(State)))

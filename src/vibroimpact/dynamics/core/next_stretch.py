@@ -1,0 +1,65 @@
+"""The next stretch of contact of one sphere: of the length that is given, or up to its first event."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vibroimpact.compiled import compiled
+from vibroimpact.dynamics.core.attempt import attempt, balance_of, basis_of, time_at, up_to_event
+from vibroimpact.dynamics.core.contact_records import Beginning, Bodies, Manner, NextStretch, StretchEnd
+from vibroimpact.dynamics.core.events import NO_EVENT
+from vibroimpact.dynamics.core.records import Bases, Event, Nodes, State
+
+
+@compiled(lambda t: t.of(NextStretch)(t.of(Bases), t.of(Bodies), t.of(Manner), t.of(Beginning), t.integer, t.real, t.real))
+def next_stretch(
+    bases: Bases, bodies: Bodies, manner: Manner, beginning: Beginning, time_map: int, length: float, trend: float
+) -> NextStretch:
+    """Return the stretch of a length [s] under a map of time, or, if an event is met within it, that up to the first one.
+
+    It is accepted if it is solved and resolved. `trend`: of the force at its start [N/s].
+    """
+    no_event = Event(NO_EVENT, 0.0, 0.0, 0)
+    no_guess = Nodes(np.zeros(0), np.zeros(0), np.zeros(0))
+    given = Event(NO_EVENT, 0.0, length, 0)
+    basis = basis_of(bases, time_map)
+    tried = attempt(basis, bodies, manner, beginning, no_guess, np.array([trend]), False, given)
+    if tried.event.kind == NO_EVENT:
+        balance = balance_of(basis, bodies, manner, beginning, tried)
+        return NextStretch(balance.resolved, tried, balance, time_map, no_event, np.inf)
+    # also tried if the stretch is not resolved, as the event may be the only reason
+    success, ended, ended_map, seen = up_to_event(bases, bodies, manner, beginning, tried, time_map)
+    balance = balance_of(basis_of(bases, ended_map), bodies, manner, beginning, ended)
+    if success and balance.resolved:
+        return NextStretch(True, ended, balance, ended_map, seen, np.inf)
+    balance = balance_of(basis, bodies, manner, beginning, tried)
+    event_time = np.inf
+    if balance.resolved:  # otherwise the event is not certain
+        event_time = tried.length * time_at(basis, max(tried.event.x, 1.0 / (len(basis.grid) - 1)))
+    return NextStretch(False, tried, balance, time_map, no_event, event_time)
+
+
+@compiled(lambda t: t.of(StretchEnd)(t.of(Bases), t.of(NextStretch)))
+def end_of(bases: Bases, stretch: NextStretch) -> StretchEnd:
+    """Return the end of a stretch."""
+    tried = stretch.tried
+    path = stretch.balance.path
+    forces = tried.nodes.force
+    at_end = basis_of(bases, stretch.time_map).at_end
+    number = len(forces)
+    trend = 0.0
+    largest_force = 0.0
+    for node in range(number):
+        trend += at_end[node] * forces[node] / tried.length
+        largest_force = max(largest_force, forces[node])
+    return StretchEnd(
+        tried.length,
+        State(path.displacement, path.speed, path.local),
+        tried.rubbed.end,
+        tried.contact.delta[0, number],
+        forces[number - 1],
+        trend,
+        tried.contact.closing[0, number],
+        largest_force,
+        tried.contact.roughness,
+    )
