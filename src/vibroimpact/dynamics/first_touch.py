@@ -6,7 +6,7 @@ import numpy as np
 
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.rigid.solve_contact import solver_for
-from vibroimpact.dynamics.run import Run
+from vibroimpact.dynamics.run_state import RunState
 
 
 def first_touch(problem: Problem) -> float:
@@ -26,5 +26,5 @@ def first_touch(problem: Problem) -> float:
     >>> round(first_touch(drop), 6)  # sqrt(2 h/g)
     0.451601
     """
-    run, drop = Run(problem, solver_for(problem)), np.zeros(1, dtype=np.intp)
+    run, drop = RunState(problem, solver_for(problem)), np.zeros(1, dtype=np.intp)
     return float(run.bodies.next_touch(drop, run.flights(drop), run.law(drop))[0][0])

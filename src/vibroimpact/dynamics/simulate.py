@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
+from vibroimpact.dynamics.end_of_run import response_of
 from vibroimpact.dynamics.leg import Leg
 from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.dynamics.packed_list import PackedList
@@ -65,7 +67,9 @@ def simulate(problem: StatesProblem, progress: Callable[[float], None] | None = 
             legs.append(run.advance())
             if progress is not None:
                 progress(run.fraction_done())
-        response = run.response(legs)
+        response = replace(response_of(run), legs=legs)
+    if stated.shape == ():
+        response = response.squeezed()
     if response.problem.shape == () and response.outcomes[0] is Outcome.FAILED:
         raise ComputationError(response.status)
     return response

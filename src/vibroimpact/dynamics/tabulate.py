@@ -9,6 +9,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 
 from vibroimpact.arrays import Floats
+from vibroimpact.dynamics.end_of_run import response_of
 from vibroimpact.dynamics.problem import Problem, StatesProblem
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.rest import Rest
@@ -91,7 +92,7 @@ def _table_of(problem: Problem) -> Response:
         run = Run(problem, solver_for(problem))
         while run.moving.any():
             run.advance()
-        return run.batch()
+        return response_of(run)
 
 
 def _joined(problem: Problem, parts: Sequence[Response]) -> Response:

@@ -1,0 +1,80 @@
+"""Impacts of laws without a force: a velocity changes at an instant, and a sphere that hardly rebounds rides on a plate that is shaken."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.contact.law import InstantaneousLaw
+from vibroimpact.dynamics.leg import Leg
+from vibroimpact.dynamics.outcome import Outcome
+from vibroimpact.dynamics.run_state import RunState
+
+
+def collide_at_once(
+    run: RunState, leg: Leg, law: InstantaneousLaw, touch: Floats, speed: Floats, row: dict[str, Floats]
+) -> tuple[Leg, Floats]:
+    """Let the drops of a leg rebound at their touches, write their row, and return the leg and the energy lost [J].
+
+    Parameters
+    ----------
+    run : RunState
+        The run of the drops.
+    leg : Leg
+        Their flights.
+    law : InstantaneousLaw
+        Of these impacts.
+    touch, speed : array, shape (b,)
+        Times [s] and approach speeds [m/s] of `leg.contact_drops`.
+    row : dict of str to array
+        The row of the impact table.
+    """
+    drops = leg.contact_drops
+    place, velocity, _ = run.problem.surface(touch)
+    separation = law.separation_speed(speed, run.mass[drops])
+    run.time[drops] = touch
+    run.gap[drops] = place
+    run.velocity[drops] = velocity + separation
+    row["separation_speed_m_s"][drops] = separation
+    for name in ("duration_s", "max_indentation_m", "plastic_work_J"):
+        row[name][drops] = 0.0
+    lost = 0.5 * run.mass[drops] * (speed**2 - separation**2)
+    work_of_friction = np.zeros(len(drops))  # of that of the plate, as it moves along itself
+    if run.oblique is not None:
+        contacts, work_of_friction = run.oblique.collide_at_once(drops, touch, run.mass[drops] * (speed + separation), row)
+        leg = replace(leg, oblique_contacts=contacts)
+    if not run.problem.shaken:
+        return leg, lost
+    return _ride(run, leg, touch, speed, (lost, work_of_friction), row)
+
+
+def _ride(
+    run: RunState, leg: Leg, touch: Floats, speed: Floats, energies: tuple[Floats, Floats], row: dict[str, Floats]
+) -> tuple[Leg, Floats]:
+    """Let drops that hardly rebound from a shaken plate ride on it; return the leg with the rides, and the energy lost [J].
+
+    `energies`: lost in the impact without what is lost as they come to ride, and the work of friction by the plate [J]. A sphere that moves
+    along the plate is not followed any further where it rides.
+    """
+    from vibroimpact.dynamics.shaken.bodies import ShakenBodies
+
+    assert isinstance(run.bodies, ShakenBodies)
+    drops = leg.contact_drops
+    lost, work_of_friction = energies
+    separation = row["separation_speed_m_s"][drops]
+    ride = run.bodies.ride(drops, touch, separation, run.rest_speed[drops])
+    if run.oblique is not None:
+        run.stop(drops[ride.end > touch], Outcome.RIDING, touch[ride.end > touch])
+        ride = replace(ride, end=touch)
+    rides = ride.end > touch
+    end = np.where(np.isfinite(ride.end), ride.end, touch)
+    impulse = ride.mass * (speed + np.where(rides, 0.0, separation))
+    work = work_of_friction + impulse * ride.surface(touch)[1] + ride.energy(end) - ride.energy(touch)
+    run.bodies.work[drops] += work
+    row["plate_work_J"][drops] = work
+    carried = drops[rides]
+    run.time[carried] = end[rides]
+    run.gap[carried], run.velocity[carried], _ = ride.surface(end[rides])
+    return replace(leg, ride=ride), lost + np.where(rides, 0.5 * ride.mass * separation**2, 0.0)
