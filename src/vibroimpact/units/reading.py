@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from vibroimpact.errors import InputError
 from vibroimpact.shown import shortened, shown
 from vibroimpact.units.grammar import is_unit
-from vibroimpact.units.spelling import by_gravity, spelled
+from vibroimpact.units.spelling import by_gravity, plain_factor, spelled
 
 if TYPE_CHECKING:
     import pint
@@ -277,17 +277,25 @@ def _power(name: str, power: float) -> str:
 
 def _dimension_words(unit: pint.Unit) -> str:
     """Return the kind of quantity of a unit in words, and its dimension."""
-    registry = _registry()
     if not unit.dimensionality:
         return "a plain number"
-    kind = next(
-        (k for u, k in _KIND.items() if u not in _WITHOUT_DIMENSION and unit.dimensionality == registry.parse_units(u).dimensionality), None
-    )
+    kinds = _kinds_of(unit)
     dimension = unit_text(_dimension(unit).items())
-    if kind is None:
+    if not kinds:
         return f"of the dimension {dimension}"
-    named = f"{_article(kind)} {kind}"
-    return named if kind == dimension else f"{named} ({dimension})"
+    named = _either(kinds)
+    return named if kinds == [dimension] else f"{named} ({dimension})"
+
+
+def _kinds_of(unit: pint.Unit) -> list[str]:
+    """Return the kinds of quantity that have the dimension of a unit: a stiffness and a work of adhesion have the same."""
+    registry = _registry()
+    dimensional = ((registry.parse_units(name), kind) for name, kind in _KIND.items() if name not in _WITHOUT_DIMENSION)
+    return [kind for known, kind in dimensional if known.dimensionality == unit.dimensionality]
+
+
+def _either(kinds: Iterable[str]) -> str:
+    return " or ".join(f"{_article(kind)} {kind}" for kind in kinds)
 
 
 def _known_unit(text: str) -> pint.Unit:
@@ -300,13 +308,13 @@ def _known_unit(text: str) -> pint.Unit:
 
 
 def _parse(text: str, unit: str) -> float:
-    parts = _split(text, plain=not unit)
+    parts = _split(text, unit)
     if parts is None:
         raise InputError(f"{shown(text, 80)} is not {_wanted(unit)}")
     number, given = parts
     if not unit:
         if given:
-            digits = f"{_finite(number / 100.0 if given == '%' else number, text):.15g}"
+            digits = f"{_finite(number * _plain_factor(given), text):.15g}"
             raise InputError(f"{shown(text, 80)} has a unit, but a plain number is wanted: write {digits}")
         return number
     if not given:
@@ -315,16 +323,47 @@ def _parse(text: str, unit: str) -> float:
     return number * _factor(given, unit, text)
 
 
-def _split(text: str, *, plain: bool = False) -> tuple[float, str] | None:
-    """Return number and unit of a text, "" for no unit; None if it does not begin with a number. `plain`: whether no unit is wanted."""
+def _plain_factor(unit: str) -> float:
+    """Return what a unit without a dimension is as a plain number, such as a hundredth for %; 1 of another unit, or of an unknown one."""
+    known = plain_factor(unit)
+    if known is not None:
+        return known
+    try:
+        have = _known_unit(unit)
+        return 1.0 if have.dimensionality else float(_registry().Quantity(1.0, have).to("").magnitude)
+    except InputError:
+        return 1.0
+
+
+def _split(text: str, unit: str | None = None) -> tuple[float, str] | None:
+    """Return number and unit of a text, "" for no unit; None if it does not begin with a number.
+
+    The wanted unit is for messages: "" if none is wanted, None if any is.
+    """
     parts = number_and_unit(text)
     if parts is None and len(text) <= _LONGEST and _COMMA.match(text):
-        pointed = text.replace(",", ".", 1).strip()
-        with_point = number_and_unit(pointed)
-        remedy = f"{with_point[0]:.15g}" if plain and with_point is not None else f'"{pointed}"'
-        thousands = ", or leave the comma out if it separates thousands" if _THOUSANDS.match(text) else ""
-        raise InputError(f"{shown(text, 80)} has a comma in its number; write a point: {remedy}{thousands}")
+        raise InputError(f"{shown(text, 80)} has a comma in its number; {_comma_remedy(text, unit)}")
     return parts
+
+
+def _comma_remedy(text: str, unit: str | None) -> str:
+    """Return how a number with commas is written without them."""
+    pointed, joined = text.replace(",", ".", 1).strip(), text.replace(",", "").strip()
+    with_point, without = number_and_unit(pointed), number_and_unit(joined)
+    groups = _THOUSANDS.match(text) is not None
+    if with_point is not None and "," not in with_point[1]:
+        thousands = ", or leave the comma out if it separates thousands" if groups else ""
+        return f"write a point: {_rewritten(pointed, *with_point, unit)}{thousands}"
+    if without is not None and groups:
+        return f"leave the commas out: {_rewritten(joined, *without, unit)}"
+    return "write one number, with a point before its decimals"
+
+
+def _rewritten(text: str, number: float, given: str, wanted: str | None) -> str:
+    """Return a text with a number as it may be given where a unit is wanted."""
+    if wanted == "":
+        return f"{number:.15g}"
+    return f'"{text}"' if given else f'"{text} {wanted or "UNIT"}"'
 
 
 def _parse_unit(text: str) -> pint.Unit:
@@ -358,11 +397,8 @@ def _converted(given: str, unit: str, text: str) -> float:
             have = other if other.dimensionality == want.dimensionality else have
         return float(have.to(want).magnitude)
     except pint.DimensionalityError:
-        dimensional = (name for name in _KIND if name not in _WITHOUT_DIMENSION)
-        kind = next((_KIND[name] for name in dimensional if have.check(registry.parse_units(name).dimensionality)), None)
-        kind = kind if have.dimensionality else "number without a dimension"
-        is_a = f"is {_article(kind)} {kind}" if kind else "is another kind of quantity"
-        raise InputError(f"{shown(text, 80)} {is_a}; expected {_wanted(unit)}") from None
+        kinds = _kinds_of(have.units) if have.dimensionality else ["number without a dimension"]
+        raise InputError(f"{shown(text, 80)} is {_either(kinds) or 'another kind of quantity'}; expected {_wanted(unit)}") from None
     except Exception as error:  # pint raises many kinds for a unit that it can't read
         raise InputError(f"{shown(given, 80)} in {shown(text, 80)} is not a unit that is known; expected {_wanted(unit)}") from error
 
@@ -382,9 +418,18 @@ def _article(noun: str) -> str:
 def _wanted(unit: str) -> str:
     if not unit:
         return "a plain number"
-    example = _EXAMPLE.get(unit, f"1 {unit}")
-    kind = _KIND.get(unit, "quantity")
-    return f'{_article(kind)} {kind} (a number in {unit}, or a string such as "{example}")'
+    return f'{kind_of(unit)} (a number in {unit}, or a string such as "{_EXAMPLE.get(unit, f"1 {unit}")}")'
+
+
+def kind_of(unit: str) -> str:
+    """Return the kind of quantity that an SI unit is of, with its article.
+
+    Examples
+    --------
+    >>> kind_of("m/s^2"), kind_of("kg s")
+    ('an acceleration', 'a quantity')
+    """
+    return _either([_KIND.get(unit, "quantity")])
 
 
 def _finite(number: float, value: float | str) -> float:
