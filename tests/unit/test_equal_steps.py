@@ -27,6 +27,16 @@ def test_rounded_times(digits: int) -> None:
     assert found.doubts[0].startswith(f"its times are rounded to {10.0**-digits:g} s, {RATE * 10.0**-digits:g} steps")
 
 
+@pytest.mark.parametrize(("rate", "decimals"), [(400.0, 3), (300.0, 3), (30.0, 2), (7000.0, 4)])
+def test_times_of_steps_that_are_no_multiple_of_the_last_digit(rate: float, decimals: int) -> None:
+    """Steps of 2.5 ms in times with three decimals are 2 ms and 3 ms: those of rounding, and no jitter."""
+    time = 0.00013 + np.arange(SAMPLES) / rate
+    found = at_equal_steps(np.round(time, decimals), [swing(time)])
+    assert found.rate == pytest.approx(rate, rel=1e-4)
+    np.testing.assert_array_equal(found.values[0], swing(time))
+    assert found.doubts[0].startswith(f"its times are rounded to {10.0**-decimals:g} s, {rate * 10.0**-decimals:.3g} steps")
+
+
 @pytest.mark.parametrize("seed", range(5))
 @pytest.mark.parametrize("jitter", [0.05, 0.2, 0.4])
 def test_times_that_jitter(jitter: float, seed: int) -> None:
