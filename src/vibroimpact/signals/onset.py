@@ -92,7 +92,8 @@ def onset_time(record: Record, threshold: float | None = None) -> float:
     packets = find_packets(record, threshold)
     if not len(packets.onset):
         if threshold is None:
-            raise InputError(f"{shown(record.name)} is zero throughout; it has no onset")
+            what = "is zero throughout" if len(record.value) else "has no samples"
+            raise InputError(f"{shown(record.name)} {what}; it has no onset")
         unit = "" if record.unit in ("", "1") else f" {record.unit}"
         raise InputError(f"the envelope of {shown(record.name)} stays below {threshold:g}{unit}; it has no onset")
     return record.start + float(packets.onset[0]) / record.rate

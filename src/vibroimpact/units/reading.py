@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from functools import cache, lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from vibroimpact.errors import InputError
 from vibroimpact.shown import shortened, shown
@@ -279,7 +279,7 @@ def _dimension_words(unit: pint.Unit) -> str:
     """Return the kind of quantity of a unit in words, and its dimension."""
     if not unit.dimensionality:
         return "a plain number"
-    kinds = _kinds_of(unit)
+    kinds = _kinds_of(unit.dimensionality)
     dimension = unit_text(_dimension(unit).items())
     if not kinds:
         return f"of the dimension {dimension}"
@@ -287,11 +287,11 @@ def _dimension_words(unit: pint.Unit) -> str:
     return named if kinds == [dimension] else f"{named} ({dimension})"
 
 
-def _kinds_of(unit: pint.Unit) -> list[str]:
-    """Return the kinds of quantity that have the dimension of a unit: a stiffness and a work of adhesion have the same."""
+def _kinds_of(dimension: Mapping[str, Any]) -> list[str]:
+    """Return the kinds of quantity that have a dimension: a stiffness and a work of adhesion have the same."""
     registry = _registry()
     dimensional = ((registry.parse_units(name), kind) for name, kind in _KIND.items() if name not in _WITHOUT_DIMENSION)
-    return [kind for known, kind in dimensional if known.dimensionality == unit.dimensionality]
+    return [kind for known, kind in dimensional if known.dimensionality == dimension]
 
 
 def _either(kinds: Iterable[str]) -> str:
@@ -397,7 +397,7 @@ def _converted(given: str, unit: str, text: str) -> float:
             have = other if other.dimensionality == want.dimensionality else have
         return float(have.to(want).magnitude)
     except pint.DimensionalityError:
-        kinds = _kinds_of(have.units) if have.dimensionality else ["number without a dimension"]
+        kinds = _kinds_of(have.dimensionality) if have.dimensionality else ["number without a dimension"]
         raise InputError(f"{shown(text, 80)} is {_either(kinds) or 'another kind of quantity'}; expected {_wanted(unit)}") from None
     except Exception as error:  # pint raises many kinds for a unit that it can't read
         raise InputError(f"{shown(given, 80)} in {shown(text, 80)} is not a unit that is known; expected {_wanted(unit)}") from error
