@@ -85,7 +85,8 @@ def _labview(head: Head) -> Found | None:
             raise InputError(f"line {kind_at}: X_Dimension is {kind}; a record is over time")
         unit = _at(segment.get("Y_Unit_Label", (0, []))[1], channel - 1)
         if not unit:
-            doubts[channel] = "the LabVIEW file states no unit for it (Y_Unit_Label): it is read as a plain number; --columns states one"
+            remedy = "--columns (in a case the key columns) states one"
+            doubts[channel] = f"the LabVIEW file states no unit for it (Y_Unit_Label): it is read as a plain number; {remedy}"
         cells[channel] = with_unit(names[channel], unit or "1")
         if has_times != "no" and (apart == 2 or channel == 1):
             cells[channel - 1] = "time [s]"

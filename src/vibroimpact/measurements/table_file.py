@@ -21,7 +21,7 @@ from vibroimpact.measurements.header_cells import name_and_unit
 from vibroimpact.measurements.table_layout import Layout, table_layout
 from vibroimpact.measurements.table_lines import fields_of, filled
 from vibroimpact.shown import shortened, shown
-from vibroimpact.units.reading import kind_of, to_si
+from vibroimpact.units.reading import to_si
 from vibroimpact.units.spelling import plain_factor
 
 TABLE = FileKind("a table is a CSV file", 500_000_000, "keep the part with the impacts")
@@ -258,8 +258,11 @@ def factor_to_si(layout: Layout, cell: str, unit: str | None, wanted: str) -> fl
         raise InputError(f"{where}: the unit is missing; {layout.with_unit(name, wanted)}")
     try:
         return to_si(f"1 {unit}", wanted)
-    except InputError:
-        raise InputError(f"{where}: {shown(unit)} is no unit of {kind_of(wanted)}, such as {wanted}") from None
+    except InputError as error:
+        # without the 1 before the unit, and without the hint how to write a number
+        given, one = shown(unit, 80), shown(f"1 {unit}", 80)
+        words = error.message.partition(" (a number in ")[0].replace(f"{given} in {one}", given).replace(one, given)
+        raise InputError(f"{where}: {words}, such as {wanted}") from None
 
 
 def _number(line: int, column: str, row: list[str], place: int, mark: str | None, without: Callable[[float, str], float]) -> float:

@@ -77,7 +77,8 @@ class Layout(NamedTuple):
         if self.is_stated:
             return f"the columns are those stated, and the first row is line {self.number}"
         cells = shortened(", ".join(cell for cell in self.header if cell), _LONGEST_SHOWN)
-        return f"line {self.number} was taken for the header: {cells}, separated by {_MARK_WORDS[self.mark]}"
+        parts = f"separated by {_MARK_WORDS[self.mark]}" if len(self.header) > 1 else "of one column"
+        return f"line {self.number} was taken for the header: {cells}, {parts}"
 
     @property
     def remedy(self) -> str:

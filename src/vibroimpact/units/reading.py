@@ -418,18 +418,8 @@ def _article(noun: str) -> str:
 def _wanted(unit: str) -> str:
     if not unit:
         return "a plain number"
-    return f'{kind_of(unit)} (a number in {unit}, or a string such as "{_EXAMPLE.get(unit, f"1 {unit}")}")'
-
-
-def kind_of(unit: str) -> str:
-    """Return the kind of quantity that an SI unit is of, with its article.
-
-    Examples
-    --------
-    >>> kind_of("m/s^2"), kind_of("kg s")
-    ('an acceleration', 'a quantity')
-    """
-    return _either([_KIND.get(unit, "quantity")])
+    kind = _either([_KIND.get(unit, "quantity")])
+    return f'{kind} (a number in {unit}, or a string such as "{_EXAMPLE.get(unit, f"1 {unit}")}")'
 
 
 def _finite(number: float, value: float | str) -> float:

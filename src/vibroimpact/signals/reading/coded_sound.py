@@ -74,7 +74,7 @@ def _records(file: FileIO, path: Path) -> Iterator[Record]:
     except UnicodeDecodeError:
         raise InputError(f"its labels are damaged; {SOUND.what}") from None
     except (av.FFmpegError, ValueError) as error:
-        raise InputError(f"it can't be read as its name says ({error}); {SOUND.what}") from None
+        raise InputError(f"it can't be read as its name says ({_cause(error)}); {SOUND.what}") from None
     if not value.shape[1]:
         raise InputError("there are no samples in it")
     coded = (_loss_doubt(stream),) if stream.codec_context.codec.lossy and not stream.codec_context.codec.lossless else ()
@@ -118,9 +118,14 @@ def _samples(container: InputContainer, stream: AudioStream, rate: float) -> tup
     except av.FFmpegError as error:
         if not samples:
             raise
-        faults = (f"it is damaged, or cut off, {samples / rate:.4g} s after its start ({error}); what comes after is left out",)
+        faults = (f"it is damaged, or cut off, {samples / rate:.4g} s after its start ({_cause(error)}); what comes after is left out",)
     blocks += [block.to_ndarray().astype(np.float64, copy=False) for block in plain.resample(None)]
     return np.concatenate(blocks, axis=1), faults
+
+
+def _cause(error: Exception) -> str:
+    """Return what FFmpeg or Python says of a fault, without numbers and names of their own."""
+    return str(getattr(error, "strerror", None) or error)
 
 
 def _loss_doubt(stream: AudioStream) -> str:
