@@ -129,7 +129,8 @@ def filled_in(channel: RecordedChannel) -> tuple[Floats, Floats, str]:
     if longest > _LONGEST_GAP or count > _MOST_MISSING * len(time):
         words = f"{count} cells from there on have no number, up to {longest} in a row" if count > 1 else "the cell has no number"
         limit = f"only {_LONGEST_GAP} in a row and {100.0 * _MOST_MISSING:g} % of all are filled in"
-        raise InputError(f"{where}: {words}; {limit}. Fill them in, or keep the part before or after them")
+        them = "them" if count > 1 else "it"
+        raise InputError(f"{where}: {words}; {limit}. Fill {them} in, or keep the part before or after {them}")
     if not (np.diff(channel.time) > 0.0).all():
         raise InputError(f"{where}: the cell has no number, and the times do not rise; fill it in, or leave out the line")
     new = np.array(CubicSpline(channel.time, channel.value)(time))

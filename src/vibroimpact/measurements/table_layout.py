@@ -173,7 +173,8 @@ def _stated(head: Head, stated: StatedColumns, instrument: Found | None) -> Foun
             words = f"line {number} has {_fields_are(filled(fields), mark)}, and {stated_are}"
             raise InputError(f'{STATED}: {words}; state each, and - for one that is left out, such as "time=s,-,force=N"')
         return Found(number, cells, mark, place, clocks)
-    words = nearest or f"none of the first {len(head.lines)} lines has a number in each column that is named"
+    none_has = f"none of the first {len(head.lines)} lines has" if len(head.lines) > 1 else "the only line does not have"
+    words = nearest or f"{none_has} a number in each column that is named"
     raise InputError(f"{STATED}: {words}, and {stated_are}; state each column, and - for one that is left out")
 
 

@@ -201,8 +201,9 @@ def _with_named(mesh: Mesh, named: Mapping[str, Material]) -> Mesh:
         for one in stated:
             left = int((numbers[sets[one.name]] < 0).sum())
             if left:
-                too = "it" if left == len(sets[one.name]) else "sets that contain them"
-                words = f'the names leave out {left} elements of the material "{one.name}" of the file; name {too} too'
+                too = "it" if left == len(sets[one.name]) else f"a set that contains {'it' if left == 1 else 'them'}"
+                elements = "an element" if left == 1 else f"{left} elements"
+                words = f'the names leave out {elements} of the material "{one.name}" of the file; name {too} too'
                 raise InputError(words, "materials")
     return replace(mesh, materials=tuple(named.values()), element_materials=numbers, stated=None)
 

@@ -122,9 +122,10 @@ def tied_nodes(mesh: Mesh, ties: Sequence[Tie], numbers: Integers, elements: tup
                 found.equations.append(Equation(tie.line, terms))
         away = sum(place is None for place in places)
         if away:
+            are = "is" if away == 1 else "are"
             found.remarks.append(
-                f"of the {len(places)} nodes that the mesh file ties by {names}, {away} are further than {reach:.4g} (in the unit of the "
-                "file) from the faces of the second, and are not tied; give the tie a larger POSITION TOLERANCE"
+                f"of the {len(places)} nodes that the mesh file ties by {names}, {away} {are} further than {reach:.4g} (in the unit of the "
+                f"file) from the faces of the second, and {are} not tied; give the tie a larger POSITION TOLERANCE"
             )
         if furthest > rounding:
             found.remarks.append(
