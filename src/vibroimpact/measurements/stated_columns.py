@@ -8,7 +8,8 @@ from typing import NamedTuple
 from vibroimpact.errors import InputError
 from vibroimpact.measurements.header_cells import is_time, name_and_unit
 from vibroimpact.shown import shortened, shown
-from vibroimpact.units.reading import number_and_unit, to_si
+from vibroimpact.units.quantity_text import number_and_unit
+from vibroimpact.units.reading import to_si
 
 STATED = "--columns"
 """The option, by which messages name where the columns were stated; in a case it is the key `columns`."""

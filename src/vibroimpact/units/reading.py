@@ -7,7 +7,6 @@ second to start, and is imported with the first unit that is not an SI unit with
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterable, Mapping
 from functools import cache, lru_cache
 from typing import TYPE_CHECKING, Any
@@ -15,16 +14,11 @@ from typing import TYPE_CHECKING, Any
 from vibroimpact.errors import InputError
 from vibroimpact.shown import shortened, shown
 from vibroimpact.units.grammar import is_unit
+from vibroimpact.units.quantity_text import comma_remedy, has_comma, number_and_unit
 from vibroimpact.units.spelling import by_gravity, plain_factor, spelled
 
 if TYPE_CHECKING:
     import pint
-
-_QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*((?:1/)?[^\d\s.+-].*)?")
-
-_COMMA = re.compile(r"\s*[+-]?\d+,\d")
-_THOUSANDS = re.compile(r"\s*[+-]?[1-9]\d{0,2}(,\d{3})+(?!\d)")
-_LONGEST = 80  # characters of a quantity
 
 _KIND = {
     "m": "length",
@@ -161,20 +155,6 @@ def parse_quantity(text: str) -> tuple[float, str]:
     if parts is None or not parts[1]:
         raise InputError(f'{shown(text, 80)} is not a number with a unit, such as "5.115e8 N/m^1.5"')
     return _finite(parts[0], text), parts[1]
-
-
-def number_and_unit(text: str) -> tuple[float, str] | None:
-    """Return the number and the unit of a text, "" for no unit, neither of which is checked; None if it does not begin with a number.
-
-    Examples
-    --------
-    >>> number_and_unit("25 mm"), number_and_unit("0.3"), number_and_unit("mm")
-    ((25.0, 'mm'), (0.3, ''), None)
-    """
-    match = _QUANTITY.fullmatch(text) if len(text) <= _LONGEST else None
-    if match is None or _COMMA.match(text):
-        return None
-    return float(match[1]), (match[2] or "").strip()
 
 
 def convert_units(value: float, unit: str, to: str) -> float:
@@ -341,29 +321,9 @@ def _split(text: str, unit: str | None = None) -> tuple[float, str] | None:
     The wanted unit is for messages: "" if none is wanted, None if any is.
     """
     parts = number_and_unit(text)
-    if parts is None and len(text) <= _LONGEST and _COMMA.match(text):
-        raise InputError(f"{shown(text, 80)} has a comma in its number; {_comma_remedy(text, unit)}")
+    if parts is None and has_comma(text):
+        raise InputError(f"{shown(text, 80)} has a comma in its number; {comma_remedy(text, unit)}")
     return parts
-
-
-def _comma_remedy(text: str, unit: str | None) -> str:
-    """Return how a number with commas is written without them."""
-    pointed, joined = text.replace(",", ".", 1).strip(), text.replace(",", "").strip()
-    with_point, without = number_and_unit(pointed), number_and_unit(joined)
-    groups = _THOUSANDS.match(text) is not None
-    if with_point is not None and "," not in with_point[1]:
-        thousands = ", or leave the comma out if it separates thousands" if groups else ""
-        return f"write a point: {_rewritten(pointed, *with_point, unit)}{thousands}"
-    if without is not None and groups:
-        return f"leave the commas out: {_rewritten(joined, *without, unit)}"
-    return "write one number, with a point before its decimals"
-
-
-def _rewritten(text: str, number: float, given: str, wanted: str | None) -> str:
-    """Return a text with a number as it may be given where a unit is wanted."""
-    if wanted == "":
-        return f"{number:.15g}"
-    return f'"{text}"' if given else f'"{text} {wanted or "UNIT"}"'
 
 
 def _parse_unit(text: str) -> pint.Unit:
