@@ -196,7 +196,7 @@ def test_one_of_two_deviations(tmp_path: Path) -> None:
 
 
 def test_files_that_are_none(tmp_path: Path) -> None:
-    assert "this is a directory; a table is a CSV file" in refused({"target": {"file": str(tmp_path)}})
+    assert "this is a directory; a table is a text file, such as CSV" in refused({"target": {"file": str(tmp_path)}})
     assert "the file is not UTF-8 text" in refused({"target": {"file": file_with(tmp_path, "# \u0081\n" + ROWS, "latin-1")}})
     # UTF-16 is read
     assert '"x" is not a number' in refused({"target": {"file": file_with(tmp_path, ROWS.replace("0.7", "x"), "utf-16")}})

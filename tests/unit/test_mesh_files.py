@@ -392,7 +392,11 @@ FAULTS: list[tuple[str, str | bytes, str]] = [
         '5: "CWEDGE" is a solid element that is not read; the elements must be CTETRA, CPYRAM, CPENTA or CHEXA',
     ),
     ("mesh.bdf", FREE + "CPYRAM,1,1,1,2,3,4\n", ":5: CPYRAM 1 has 4 nodes; it must have 5 or 13"),
-    ("mesh.bdf", TETRA + "GRID,1,,2.\n", ":6: node 1 was given other coordinates in line 1; a node may be given once"),
+    (
+        "mesh.bdf",
+        TETRA + "GRID,1,,2.\n",
+        ":6: node 1 was given other coordinates in line 1; a node may be given again at the same place only",
+    ),
     ("mesh.bdf", TETRA + "CTETRA,1,1,4,1,2,3\n", ":6: element 1 was given in line 5 already; an element may be given once"),
     ("mesh.bdf", "GRID,1,3\n", ":1: the coordinate system 3 is not in the file; its CORD1R, CORD1C"),
     ("mesh.bdf", "GRDSET,,3\nGRID,1\n", ":2: the coordinate system 3 is not in the file"),

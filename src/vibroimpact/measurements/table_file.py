@@ -24,7 +24,7 @@ from vibroimpact.shown import shortened, shown
 from vibroimpact.units.reading import to_si
 from vibroimpact.units.spelling import plain_factor
 
-TABLE = FileKind("a table is a CSV file", 500_000_000, "keep the part with the impacts")
+TABLE = FileKind("a table is a text file, such as CSV", 500_000_000, "keep the part with the impacts")
 """Requirements on a table file."""
 
 MOST_LINES = 10_000_000

@@ -249,7 +249,7 @@ class Parts:
             first = self._node_lines[order[at - 1]]
             raise self._node_lines[order[at]].wrong(
                 f"node {self.written(int(numbers[at]))} was given other coordinates in {_place_of(first, self._node_lines[order[at]])}; "
-                "a node may be given once"
+                "a node may be given again at the same place only"
             )
         once = np.append(~again, True) if len(numbers) else np.ones(0, dtype=bool)
         return numbers[once], points[once]
