@@ -20,6 +20,7 @@ _WHOLE = 1e-3
 """Distance from a multiple of the last digit, as a part of it, that is none."""
 _MOST_DIGITS = 9
 """Largest number of significant digits of times that are sought."""
+_THEY_MUST = "they must rise by equal steps"
 _FEWEST = 16
 """Least number of times whose rounding or jitter is told."""
 
@@ -73,9 +74,11 @@ def rate_of(time: Floats, lines: Sequence[int] | None = None) -> float:
         at = int(back[0])
         above = "the previous one" if lines is None else "the one above"
         words = f"{_sample(at + 1, lines)} is {time[at] - time[at + 1]:.3g} s before {above}, at {time[at + 1]:.9g} s"
-        raise InputError(f"the times do not rise: {words}; if the file has several records, one below the other, keep one of them")
+        several = "if the file has several records, one below the other, keep one of them"
+        raise InputError(f"the times do not rise: {words}; {_THEY_MUST if lines is None else several}")
     if not (step > 0.0 and np.isfinite(step)):
-        raise InputError(f"the times do not rise: all are {time[0]:.9g} s; write them with more digits")
+        remedy = _THEY_MUST if lines is None else "write them with more digits"
+        raise InputError(f"the times do not rise: all are {time[0]:.9g} s; {remedy}")
     shift = np.abs(time - (time[0] + step * np.arange(len(time)))) / step
     worst = int(np.argmax(shift))
     if not shift[worst] <= _LARGEST_SHIFT:
