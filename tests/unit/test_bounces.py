@@ -128,8 +128,11 @@ def record_of(*touches: float, duration: float = 1.0) -> vi.Record:
         (record_of(0.3), "one touch is detected in it, and a restitution needs three"),
         (record_of(0.3, 0.6), "two touches are detected in it"),
         (record_of(0.2, 0.4, 0.7), "the times between 3 touches do not decrease"),
-        (record_of(0.2, 0.5, 0.65, 0.85), "of its 4 touches 3 at most have decreasing intervals, as any three might"),
-        (record_of(0.2, 0.5, 0.65, 0.75, 0.95), "of its 5 touches 4 at most have decreasing intervals, as some of as many"),
+        (record_of(0.2, 0.5, 0.65, 0.85), "of its 4 touches 3 at best have intervals that shrink as those of bounces, as any three might"),
+        (
+            record_of(0.2, 0.5, 0.65, 0.75, 0.95),
+            "of its 5 touches 4 at best have intervals that shrink as those of bounces, as some of as many",
+        ),
         (vi.Record("m", np.zeros(0), RATE, "V"), "it has no samples"),
         (vi.Record("m", np.arange(100.0), RATE, "V"), "it is too short: it has 100 samples, and at 48000 Hz three touches take 288"),
         (vi.Record("m", np.array([0.0, np.nan]), RATE, "V"), "a sample is not a finite number"),
@@ -152,7 +155,7 @@ def test_little_clipping_is_a_doubt() -> None:
 def test_three_touches_are_taken_with_a_doubt() -> None:
     found = vi.find_bounces(record_of(0.2, 0.5, 0.65))
     np.testing.assert_allclose(found.restitution, [0.5], atol=1e-5)
-    assert found.doubts == ("there are only three touches: they need not be bounces of one ball",)
+    assert found.doubts == ("the series has only three touches: they need not be bounces of one ball",)
 
 
 @pytest.mark.parametrize("seed", range(40))

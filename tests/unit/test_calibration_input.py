@@ -137,7 +137,7 @@ def test_nothing_to_match_and_no_section() -> None:
 ROWS = "approach_speed_m_s,restitution\n1,0.7\n2,0.6\n3,0.5\n"
 FILES = [
     ("", "the file is empty"),
-    ("# only a comment\n\n", "the file is empty"),
+    ("# only a comment\n\n", "the file is empty but for comments, separators and blanks"),
     ("approach_speed_m_s,restitution\n", "there are no rows under the header"),
     ("1,0.7\n2,0.6\n", "line 1: it has 2 numbers, and no header is above it; write a header, such as time [s],force [N]"),
     ("restitutoin\n0.7\n", 'Did you mean "restitution"?'),
@@ -154,6 +154,8 @@ FILES = [
     ("approach_speed_m_s,restitution\n1,0.7\n2\n", 'line 3, column "restitution": the cell is missing; the line has 1 field'),
     ("approach_speed_m_s,restitution\n1,nan\n", 'line 2, column "restitution": "nan" is not finite'),
     ("approach_speed_m_s,restitution\n1,1e999\n", 'line 2, column "restitution": "1e999" is not finite'),
+    ("approach_speed_m_s,restitution\n1,n/a\n", 'line 2, column "restitution": "n/a" is no number; fill it in'),
+    ("approach_speed_m_s,restitution\n1,9.9e37\n", '"9.9e37" stands for a sample that is over the range (SCPI); fill it in'),
     ("approach_speed_m_s,restitution\n1,0.7\n-2,0.6\n", "line 3: approach_speed is -2; it must be greater than 0"),
     ("approach_speed_m_s,restitution\n1,0.7\n2,0\n", "line 3: restitution is 0; it must be greater than 0"),
     ("approach_speed_m_s,max_force_N\n1,100\n2,-5\n", "line 3: max_force is -5; it must be greater than 0"),
@@ -169,8 +171,8 @@ FILES = [
     ("rebound_height [m]\n2,41\n1,457\n", "line 2: there are 2 fields, and the header has 1; where a comma is the decimal point"),
     ("approach_speed_m_s,restitution,restitution_standard_deviation\n1,0.7,0\n", "restitution_standard_deviation is 0; it must be"),
     ("approach_speed_m_s,restitution\n1,0.7_5\n", '"0.7_5" is not a number'),
-    ("time_s,force_N\n0,0\n1e-3,0\n5e-4,0\n2e-3,1\n", "line 4: time goes backwards, from 0.001 to 0.0005"),
-    ("time_ms,position_m\n0,1\n\n2,1\n1,1\n", "line 5: time goes backwards, from 0.002 to 0.001"),
+    ("time_s,force_N\n0,0\n1e-3,0\n5e-4,0\n2e-3,1\n", "line 4: time goes backwards, from 0.001 s to 0.0005 s"),
+    ("time_ms,position_m\n0,1\n\n2,1\n1,1\n", "line 5: time goes backwards, from 0.002 s to 0.001 s"),
 ]
 
 
@@ -194,7 +196,7 @@ def test_one_of_two_deviations(tmp_path: Path) -> None:
 
 
 def test_files_that_are_none(tmp_path: Path) -> None:
-    assert "this is a directory; a table is a CSV file" in refused({"target": {"file": str(tmp_path)}})
+    assert "this is a directory; a table is a text file, such as CSV" in refused({"target": {"file": str(tmp_path)}})
     assert "the file is not UTF-8 text" in refused({"target": {"file": file_with(tmp_path, "# \u0081\n" + ROWS, "latin-1")}})
     # UTF-16 is read
     assert '"x" is not a number' in refused({"target": {"file": file_with(tmp_path, ROWS.replace("0.7", "x"), "utf-16")}})

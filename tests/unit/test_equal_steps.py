@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
-from vibroimpact.signals.reading.equal_steps import at_equal_steps
+from vibroimpact.signals.reading.equal_steps import at_equal_steps, rate_of
 
 RATE, SAMPLES = 200.0, 2000
 TIME = 3.0 + np.arange(SAMPLES) / RATE
@@ -25,6 +25,16 @@ def test_rounded_times(digits: int) -> None:
     assert found.start == pytest.approx(3.0, abs=10.0**-digits)
     np.testing.assert_array_equal(found.values[0], swing(TIME))
     assert found.doubts[0].startswith(f"its times are rounded to {10.0**-digits:g} s, {RATE * 10.0**-digits:g} steps")
+
+
+@pytest.mark.parametrize(("rate", "decimals"), [(400.0, 3), (300.0, 3), (30.0, 2), (7000.0, 4)])
+def test_times_of_steps_that_are_no_multiple_of_the_last_digit(rate: float, decimals: int) -> None:
+    """Steps of 2.5 ms in times with three decimals are 2 ms and 3 ms: those of rounding, and no jitter."""
+    time = 0.00013 + np.arange(SAMPLES) / rate
+    found = at_equal_steps(np.round(time, decimals), [swing(time)])
+    assert found.rate == pytest.approx(rate, rel=1e-4)
+    np.testing.assert_array_equal(found.values[0], swing(time))
+    assert found.doubts[0].startswith(f"its times are rounded to {10.0**-decimals:g} s, {rate * 10.0**-decimals:.3g} steps")
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -76,3 +86,17 @@ def test_times_with_a_number_of_digits(form: str) -> None:
     assert found.rate == pytest.approx(rate, rel=1e-3)
     np.testing.assert_array_equal(found.values[0], swing(time))
     assert found.doubts[0].startswith(f"its times are rounded to {form[2]} significant digits, up to ")
+
+
+@pytest.mark.parametrize(
+    ("time", "words"),
+    [
+        ([0.0, 0.0, 0.0], "the times do not rise: all are 0 s; they must rise by equal steps"),
+        ([0.0, -1.0, -2.0], "the times do not rise: sample 2 is 1 s before the previous one, at -1 s; they must rise by equal steps"),
+    ],
+)
+def test_times_without_lines_have_no_remedy_of_a_table(time: list[float], words: str) -> None:
+    """They follow from the header of a universal file, which has no more digits, and no second record below."""
+    with pytest.raises(vi.InputError) as refused:
+        rate_of(np.array(time))
+    assert str(refused.value) == words

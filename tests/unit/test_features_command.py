@@ -126,7 +126,7 @@ def test_the_list(call) -> None:
         (("TAPS", "--threshold", "-1"), "the threshold is -1; it must be finite and above 0"),
         (("TAPS", "--dead-time", "5 mm"), "5 mm"),
         (("TAPS", "--dead-time", "-5 ms"), "the dead time is -0.005 s"),
-        (("TAPS", "--window", "0 s"), "a window of 0 s has 0 samples"),
+        (("TAPS", "--window", "0 s"), "a window of 0 s is not allowed; it must be greater than 0"),
         (("TAPS", "--window", "5 ms", "--packets"), "give one of them"),
         (("TAPS", "--packets", "--threshold", "5"), "no signals with a packet above the threshold"),
         (("TAPS", "--list"), "takes no files"),

@@ -105,7 +105,7 @@ def test_units_of_dataset_164(tmp_path: Path) -> None:
 def test_without_a_unit_it_is_taken_as_si_and_said(tmp_path: Path) -> None:
     labels = {"ordinate_axis_units_lab": "NONE", "orddenom_axis_units_lab": "NONE"}
     found = compared(tmp_path, **labels)
-    assert any('plate.uff, "12", "13": it states no unit, and there is no dataset 164' in doubt for doubt in found.doubts)
+    assert any('plate.uff, "12", "13": it states no unit of its motion, and there is no dataset 164' in doubt for doubt in found.doubts)
     unknown = compared(tmp_path, **labels, ordinate_spec_data_type=0, orddenom_spec_data_type=0)
     assert unknown.units == ("m/s2/N", "m/s2/N")
     assert any("it states neither a unit nor a data type of motion" in doubt for doubt in unknown.doubts)

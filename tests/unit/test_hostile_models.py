@@ -82,7 +82,7 @@ def test_a_study_is_verified_before_it_is_opened(tmp_path: Path) -> None:
 
 def test_a_file_on_which_hdf5_hangs_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("vibroimpact.files.damaged_part._TIMEOUT", 0.001)  # no process starts so fast
-    with pytest.raises(vi.InputError, match="HDF5 crashes or hangs on it"):
+    with pytest.raises(vi.InputError, match=r"HDF5 did not get through the file within 0\.001 s: it is damaged, or its disk"):
         vi.read_labelled_signals(write_knocks(tmp_path / "data", **TINY))
 
 
@@ -120,7 +120,7 @@ def test_a_card_of_wrong_types_is_refused(change: dict[str, Any], message: str, 
     [
         (b"[" * 100_000, "it has tables and lists more than 100 deep in one another"),
         (b'{"a":' * 200 + b"1" + b"}" * 200, "it has tables and lists more than 100 deep in one another"),
-        (b"[" + b"1," * 5_000_001 + b"1]", "it has more than 5,000,000 values"),
+        (b"[" + b"1," * 5_000_001 + b"1]", "it has more than 5,000,000 values and keys"),
         (b'{"a": NaN}', "it is not JSON"),
         (b'{"a": "\\ud800"}', "it is not JSON"),
         (b"[1]", "it holds no table"),

@@ -149,7 +149,10 @@ def test_what_labview_leaves_open(tmp_path: Path) -> None:
 def test_a_channel_of_labview_without_unit_is_a_plain_number(tmp_path: Path) -> None:
     records = {record.name: record for record in vi.read_records(written(tmp_path, labview()))}
     assert (records["untitled"].unit, records["untitled"].rate, len(records["untitled"].value)) == ("1", 1.0, 5)
-    assert "states no unit for it (Y_Unit_Label): it is read as a plain number; --columns states one" in records["untitled"].doubts[0]
+    assert (
+        "states no unit for it (Y_Unit_Label): it is read as a plain number; --columns (in a case the key columns) states"
+        in records["untitled"].doubts[0]
+    )
     assert records["plate"].doubts == ()
 
 
@@ -319,8 +322,9 @@ BARE = "".join(f"{at / 1e3},{value:.6f}\n" for at, value in enumerate(VALUE))
         ("A recorder, of mine\nwith, three, words\n" + BARE, "t=s,Kraft=N"),
         ("number,stamp,t,F\n" + "".join(f"{at},12:{at:02d},{row}\n" for at, row in enumerate(BARE.split())), "-,-,time=s,force=N"),
         ("".join(f"{value:.6f}\n" for value in VALUE), "rate=1000 Hz,force=N"),
+        (BARE, "-,rate=1000,force=N"),
     ],
-    ids=["no header", "a rate", "decimal commas", "without units", "a preamble", "text in other columns", "one column"],
+    ids=["no header", "a rate", "decimal commas", "without units", "a preamble", "text in other columns", "one column", "a bare rate"],
 )
 def test_columns_are_stated(text: str, columns: str, tmp_path: Path) -> None:
     (record,) = read(tmp_path, text, columns)
@@ -422,6 +426,10 @@ def test_a_table_file_with_stated_columns(tmp_path: Path) -> None:
         (TIMED + "0,1\n" * 20 + "0,2\n", 'column "time [s]": the times do not rise: all are 0 s; write them with more digits'),
         (TIMED + BARE.replace("0.049", "9"), "leads to sample 50 (line 51); keep the part before or after it, or resample the record"),
         ("time [s],force [banana]\n" + BARE, '"banana" is no unit of a signal'),
+        ("time [kg],force [N]\n" + BARE, 'line 1, column "time [kg]": "kg" is a mass; expected a time, such as s'),
+        ("time [foo],force [N]\n" + BARE, 'column "time [foo]": "foo" is not a unit that is known; expected a time, such as s'),
+        ("force [N]\n1\n2\n", "line 1 was taken for the header: force [N], of one column"),
+        ("time\n1\n2\n", 'write it in brackets, such as time [s], or give --columns "time=s"'),
     ],
 )
 def test_what_was_understood_is_said(text: str, told: str, tmp_path: Path) -> None:

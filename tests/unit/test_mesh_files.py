@@ -392,14 +392,18 @@ FAULTS: list[tuple[str, str | bytes, str]] = [
         '5: "CWEDGE" is a solid element that is not read; the elements must be CTETRA, CPYRAM, CPENTA or CHEXA',
     ),
     ("mesh.bdf", FREE + "CPYRAM,1,1,1,2,3,4\n", ":5: CPYRAM 1 has 4 nodes; it must have 5 or 13"),
-    ("mesh.bdf", TETRA + "GRID,1,,2.\n", ":6: node 1 was given other coordinates in line 1; a node may be given once"),
+    (
+        "mesh.bdf",
+        TETRA + "GRID,1,,2.\n",
+        ":6: node 1 was given other coordinates in line 1; a node may be given again at the same place only",
+    ),
     ("mesh.bdf", TETRA + "CTETRA,1,1,4,1,2,3\n", ":6: element 1 was given in line 5 already; an element may be given once"),
     ("mesh.bdf", "GRID,1,3\n", ":1: the coordinate system 3 is not in the file; its CORD1R, CORD1C"),
     ("mesh.bdf", "GRDSET,,3\nGRID,1\n", ":2: the coordinate system 3 is not in the file"),
     ("mesh.bdf", "GRID,1,3\nCORD2R,3,,0.,0.,0.,0.,0.,1.\n,0.,0.,5.\n", ":2: the three points of the coordinate system 3 lie on one line"),
     ("mesh.bdf", "GRID,1,3\nCORD2R,3,4,,,,,,1.\n,1.\nCORD2R,4,3,,,,,,1.\n,1.\n", "refers to itself"),
     ("mesh.bdf", "GRID,1,3\nCORD1R,3,7,8,9\n", ":2: the GRID 7 that defines the coordinate system is not in the file"),
-    ("mesh.bdf", "GRID,1,-1\n", ':1: "-1" puts a node on a fluid'),
+    ("mesh.bdf", "GRID,1,-1\n", ':1: "-1" is not the number of a coordinate system'),
     ("mesh.bdf", "=,*(1)\n", ":1: a card is repeated without one before it"),
     ("mesh.bdf", "GRID,1\n=(3)\n", ':2: "=(3)" repeats steps, and the line before has none'),
     ("mesh.bdf", "GRID,1\n=x,2\n", ':2: "=x" is no repetition; it must be "=", or "=(n)"'),
@@ -413,7 +417,7 @@ FAULTS: list[tuple[str, str | bytes, str]] = [
     ("mesh.bdf", "GRID,1,,,,,,,,+A\n+B,1\n", ':2: "B" does not go on with the card before it, which asks for "A"'),
     ("mesh.bdf", "+A,1\n", ":1: a line goes on without a card before it"),
     ("mesh.bdf", "BEGIN SUPER=1\n", ':1: "BEGIN SUPER" is not read'),
-    ("mesh.bdf", "BEGIN BULK\n" + TETRA, ": there is a BEGIN BULK but no ENDDATA; the file is cut short"),
+    ("mesh.bdf", "BEGIN BULK\n" + TETRA, ": there is a BEGIN BULK but no ENDDATA; the file is cut short, or that line was left out"),
     ("mesh.bdf", "SPC1,1,123,x\n", ":1: the nodes of SPC1 can't be read"),
     ("mesh.bdf", "INCLUDE 'no.bdf'\n", ":1: the file to include can't be read"),
     ("mesh.bdf", "INCLUDE 'mesh.bdf'\n", ':1: "mesh.bdf" is included a second time; a file may be included once'),
@@ -450,7 +454,12 @@ FAULTS: list[tuple[str, str | bytes, str]] = [
     ("mesh.inp", TWO_PARTS.replace("\n0,0,1\n", "\n0,0,1e999\n"), ":13: the place of the instance is not finite"),
     ("mesh.inp", TWO_PARTS.replace("2,1,0,0", "2000000000000,1,0,0"), ":4: the number 2000000000000 is too large for a part"),
     ("mesh.inp", TWO_PARTS + "*ASSEMBLY\n*NSET,NSET=x,INSTANCE=K\n1\n*END ASSEMBLY\n", ':16: there is no instance "K" before'),
-    ("mesh.inp", "*PART,NAME=A\n" + DECK, ":1: *PART has no *END PART; the file is cut short"),
+    ("mesh.inp", TWO_PARTS.replace("1,1,2,3,4", "1,1,2,3,9"), ":8: element 1 has the node 9, which the file does not give"),
+    ("mesh.inp", TWO_PARTS.replace("2,1,0,0", "2,1,0,1e20"), ":4: node 2 has the coordinate 1e+20"),
+    ("mesh.inp", TWO_PARTS.replace("2,1,0,0", "2,1,0,0\n2,1,0,1"), ":5: node 2 was given other coordinates in line 4"),
+    ("mesh.inp", TWO_PARTS.replace("1,1,2,3,4", "1,1,2,3"), ":8: element 1 has 3 nodes; C3D4 must have 4"),
+    ("mesh.msh", "$NOD\n0\n$ENDNOD\n", ':1: "$NOD" has no "$EndNOD"; the file is cut short, or its format is none of 2, 4.0 and 4.1'),
+    ("mesh.inp", "*PART,NAME=A\n" + DECK, ":1: *PART has no *END PART; the file is cut short, or that line was left out"),
     ("mesh.inp", "*INSTANCE,NAME=A,PART=P\n0,0,1\n*END INSTANCE\n", ':1: the instance is of the part "P", which is not in the file'),
     ("mesh.inp", "*NODE,INPUT=no.inp\n", ":1: the file to include can't be read"),
     ("mesh.msh", "hello\n", ':1: "hello" stands outside a section'),
@@ -474,14 +483,14 @@ GMSH_FAULTS = [
     (
         FOUR,
         "1\n1 13 2 1 1 1 2 3 4 1 2",
-        ":13: the element is a prism of 18 nodes, which is not read; the solids must be tetrahedra, prisms",
+        ":13: the element is a prism of 18 nodes, which is not read; prisms must have 6 or 15 nodes",
     ),
     (FOUR, "1\n1 7 2 1 1 1 2 3 4", ":13: the element has 4 nodes; its type 7 must have 5"),
-    (FOUR, "1\n1 29 2 1 1 1 2 3 4 1", ":13: the element is of type 29"),
+    (FOUR, "1\n1 29 2 1 1 1 2 3 4 1", ":13: the element is of type 29, which is not read; all must be of first or second order"),
     (FOUR, "1\n1 4 2 1 1 1 2 3", ":13: the element has 3 nodes; its type 4 must have 4"),
     (FOUR, "1\n1 4 2 1 1 1 2 3 9", ":13: element 1 has the node 9, which the file does not give"),
-    (FOUR, "1000000000000000\n1 4 2 1 1 1 2 3 4", ":11: $Elements states 1000000000000000 lines where 1 are left"),
-    ("1000000000000000\n1 0 0 0", "0", ":4: $Nodes states 1000000000000000 lines where 1 are left; the file is truncated"),
+    (FOUR, "1000000000000000\n1 4 2 1 1 1 2 3 4", ":11: $Elements states 1000000000000000 lines where 1 is left"),
+    ("1000000000000000\n1 0 0 0", "0", ":4: $Nodes states 1000000000000000 lines where 1 is left; the file is truncated"),
     ("99999999999999999999\n1 0 0 0", "0", ':5: "99999999999999999999" is not the number of nodes'),
     ("1\n1 0 0", "0", ":6: the line has 3 of the 4 entries that it must have"),
     ("0\n1 0 0 0", "0", ":6: $Nodes has more lines than it states"),
@@ -550,3 +559,11 @@ def test_names_and_titles_can_not_break_a_file(tmp_path: Path) -> None:
 def test_readers_take_texts_as_paths(tmp_path: Path) -> None:
     (tmp_path / "mesh.txt").write_text(MSH.format(nodes=FOUR, elements="1\n1 4 2 1 1 1 2 3 4"))
     assert read_gmsh(str(tmp_path / "mesh.txt")).number_of_elements == 1
+
+
+def test_a_node_given_again_in_an_included_file_names_that_file(tmp_path: Path) -> None:
+    (tmp_path / "more.bdf").write_text("GRID,1,,2.\n")
+    (tmp_path / "mesh.bdf").write_text("INCLUDE 'more.bdf'\n" + TETRA)
+    with pytest.raises(InputError) as raised:
+        read_mesh(tmp_path / "mesh.bdf")
+    assert f"mesh.bdf:2: node 1 was given other coordinates in line 1 of {tmp_path / 'more.bdf'}" in str(raised.value)

@@ -153,7 +153,7 @@ REFUSED = [
     ("MAT1,1,2.1+5,,.3,7.85-9\nMAT1,2\n", "MID2 has no density, Young's modulus, Poisson's ratio"),
     ("MAT1,1,2.1+5,,.3,7.85-9\n", "MID2 has no density, Young's modulus, Poisson's ratio"),
     ("MAT1,1,2.1+5,,.3,7.85-9\nMAT9,2,1.,2.,3.\n", "MID2 is anisotropic"),
-    ("MAT1,1,2.1+5,,.3,7.85-9\nMAT1,2,10.,,.5,1.1-9\n", "the material MID2 of the file: poissons_ratio 0.5 is not allowed"),
+    ("MAT1,1,2.1+5,,.3,7.85-9\nMAT1,2,10.,,.5,1.1-9\n", "the material MID2 of the file: Poisson's ratio 0.5 is not allowed"),
     (
         "MAT1,1,2.1+5,,.3,7.85\nMAT1,2,10.,,.45,1.1\n",
         "in units that are not known: MID1 has the density 7.85 and the modulus 2.1e+05, with coordinates in mm",
@@ -197,7 +197,7 @@ USER = INP_MM.replace("*ELASTIC, TYPE=ISOTROPIC\n10., .45\n", "*USER MATERIAL, C
         (USER, "Rubber is a user material"),
         (
             INP_MM.replace("ELSET=LEFT", "ELSET=lefft"),
-            'neither a number nor a *ELSET before this line; it must be one of them. Did you mean "LEFT"?',
+            'the file has no element set "lefft", of which the section is. Did you mean "LEFT"?',
         ),
     ],
 )
@@ -211,7 +211,10 @@ def test_materials_of_abaqus_that_can_not_be_used(text: str, message: str, tmp_p
     [
         ({"steal": "steel"}, 'has no material or element set "steal"; it has left, RIGHT, steel, Rubber. Did you mean "steel"?'),
         ({"left": "steel"}, 'the names leave out 8 elements of the material "Rubber" of the file; name it too'),
-        ({"left": "steel", "steel": "aluminium", "right": "steel"}, '"steel" and "left" share 8 elements'),
+        (
+            {"left": "steel", "steel": "aluminium", "right": "steel"},
+            '"steel" and "left" share 8 elements, each of which can have one material only',
+        ),
         ({"left": "steel", "right": "rigid"}, 'mesh.materials.right: "rigid" does not deform'),
     ],
 )
@@ -273,9 +276,10 @@ def test_elements_of_a_fluid_are_left_out(tmp_path: Path) -> None:
 
 NAMED = {
     "CONM2,100,1,,2.5\n": "CONM2 (1); masses are not part of the body",
-    "CELAS2,100,1.+3,1,1\nCBUSH,101,3,1,2\n": "CELAS2 (1), CBUSH (1); springs, dampers and connectors are not part of the body",
-    "RSPLINE,100,1.,1,2,123,3\nMPC,1,1,1,1.,2,1,-1.\n": "RSPLINE (1), MPC (1); constraints between nodes are not applied",
-    "CQUAD4,100,3,1,2,3,4\nCBAR,101,3,1,2\n": "CQUAD4 (1), CBAR (1); beams, shells and membranes are not part of the body",
+    "CELAS2,100,1.+3,1,1\nCBUSH,101,3,1,2\n": "CELAS2 (1), CBUSH (1); springs and connectors are not part of the body",
+    "CDAMP2,100,3.,1,1\n": "CDAMP2 (1); dampers are not part of the body, which rings for longer",
+    "RSPLINE,100,1.,1,2,123,3\nMPC,1,1,1,1.,2,1,-1.\n": "RSPLINE (1), MPC (1); constraints of nodes are not applied",
+    "CQUAD4,100,3,1,2,3,4\nCBAR,101,3,1,2\n": "CQUAD4 (1), CBAR (1); elements other than solids in three dimensions are not part",
     "SPC1,7,123,1,2\nSPC,8,1,1\n": "SPC (1), SPC1 (1); supports of the file are not used",
     "GRID,900,,1.,1.,1.,,123\n": "PS of GRID (1); supports of the file",
 }

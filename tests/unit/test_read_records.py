@@ -186,6 +186,23 @@ def test_netcdf_by_xarray(tmp_path: Path) -> None:
     np.testing.assert_array_equal(other.value, -SIGNAL)
 
 
+def test_netcdf_packed_by_a_filter_that_is_not_installed_is_not_called_damaged(tmp_path: Path) -> None:
+    blosc, optional, path = 32001, h5py.h5z.FLAG_OPTIONAL, tmp_path / "packed.nc"
+    with h5py.File(path, "w") as file:
+        time = file.create_dataset("time", data=np.arange(100) / 1e3)
+        time.attrs["units"] = "s"
+        time.make_scale("time")
+        properties = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
+        properties.set_chunk((100,))
+        properties.set_filter(blosc, optional, (3,))
+        space = h5py.h5s.create_simple((100,))
+        data = h5py.Dataset(h5py.h5d.create(file.id, b"acceleration", h5py.h5t.IEEE_F64LE, space, properties))
+        data.id.write_direct_chunk((0,), b"packed", 0)
+        data.dims[0].attach_scale(time)
+    with pytest.raises(vi.InputError, match=r"packed\.nc: acceleration is packed by a filter that HDF5 lacks here"):
+        list(vi.read_records(path))
+
+
 def test_wrong_netcdf(tmp_path: Path) -> None:
     dataset(tmp_path / "unequal.nc", unequal=True)
     dataset(tmp_path / "unit.nc", "banana")

@@ -187,6 +187,40 @@ def test_what_is_still_refused(text: str, unit: str) -> None:
         vi.to_si(text, unit)
 
 
+@pytest.mark.parametrize(
+    ("text", "unit", "remedy", "value"),
+    [
+        ("1,5", "m", 'write a point: "1.5 m"', 1.5),
+        ("1,5 mm", "m", 'write a point: "1.5 mm"', 0.0015),
+        ("1,234,567 mm", "m", 'leave the commas out: "1234567 mm"', 1234.567),
+        ("1,234.5 mm", "m", 'leave the commas out: "1234.5 mm"', 1.2345),
+        ("1,234,567", "", "leave the commas out: 1234567", 1234567.0),
+        ("5 mm/m", "", "write 0.005", 0.005),
+        ("5 ppm", "", "write 5e-06", 5e-6),
+        ("30 %", "", "write 0.3", 0.3),
+    ],
+)
+def test_a_remedy_is_accepted(text: str, unit: str, remedy: str, value: float) -> None:
+    with pytest.raises(vi.InputError) as refused:
+        vi.to_si(text, unit)
+    assert str(refused.value).endswith(remedy)
+    written = remedy.partition('"')[2].rstrip('"') or float(remedy.split()[-1])
+    assert vi.to_si(written, unit) == pytest.approx(value)
+
+
+def test_a_list_of_numbers_is_no_number_with_commas() -> None:
+    with pytest.raises(vi.InputError, match="write one number, with a point before its decimals"):
+        vi.to_si("1,2,3", "m")
+
+
+@pytest.mark.parametrize(
+    ("text", "kinds"), [("50 mJ/m^2", "a stiffness or a work of adhesion"), ("100 rad/s", "a frequency or an angular velocity")]
+)
+def test_all_kinds_of_a_dimension_are_named(text: str, kinds: str) -> None:
+    with pytest.raises(vi.InputError, match=f'"{re.escape(text)}" is {kinds}; expected a length'):
+        vi.to_si(text, "m")
+
+
 def test_the_message_names_what_is_accepted() -> None:
     with pytest.raises(vi.InputError) as refused:
         in_si("banana")

@@ -55,7 +55,7 @@ def test_the_factor_is_1000_to_the_power(power: float, stiffness: float) -> None
 @pytest.mark.parametrize(
     ("value", "unit", "to", "words"),
     [
-        (1.0, "N/m^1.5", "N/mm", ["contact stiffness (force/length^1.5)", "stiffness (force/length)"]),
+        (1.0, "N/m^1.5", "N/mm", ["contact stiffness (force/length^1.5)", "a stiffness or a work of adhesion (force/length)"]),
         (1.0, "N/m^1.5", "N/mm^1.6", ["contact stiffness (force/length^1.5)", "of the dimension force/length^1.6"]),
         (1.0, "N s/m", "N/m", ["a damping (force time/length)", "a stiffness"]),
         (1.0, "kg", "m", ['"kg" is a mass', '"m" is a length']),

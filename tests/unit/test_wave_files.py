@@ -85,7 +85,7 @@ def test_streamed_and_long_files(tmp_path: Path) -> None:
 def test_a_file_that_is_cut_off_says_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     sound = np.random.default_rng(1).integers(-9000, 9000, 400, dtype=np.int16).tobytes()
     path = written(tmp_path, wave(sound, stated=3000))
-    words = "the file is cut off: it has 400 of the 1,500 samples of a channel that its header states"
+    words = "the file is cut off, or its header is wrong: it has 400 of the 1,500 samples of a channel that its header states"
     (record,) = vi.read_records(path)
     assert (len(record.value), record.doubts) == (400, (words,))
     monkeypatch.setattr("sys.argv", ["vibroimpact", "features", str(path), "--only", "rms"])

@@ -205,7 +205,9 @@ def test_size_and_order(model: None, tmp_path: Path) -> None:
     write_geometry(tmp_path / "ball.stp")
     mesh = mesh_geometry(tmp_path / "ball.stp", size=0.02, order=1)
     assert [block.kind for block in mesh.blocks] == ["tet4"]
-    with pytest.raises(InputError, match=r"elements of that size would be about .*; at most 3e\+06 are made: choose a larger size"):
+    with pytest.raises(
+        InputError, match=r"elements of that size would be about .* million; at most 3 million are made: choose a larger size"
+    ):
         mesh_geometry(tmp_path / "ball.stp", size=1e-8)
 
 
@@ -227,4 +229,5 @@ def test_without_gmsh(reason: str, tmp_path: Path, monkeypatch: pytest.MonkeyPat
         read_mesh(tmp_path / "ball.step")
     assert "needs Gmsh, which can't be loaded" in str(raised.value)
     assert reason.split("'")[1] in str(raised.value)
-    assert 'pip install "vibroimpact[mesh]"' in str(raised.value)
+    remedy = 'pip install "vibroimpact[mesh]"' if reason.startswith("ImportError") else "install the library that it lacks"
+    assert remedy in str(raised.value)

@@ -188,7 +188,8 @@ def quantity_in(option: str, text: str, unit: str) -> float:
     >>> quantity_in("--window", "0.04", "s"), quantity_in("--window", "40 ms", "s")
     (0.04, 0.04)
     """
-    from vibroimpact.units.reading import number_and_unit, to_si
+    from vibroimpact.units.quantity_text import number_and_unit
+    from vibroimpact.units.reading import to_si
 
     parts = number_and_unit(text)
     try:
@@ -205,7 +206,7 @@ def written_in(option: str, text: str, unit: str) -> Written:
     >>> written_in("--height", "0.30 m +- 5 mm", "m").deviation, round(written_in("--height", "0.30", "m").deviation, 5)
     (0.005, 0.00289)
     """
-    from vibroimpact.units.reading import number_and_unit
+    from vibroimpact.units.quantity_text import number_and_unit
     from vibroimpact.units.written import read_written
 
     parts = number_and_unit(text)

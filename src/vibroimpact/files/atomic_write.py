@@ -100,7 +100,7 @@ def write_text_file(path: str | PathLike[str], text: str) -> None:
     try:
         write_file(Path(path), text.encode())
     except OSError as error:
-        raise InputError(f"{path}: the file can't be written: {error.strerror}") from None
+        raise InputError(f"{path}: the file can't be written: {error.strerror or error}") from None
 
 
 def _make_empty_file(path: Path) -> None:

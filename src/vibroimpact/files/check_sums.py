@@ -56,7 +56,7 @@ def read_sealed(path: Path, kind: FileKind = JSON_TABLE) -> dict[str, Any]:
     try:
         table = read_json_table(path, kind)
     except InputError as error:
-        raise DamageError(f"the file is missing or damaged: {error}") from None
+        raise DamageError(f"the file can't be used: {error}") from None
     expected = table.pop(SHA256, None)
     if expected is not None and digest(table) != expected:
         raise DamageError(CHANGED)
@@ -97,7 +97,7 @@ def recorded_digest(path: Path) -> str | None:
     try:
         recorded = read_sealed(summary).get(CHECK_SUMS, {})
     except DamageError as error:
-        words = "delete it, and the dataset is read without being checked"
+        words = f"delete it, and {path.name} is read without a comparison of its check sum"
         raise with_path(summary, InputError(f"{error}; {words}")) from None
     expected = recorded.get(path.name) if isinstance(recorded, dict) else None
     return expected if isinstance(expected, str) else None

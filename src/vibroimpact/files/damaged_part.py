@@ -27,11 +27,11 @@ def check_hdf5(path: Path, expected: str | None) -> None:
     OSError
         If it can't be read.
     DamageError
-        If it does not match; the message names the damaged part, if it can be located. If HDF5 hangs or crashes.
+        If it does not match; the message names the damaged part, if it can be located. If HDF5 crashes, or does not end in time.
     """
     if expected is None:
         if not endures(path):
-            raise DamageError("the file is damaged: HDF5 crashes or hangs on it; make or copy it anew")
+            raise DamageError("the file is damaged: HDF5 crashes on it; make or copy it anew")
         return
     try:
         check_file(path, expected)
@@ -46,12 +46,21 @@ def damaged_part(path: Path) -> str:
 
 
 def endures(path: Path) -> bool:
-    """Return whether a process that reads an HDF5 file lives, and ends in time; True where no process can be started."""
+    """Return whether a process that reads an HDF5 file lives; True where no process can be started.
+
+    Raises
+    ------
+    DamageError
+        If it does not end in time.
+    """
     try:
         done = _in_other_process(try_all, path)
     except OSError:
         return True
-    return done is not None and done.returncode >= 0
+    if done is None:
+        cause = "it is damaged, or its disk or this computer is too slow for it"
+        raise DamageError(f"HDF5 did not get through the file within {_TIMEOUT:g} s: {cause}; copy it to another disk, or make it anew")
+    return done.returncode >= 0
 
 
 def _in_other_process(function: Callable[[Path], object], path: Path) -> subprocess.CompletedProcess[str] | None:

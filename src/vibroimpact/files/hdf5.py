@@ -14,6 +14,7 @@ import numpy as np
 from h5py import h5d, h5p, h5s, h5t
 from numpy.typing import NDArray
 
+from vibroimpact.errors import InputError
 from vibroimpact.files.check_sums import DamageError
 
 FORMAT = ("v110", "v110")
@@ -28,6 +29,10 @@ PACKED: dict[str, Any] = {"compression": "gzip", "compression_opts": 1, "shuffle
 _CHUNK = 2**18  # bytes
 _PACKING = 1100  # the most that gzip reduces data by
 _UNPACKED = 100_000_000  # bytes that any array may take, however few of them are stored
+_FAILED_CHECKS = ("checksum", "fletcher32", "inflate", "filter returned failure")
+"""Words by which HDF5 tells that what it read is not what was written."""
+_LACKING_FILTERS = ("is not registered", "can't open directory")
+"""Words by which it tells that a filter, by which a file is packed, is neither built in nor among its plugins."""
 
 
 class _ErrorStoringFile(FileIO):
@@ -113,6 +118,8 @@ def read_array(data: h5py.Dataset, place: Any = ()) -> NDArray[Any]:
     ------
     DamageError
         If it can't be read, because its checksum does not match for instance, or the file does not hold so many values.
+    InputError
+        If there is too little memory for it, or it is packed by a filter that HDF5 does not have.
     """
     try:
         stored = int(data.id.get_storage_size())
@@ -120,7 +127,12 @@ def read_array(data: h5py.Dataset, place: Any = ()) -> NDArray[Any]:
         if size > _UNPACKED and size > _PACKING * stored:
             raise ValueError(f"its shape {data.shape} is of {size / 1e9:.3g} GB, of which the file holds {stored} bytes")
         return np.asarray(data[place])
+    except MemoryError:
+        raise InputError(f"{data.name.lstrip('/')} needs more memory than there is, for its shape {data.shape}; split the file") from None
     except Exception as error:  # of any type, depending on the damage
+        if any(words in str(error) for words in _LACKING_FILTERS):
+            words = "is packed by a filter that HDF5 lacks here; where it is installed, pack the file by h5repack -f GZIP=1"
+            raise InputError(f"{data.name.lstrip('/')} {words}") from None
         raise DamageError(f"{data.name.lstrip('/')} is damaged ({short_reason(error)})") from None
 
 
@@ -167,6 +179,6 @@ def attribute(owner: h5py.Dataset | h5py.Group, name: str, otherwise: Any = None
 def short_reason(error: Exception) -> str:
     """Return a short reason why HDF5 could not read."""
     text = " ".join(str(error).split())
-    if any(word in text for word in ("checksum", "fletcher32", "inflate", "filter")):
+    if any(words in text for words in _FAILED_CHECKS):
         return "its check sum does not match"
     return text if len(text) < 120 else f"{text[:117]}..."

@@ -46,7 +46,7 @@ def parse_json(data: bytes, what: str = "it") -> Any:
     vibroimpact.errors.InputError: it has tables and lists more than 100 deep in one another
     """
     if sum(map(data.count, _SEPARATORS)) > _MOST_VALUES:
-        raise InputError(f"{what} has more than {_MOST_VALUES:,} values")
+        raise InputError(f"{what} has more than {_MOST_VALUES:,} values and keys")
     try:
         content = json.loads(data.decode("utf-8-sig"), parse_constant=_refuse)
         if _SURROGATE.search(data):
@@ -74,7 +74,7 @@ def read_json_table(path: str | PathLike[str], kind: FileKind = JSON_TABLE) -> d
     """
     content = parse_json(read_bytes(path, kind))
     if not isinstance(content, dict):
-        raise InputError("the file is damaged (it holds no table)")
+        raise InputError("it holds no table")
     return content
 
 

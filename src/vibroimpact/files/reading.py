@@ -155,7 +155,7 @@ def text_lines(path: str | PathLike[str], kind: FileKind, longest: int, doubts: 
                 yield line
         except UnicodeError:
             if encoding == "utf-16":
-                raise InputError("the file begins as UTF-16 text and is damaged; save it as UTF-8") from None
+                raise InputError("the file begins with the mark of UTF-16 text, and is no such text; save it as UTF-8") from None
             raise _not_utf8(kind) from None
 
 
@@ -263,5 +263,5 @@ def _not_utf8(kind: FileKind) -> InputError:
 
 
 def _too_large(kind: FileKind) -> InputError:
-    size = f"{kind.largest // 1_000_000_000} GB" if kind.largest >= 1_000_000_000 else f"{kind.largest // 1_000_000} MB"
+    size = f"{kind.largest / 1e9:g} GB" if kind.largest >= 1_000_000_000 else f"{kind.largest / 1e6:g} MB"
     return InputError(f"the file is larger than {size}; {kind.smaller}")

@@ -47,4 +47,4 @@ def read_toml(path: str | PathLike[str]) -> dict[str, Any]:
     try:
         return parse_toml(read_text(path, _OWN))
     except InputError as error:
-        raise DamageError(f"the file is missing or damaged: {error}") from None
+        raise DamageError(f"the file can't be used: {error}") from None

@@ -60,13 +60,15 @@ def _labview(head: Head) -> Found | None:
     lines = head.lines
     ends = [place for place, (_, line) in enumerate(lines) if line.startswith(_END)]
     if not ends:
-        raise InputError(f"line {lines[0][0]}: the header of the LabVIEW file does not end ({_END} is missing)")
+        raise InputError(
+            f"line {lines[0][0]}: the header of the LabVIEW file does not end up to line {lines[-1][0]} ({_END} is missing there)"
+        )
     stated = {words[0]: words[1].strip() for _, line in lines[: ends[0]] if len(words := re.split(r"[\t,;]", line, maxsplit=1)) > 1}
     mark = _SEPARATORS.get(stated.get("Separator", "Tab").strip(",;\t ").lower(), "\t")
     begin, end = (ends[0] + 1, ends[1]) if len(ends) > 1 else (0, ends[0])
     below = next((place for place in range(end + 1, len(lines)) if lines[place][1]), None)
     if below is None:
-        raise InputError(f"line {lines[end][0]}: there are no rows under the header of the LabVIEW file")
+        raise InputError(f"line {lines[end][0]}: there are no rows under the header of the LabVIEW file, up to line {lines[-1][0]}")
     segment = {cells[0].strip(): (number, cells[1:]) for number, line in lines[begin:end] if line and (cells := fields_of(line, mark))}
     number, line = lines[below]
     if is_row(line, mark):
@@ -83,7 +85,8 @@ def _labview(head: Head) -> Found | None:
             raise InputError(f"line {kind_at}: X_Dimension is {kind}; a record is over time")
         unit = _at(segment.get("Y_Unit_Label", (0, []))[1], channel - 1)
         if not unit:
-            doubts[channel] = "the LabVIEW file states no unit for it (Y_Unit_Label): it is read as a plain number; --columns states one"
+            remedy = "--columns (in a case the key columns) states one"
+            doubts[channel] = f"the LabVIEW file states no unit for it (Y_Unit_Label): it is read as a plain number; {remedy}"
         cells[channel] = with_unit(names[channel], unit or "1")
         if has_times != "no" and (apart == 2 or channel == 1):
             cells[channel - 1] = "time [s]"
@@ -155,7 +158,7 @@ def _audacity(head: Head) -> Found | None:
         raise InputError(f"line {number}: the samples are in dB, without their sign; export them on the linear scale")
     rows = first_rows(head, least=1)
     if rows is None:
-        raise InputError(f"line {number}: there are no samples under the header of Audacity")
+        raise InputError(f"line {number}: there are fewer than two samples under the header of Audacity, up to line {head.lines[-1][0]}")
     at, mark = rows
     first = " ".join(line for _, line in head.lines[:at])
     count = 2 if "2 channels" in first else 1

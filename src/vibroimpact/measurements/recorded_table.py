@@ -129,7 +129,8 @@ def filled_in(channel: RecordedChannel) -> tuple[Floats, Floats, str]:
     if longest > _LONGEST_GAP or count > _MOST_MISSING * len(time):
         words = f"{count} cells from there on have no number, up to {longest} in a row" if count > 1 else "the cell has no number"
         limit = f"only {_LONGEST_GAP} in a row and {100.0 * _MOST_MISSING:g} % of all are filled in"
-        raise InputError(f"{where}: {words}; {limit}. Fill them in, or keep the part before or after them")
+        them = "them" if count > 1 else "it"
+        raise InputError(f"{where}: {words}; {limit}. Fill {them} in, or keep the part before or after {them}")
     if not (np.diff(channel.time) > 0.0).all():
         raise InputError(f"{where}: the cell has no number, and the times do not rise; fill it in, or leave out the line")
     new = np.array(CubicSpline(channel.time, channel.value)(time))
@@ -151,7 +152,7 @@ def rising(channel: RecordedChannel) -> Bools:
     if back.size:
         at = int(back[0])
         one, other = channel.time[at : at + 2]
-        words = f"time goes backwards, from {one:.9g} to {other:.9g}"
+        words = f"time goes backwards, from {one:.9g} s to {other:.9g} s"
         raise InputError(f"line {channel.lines[at + 1]}: {words}; if the file has several records, keep one of them")
     if not (steps > 0.0).any():
         raise InputError("all samples have the same time; a record needs at least two times")
@@ -190,7 +191,8 @@ def _in_range(value: Floats, where: str) -> tuple[Floats, tuple[str, ...]]:
     if over.all():
         raise InputError(f"{where}: all samples are over the range; record it with a larger one")
     finite = value[~over]
-    words = f"{over.sum()} of its samples are over the range (infinite): they are set to the largest or smallest of the others"
+    are, they_are = ("are", "they are") if over.sum() > 1 else ("is", "it is")
+    words = f"{over.sum()} of its samples {are} over the range (infinite): {they_are} set to the largest or smallest of the others"
     return np.clip(value, finite.min(), finite.max()), (f"{words}, so that the peak is too small; record it with a larger range",)
 
 

@@ -8,6 +8,7 @@ from typing import NamedTuple
 from vibroimpact.errors import InputError
 from vibroimpact.measurements.header_cells import is_time, name_and_unit
 from vibroimpact.shown import shortened, shown
+from vibroimpact.units.quantity_text import number_and_unit
 from vibroimpact.units.reading import to_si
 
 STATED = "--columns"
@@ -81,7 +82,7 @@ def remedy_for(header: Sequence[str]) -> str:
     """
     if len(header) > _MOST_IN_REMEDY or any("," in cell or "=" in cell for cell in header):
         return f"or give --columns with NAME=UNIT for each of the {len(header)} columns, - for one to leave out (in a case the key columns)"
-    if len(header) == 1:
+    if len(header) == 1 and not is_time(*name_and_unit(header[0])):
         return f'or give --columns "{_RATE}=10 kHz,{_stated(header[0])}" (in a case the key columns)'
     cells = ",".join(map(_stated, header or ("time [s]", "force [N]")))
     return f'or give --columns "{cells}", with - for a column to leave out (in a case the key columns)'
@@ -96,7 +97,8 @@ def _stated(cell: str) -> str:
 
 def _rate(text: str) -> float:
     try:
-        rate = to_si(text, "Hz")
+        parts = number_and_unit(text)
+        rate = to_si(text if parts is None or parts[1] else parts[0], "Hz")
     except InputError as error:
         raise InputError(f"{STATED}: rate: {error.message}") from None
     if not rate > 0.0:

@@ -24,7 +24,7 @@ from vibroimpact.shown import shortened, shown
 from vibroimpact.units.reading import to_si
 from vibroimpact.units.spelling import plain_factor
 
-TABLE = FileKind("a table is a CSV file", 500_000_000, "keep the part with the impacts")
+TABLE = FileKind("a table is a text file, such as CSV", 500_000_000, "keep the part with the impacts")
 """Requirements on a table file."""
 
 MOST_LINES = 10_000_000
@@ -214,7 +214,9 @@ class _DecimalPoint:
 
 def _too_many(number: int, fields: int, layout: Layout) -> str:
     hint = "; where a comma is the decimal point, semicolons separate the fields" if layout.mark == "," else ""
-    return f"line {number}: there are {fields} fields, and the header has {len(layout.header)}{hint}; {layout.understood}"
+    columns = len(layout.header)
+    known = f"{columns} {'is' if columns == 1 else 'are'} stated" if layout.is_stated else f"the header has {columns}"
+    return f"line {number}: there are {fields} fields, and {known}{hint}; {layout.understood}"
 
 
 def _places(layout: Layout, units: Mapping[str, str]) -> tuple[dict[str, int], list[float]]:
@@ -257,7 +259,10 @@ def factor_to_si(layout: Layout, cell: str, unit: str | None, wanted: str) -> fl
     try:
         return to_si(f"1 {unit}", wanted)
     except InputError as error:
-        raise InputError(f"{where}: {error.message}") from None
+        # without the 1 before the unit, and without the hint how to write a number
+        given, one = shown(unit, 80), shown(f"1 {unit}", 80)
+        words = error.message.partition(" (a number in ")[0].replace(f"{given} in {one}", given).replace(one, given)
+        raise InputError(f"{where}: {words}, such as {wanted}") from None
 
 
 def _number(line: int, column: str, row: list[str], place: int, mark: str | None, without: Callable[[float, str], float]) -> float:
@@ -272,11 +277,23 @@ def _number(line: int, column: str, row: list[str], place: int, mark: str | None
     where = f"line {line}, column {shown(column)}"
     if place >= len(row):
         return without(nan, f"{where}: the cell is missing; the line has {len(row)} field{'' if len(row) == 1 else 's'}")
-    value = SCPI.get(value, value)
-    if isnan(value) or isinf(value):
-        text = text.strip()
-        return without(value, f"{where}: {f'{shown(text)} is not finite' if text else 'the cell is empty'}")
+    coded = SCPI.get(value, value)
+    if isnan(coded) or isinf(coded):
+        return without(coded, f"{where}: {_what_is_there(text.strip(), value, coded)}")
     raise InputError(f"{where}: {shown(text.strip())} is not a measurement; it must be less than 1e30 in size")
+
+
+def _what_is_there(text: str, value: float, coded: float) -> str:
+    """Return what a cell without a number has: nothing, words for a missing one, or the code of an instrument for one."""
+    if not text:
+        return "the cell is empty"
+    if not (isnan(value) or isinf(value)):
+        return f"{shown(text)} stands for a sample that is {'missing' if isnan(coded) else 'over the range'} (SCPI)"
+    try:
+        float(text)
+    except ValueError:
+        return f"{shown(text)} is {'no number' if isnan(value) else 'over the range'}"
+    return f"{shown(text)} is not finite"
 
 
 _EITHER = "a comma is the decimal point or groups digits there: save the table with semicolons between the fields, or without groups"

@@ -77,7 +77,8 @@ class Layout(NamedTuple):
         if self.is_stated:
             return f"the columns are those stated, and the first row is line {self.number}"
         cells = shortened(", ".join(cell for cell in self.header if cell), _LONGEST_SHOWN)
-        return f"line {self.number} was taken for the header: {cells}, separated by {_MARK_WORDS[self.mark]}"
+        parts = f"separated by {_MARK_WORDS[self.mark]}" if len(self.header) > 1 else "of one column"
+        return f"line {self.number} was taken for the header: {cells}, {parts}"
 
     @property
     def remedy(self) -> str:
@@ -135,16 +136,17 @@ def table_layout(lines: Iterator[tuple[int, str]], columns: str | None = None) -
 def _beginning(lines: Iterator[tuple[int, str]]) -> tuple[str | None, tuple[int, str], tuple[int, str]]:
     """Return the separator that the file states, its last comment before the first line, and this line."""
     mark: str | None = None
-    comment = (0, "")
+    comment, seen = (0, ""), ""
     for number, whole in lines:
         line = content(whole)
+        seen = seen or whole.strip()
         if stated := _SEPARATOR.fullmatch(line) if number == 1 else None:
             mark = stated.group(1)
         elif line:
             return mark, comment, (number, line)
         elif "#" in whole:
             comment = number, whole.partition("#")[2].strip()
-    raise InputError("the file is empty")
+    raise InputError("the file is empty but for comments, separators and blanks" if seen else "the file is empty")
 
 
 def _stated(head: Head, stated: StatedColumns, instrument: Found | None) -> Found:
@@ -165,14 +167,19 @@ def _stated(head: Head, stated: StatedColumns, instrument: Found | None) -> Foun
         named = [at for at, cell in enumerate(cells) if cell]
         if not has_digits(line) or not all(at < len(fields) and is_number(fields[at], mark) for at in named):
             if is_row(line, mark):
-                nearest = nearest or f"line {number} has {filled(fields)} fields, separated by {_MARK_WORDS[mark]}"
+                nearest = nearest or f"line {number} has {_fields_are(filled(fields), mark)}"
             continue
         if filled(fields) > count:
-            words = f"line {number} has {filled(fields)} fields, separated by {_MARK_WORDS[mark]}, and {stated_are}"
+            words = f"line {number} has {_fields_are(filled(fields), mark)}, and {stated_are}"
             raise InputError(f'{STATED}: {words}; state each, and - for one that is left out, such as "time=s,-,force=N"')
         return Found(number, cells, mark, place, clocks)
-    words = nearest or f"none of the first {len(head.lines)} lines has a number in each column that is named"
+    none_has = f"none of the first {len(head.lines)} lines has" if len(head.lines) > 1 else "the only line does not have"
+    words = nearest or f"{none_has} a number in each column that is named"
     raise InputError(f"{STATED}: {words}, and {stated_are}; state each column, and - for one that is left out")
+
+
+def _fields_are(count: int, mark: str | None) -> str:
+    return f"{count} fields, separated by {_MARK_WORDS[mark]}" if count > 1 else "one field"
 
 
 def _first_line_is_row(head: Head, comment: tuple[int, str]) -> Found | None:

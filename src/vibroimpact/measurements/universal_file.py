@@ -174,7 +174,9 @@ def read_universal_file(path: str | Path) -> UniversalFile:
                     of_frequency.append(found)
         except (ValueError, IndexError, KeyError, OverflowError):
             what = f"function {number}" if kind != b"164" else "dataset 164, with the units,"
-            raise InputError(f"{file}: {what} can't be read; the file is damaged, or not of the format stated in its first lines") from None
+            size = "" if kind == b"164" else f", or a number there is not finite or not below {_LARGEST:g} in size"
+            words = f"the file is damaged, or not of the format stated in its first lines{size}"
+            raise InputError(f"{file}: {what} can't be read; {words}") from None
     return UniversalFile(functions, factors, of_frequency)
 
 

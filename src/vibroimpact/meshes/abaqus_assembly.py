@@ -13,7 +13,9 @@ from vibroimpact.meshes.abaqus_blocks import Block
 from vibroimpact.meshes.text_files import TextLine, parse_integer, parse_real
 from vibroimpact.shown import shown
 
-_SPAN = 1_000_000_000_000  # numbers of nodes and elements that each instance has for itself
+SPAN = 1_000_000_000_000
+"""Numbers of nodes and elements that each instance has for itself."""
+
 _MOST_INSTANCES = 100_000
 _SET_NAMES = ("NSET", "ELSET", "TIE NSET", "PIN NSET", "SURFACE", "REF NODE")
 _NUMBERED = {"ELEMENT", "NSET", "ELSET", "SURFACE", "MPC", "EQUATION", "KINEMATIC COUPLING"}
@@ -39,8 +41,8 @@ class _Instance:
     def number(self, text: str, line: TextLine) -> str:
         """Return the number in the flat mesh."""
         number = parse_integer(text, line, "the number of a node or element")
-        if number >= _SPAN:
-            raise line.wrong(f"the number {number} is too large for a part of an assembly; it must be below {_SPAN:,}")
+        if number >= SPAN:
+            raise line.wrong(f"the number {number} is too large for a part of an assembly; it must be below {SPAN:,}")
         return str(self.offset + number)
 
 
@@ -115,7 +117,7 @@ def flattened(found: Iterable[Block]) -> Iterator[Block]:
             yield _of_assembly(block, instances, own) if "ASSEMBLY" in opened else block
     if opened:
         keyword, line = opened.popitem()
-        raise line.wrong(f"*{keyword} has no *END {keyword}; the file is cut short")
+        raise line.wrong(f"*{keyword} has no *END {keyword}; the file is cut short, or that line was left out")
     if last_part is not None and not instances:
         raise last_part.wrong("the parts of the file are in no assembly; each must be placed by an *INSTANCE")
 
@@ -159,7 +161,7 @@ def _placed(block: Block, instances: dict[str, _Instance]) -> _Instance:
         across = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
         turn = np.eye(3) + math.sin(angle) * across + (1.0 - math.cos(angle)) * across @ across
         shift = turn @ (shift - first) + first
-    instances[name.upper()] = found = _Instance(name, _SPAN * (len(instances) + 1), turn, shift)
+    instances[name.upper()] = found = _Instance(name, SPAN * (len(instances) + 1), turn, shift)
     return found
 
 
@@ -226,11 +228,11 @@ def _generated(line: TextLine, renamed: Renamed) -> Iterator[str]:
     """Yield the entries of a range: first, last, step; a last one beyond the numbers of an instance is its last."""
     for at, text in enumerate(part.strip() for part in line.text.split(",")):
         if at == 1 and text.isdigit() and len(text) <= 18:
-            text = str(min(int(text), _SPAN - 1))
+            text = str(min(int(text), SPAN - 1))
         yield renamed(text, line) if at < 2 and text.isdigit() else text
 
 
 def _all_elements(line: TextLine, instance: _Instance) -> Block:
     """Return the set of all elements of an instance."""
-    text = f"{instance.offset}, {instance.offset + _SPAN - 1}, 1"
+    text = f"{instance.offset}, {instance.offset + SPAN - 1}, 1"
     return Block(line, "ELSET", {"ELSET": instance.name, "GENERATE": ""}, [line._replace(text=text)])

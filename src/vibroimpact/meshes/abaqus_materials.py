@@ -17,6 +17,8 @@ _OTHERS = {
     "DEFORMATION PLASTICITY": "of deformation plasticity",
 }
 _SOLID = "SOLID SECTION"
+_KINDS = {"ANISO": "anisotropic", "ORTHO": "orthotropic", "ENGINEERING": "orthotropic", "LAMINA": "orthotropic"}
+"""What a material is by the beginning of the type of its elasticity, where that is not isotropic."""
 
 
 class AbaqusMaterials:
@@ -64,11 +66,11 @@ class AbaqusMaterials:
     def _elastic(self, block: Block) -> None:
         kind = block.parameters.get("TYPE", "ISO").upper()
         if not kind.startswith("ISO"):
-            self._change(other="anisotropic" if kind.startswith("ANISO") else "orthotropic")
+            self._change(other=next((word for start, word in _KINDS.items() if kind.startswith(start)), f"of the elasticity {kind}"))
             return
         rows = [_numbers(replace(block, data=[line]), 2, "an elastic constant") for line in block.data]
         if any(row != rows[0] for row in rows):
-            self._change(other="of elastic constants that depend on the temperature")
+            self._change(other="of elastic constants that depend on the temperature or on a field")
         elif rows:
             self._change(youngs_modulus=rows[0][0], poissons_ratio=rows[0][1])
 

@@ -17,6 +17,9 @@ from vibroimpact.structures.stated_materials import StatedMaterial, StatedMateri
 
 REMEDY = 'give mesh.materials = { name = "steel", ... }, with the names of materials or element sets of the file'
 
+_TERMS = {"youngs_modulus": "Young's modulus", "poissons_ratio": "Poisson's ratio"}
+"""What the keys of a material are called in the field."""
+
 _DENSITIES = (25.0, 24_999.0)  # kg/m^3, of solids: less than a factor of 1000, so that systems of units differ
 _MODULI = (1e4, 1.3e12)  # Pa, from soft rubber to diamond
 
@@ -147,7 +150,9 @@ def _material(one: StatedMaterial) -> Material:
     try:
         return Material(one.density, one.youngs_modulus, one.poissons_ratio, name=one.name)
     except InputError as error:
-        raise InputError(f"the material {one.name} of the file: {error.key} {error.message}; {REMEDY}", "materials") from None
+        raise InputError(
+            f"the material {one.name} of the file: {_TERMS.get(error.key, error.key)} {error.message}; {REMEDY}", "materials"
+        ) from None
 
 
 def _fitting(materials: Sequence[StatedMaterial], unit: float) -> list[_Units]:
@@ -188,16 +193,17 @@ def _with_named(mesh: Mesh, named: Mapping[str, Material]) -> Mesh:
         clash = taken[(taken >= 0) & (taken != number)]
         if len(clash):
             other = list(named)[int(clash[0])]
-            raise InputError(
-                f'"{name}" and "{other}" share {len(clash)} elements, which have one material; name sets that share none', "materials"
-            )
+            shared = int((clash == clash[0]).sum())
+            elements = "an element, which can" if shared == 1 else f"{shared} elements, each of which can"
+            raise InputError(f'"{name}" and "{other}" share {elements} have one material only; name sets that share none', "materials")
         numbers[members] = number
     if len({_numbers(one) for one in stated}) > 1:
         for one in stated:
             left = int((numbers[sets[one.name]] < 0).sum())
             if left:
-                too = "it" if left == len(sets[one.name]) else "sets that contain them"
-                words = f'the names leave out {left} elements of the material "{one.name}" of the file; name {too} too'
+                too = "it" if left == len(sets[one.name]) else f"a set that contains {'it' if left == 1 else 'them'}"
+                elements = "an element" if left == 1 else f"{left} elements"
+                words = f'the names leave out {elements} of the material "{one.name}" of the file; name {too} too'
                 raise InputError(words, "materials")
     return replace(mesh, materials=tuple(named.values()), element_materials=numbers, stated=None)
 

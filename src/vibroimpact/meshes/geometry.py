@@ -100,8 +100,9 @@ def _run_gmsh(path: Path, arguments: list[str]) -> None:
         raise InputError(
             f"{path}: Gmsh stopped with status {done.returncode} while it meshed the geometry; check the file in another program"
         )
-    if kind in ("ImportError", "ModuleNotFoundError", "OSError"):
-        raise InputError(
-            f'{path}: meshing a geometry needs Gmsh, which can\'t be loaded ({shortened(what, 200)}): pip install "vibroimpact[mesh]"'
-        )
+    lacking = f"{path}: meshing a geometry needs Gmsh, which can't be loaded ({shortened(what, 200)})"
+    if kind in ("ImportError", "ModuleNotFoundError"):
+        raise InputError(f'{lacking}: pip install "vibroimpact[mesh]"')
+    if kind == "OSError":
+        raise InputError(f"{lacking}; install the library that it lacks, or mesh the geometry in another program")
     raise InputError(f"{path}: the geometry can't be meshed: {shortened(what, 300)}")

@@ -46,7 +46,8 @@ def make_mesh(geometry: str, mesh: str, size: float, order: int) -> None:
     expected = _expected_elements(gmsh, size)
     if expected > MOST_ELEMENTS:
         raise RuntimeError(
-            f"elements of that size would be about {expected:.0e}; at most {MOST_ELEMENTS:.0e} are made: choose a larger size"
+            f"elements of that size would be about {expected / 1e6:.3g} million; at most {MOST_ELEMENTS / 1e6:g} million are made: "
+            "choose a larger size"
         )
     gmsh.option.setNumber("Mesh.MeshSizeMax", size)
     for dimension, word in ((2, "face"), (3, "volume")):

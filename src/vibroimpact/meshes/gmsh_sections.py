@@ -49,9 +49,9 @@ class GmshSection:
         """
         left = len(self.body) - self._at
         if count > left:
-            raise self.line.wrong(
-                f"{self.line.text.strip()} states {count} lines where {left} are left; the file is truncated or its counts are wrong"
-            )
+            are = "is" if left == 1 else "are"
+            words = f"{self.line.text.strip()} states {count} lines where {left} {are} left"
+            raise self.line.wrong(f"{words}; the file is truncated or its counts are wrong")
         for _ in range(count):
             yield self.words(least)
 
@@ -96,5 +96,6 @@ def sections(lines: Iterable[TextLine], known: Collection[str], skipped: Counter
         else:
             section.body.append(line)
     if section is not None:
-        raise section.line.wrong(f"{shown('$' + name)} has no {shown('$End' + name)}; the file is cut short")
+        cause = "the file is cut short, or its format is none of 2, 4.0 and 4.1"
+        raise section.line.wrong(f"{shown('$' + name)} has no {shown('$End' + name)}; {cause}")
     return found

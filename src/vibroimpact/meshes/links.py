@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -84,7 +84,9 @@ class Links:
         mine = set(nodes.tolist()) if self.stated else set()
         return dict(Counter(name for name, link in self.stated if not mine.isdisjoint(_nodes_of(link))))
 
-    def joints(self, numbers: Integers, points: Floats, used: Integers, more: Iterable[Link] = ()) -> Joints | None:
+    def joints(
+        self, numbers: Integers, points: Floats, used: Integers, more: Iterable[Link] = (), written: Callable[[int], int] = int
+    ) -> Joints | None:
         """Return the joints of the mesh that the links make.
 
         Parameters
@@ -95,6 +97,8 @@ class Links:
             Indices of the nodes of the mesh.
         more : iterable of links
             Further links, which do not count.
+        written : callable
+            Returns the number of a node as the file has it, for messages.
 
         Raises
         ------
@@ -104,7 +108,7 @@ class Links:
         links = [*(link for _, link in self.stated), *more]
         if not links:
             return None
-        unknowns = _Unknowns(numbers, points, used)
+        unknowns = _Unknowns(numbers, points, used, written)
         equations = [row for link in links for row in unknowns.equations(link)]
         return solved_joints([row for row in equations if row], AXES * len(used))
 
@@ -112,8 +116,9 @@ class Links:
 class _Unknowns:
     """Numbers of unknowns: 3 times a node of the mesh plus an axis, and above these all others as they come."""
 
-    def __init__(self, numbers: Integers, points: Floats, used: Integers) -> None:
+    def __init__(self, numbers: Integers, points: Floats, used: Integers, written: Callable[[int], int]) -> None:
         self._numbers, self._points = numbers, points
+        self._written = written
         self._used: dict[object, int] = {int(number): index for index, number in enumerate(numbers[used].tolist())}
         self._others: dict[object, int] = {}
         self._made = 0
@@ -136,7 +141,7 @@ class _Unknowns:
         """
         index = int(np.searchsorted(self._numbers, node))
         if index == len(self._numbers) or self._numbers[index] != node:
-            raise line.wrong(f"the node {node} that is joined here is not in the file; every node must be in it")
+            raise line.wrong(f"the node {self._written(node)} that is joined here is not in the file; every node must be in it")
         return np.asarray(self._points[index])
 
     def _arm(self, line: TextLine, node: int, centre: Floats) -> Floats:

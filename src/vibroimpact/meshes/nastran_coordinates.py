@@ -12,7 +12,6 @@ from vibroimpact.arrays import Floats
 from vibroimpact.meshes.nastran_cards import Card, nastran_real
 from vibroimpact.meshes.parsed_mesh import Parts
 from vibroimpact.meshes.text_files import TextLine, parse_integer
-from vibroimpact.shown import shown
 
 _DEEPEST = 100  # systems that refer to one another
 _LEAST = 1e-9  # sine of the angle between the axis and the third point, below which the plane is not defined
@@ -171,6 +170,4 @@ class NastranGrids:
 
 def _number(text: str, line: TextLine) -> int:
     """Return the number of a coordinate system; the basic one, 0, for a blank field."""
-    if text.strip() == "-1":
-        raise line.wrong(f"{shown(text)} puts a node on a fluid, which is not read; the coordinate system must be 0 or greater")
     return parse_integer(text, line, "the number of a coordinate system") if text else 0

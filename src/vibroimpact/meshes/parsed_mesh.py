@@ -17,7 +17,7 @@ from vibroimpact.meshes.node_order import to_ours
 from vibroimpact.meshes.selection import Selection
 from vibroimpact.meshes.text_files import TextLine
 from vibroimpact.meshes.tied_surfaces import MeshSurface, Tie, tied_nodes
-from vibroimpact.shown import shown
+from vibroimpact.shown import shortened, shown
 from vibroimpact.structures.element_kinds import ELEMENT_KINDS
 from vibroimpact.structures.geometry import renumbered_by_volume
 from vibroimpact.structures.joints import AXES
@@ -66,6 +66,8 @@ class Parts:
         Links between nodes, such as rigid elements and equations.
     ties : list of Tie
         Surfaces that are tied to one another.
+    span : int or None
+        Numbers that each instance of an assembly has for itself: above it, a number is that of the file and a multiple of this.
     """
 
     path: Path
@@ -77,11 +79,16 @@ class Parts:
     sections: list[tuple[Selection, StatedMaterial]] = field(default_factory=list)
     links: Links = field(default_factory=Links)
     ties: list[Tie] = field(default_factory=list)
+    span: int | None = None
     _copied: int = 0
     _node_lines: list[TextLine] = field(default_factory=list)
     _node_numbers: list[int] = field(default_factory=list)
     _points: list[tuple[float, float, float]] = field(default_factory=list)
     _elements: defaultdict[str, _Elements] = field(default_factory=lambda: defaultdict(_Elements))
+
+    def written(self, number: int) -> int:
+        """Return the number of a node or an element as the file has it, for messages."""
+        return number if self.span is None else number % self.span
 
     def add_node(self, line: TextLine, number: int, point: tuple[float, float, float]) -> None:
         """Add a node.
@@ -93,7 +100,9 @@ class Parts:
         """
         for coordinate in point:
             if not -LARGEST_COORDINATE < coordinate < LARGEST_COORDINATE:
-                raise line.wrong(f"node {number} has the coordinate {coordinate:g}; it must be finite and less than 1e15 in size")
+                raise line.wrong(
+                    f"node {self.written(number)} has the coordinate {coordinate:g}; it must be finite and less than 1e15 in size"
+                )
         self._node_lines.append(line)
         self._node_numbers.append(number)
         self._points.append(point)
@@ -191,7 +200,7 @@ class Parts:
         ]
         points = complete.points.copy()
         points[used] = tied.nodes
-        joints = self.links.joints(complete.numbers, points, used, [*halves, *tied.equations])
+        joints = self.links.joints(complete.numbers, points, used, [*halves, *tied.equations], self.written)
         joined_by = {**self.links.names(complete.numbers[used]), **({"*TIE": len(self.ties)} if tied.equations else {})}
         made = [_made_text(complete)] if complete.made else []
         return replace(
@@ -239,7 +248,8 @@ class Parts:
             at = int(np.argmax(moved)) + 1
             first = self._node_lines[order[at - 1]]
             raise self._node_lines[order[at]].wrong(
-                f"node {numbers[at]} was given other coordinates in line {first.number}; a node may be given once"
+                f"node {self.written(int(numbers[at]))} was given other coordinates in {_place_of(first, self._node_lines[order[at]])}; "
+                "a node may be given again at the same place only"
             )
         once = np.append(~again, True) if len(numbers) else np.ones(0, dtype=bool)
         return numbers[once], points[once]
@@ -257,7 +267,8 @@ class Parts:
         if missing.any():
             row, column = np.argwhere(missing)[0]
             raise found.lines[row].wrong(
-                f"element {found.numbers[row]} has the node {wanted[row, column]}, which the file does not give; "
+                f"element {self.written(found.numbers[row])} has the node {self.written(int(wanted[row, column]))}, "
+                "which the file does not give; "
                 "every node of an element must be in the file"
             )
         return places
@@ -269,8 +280,11 @@ class Parts:
         again = np.flatnonzero(np.diff(numbers[order]) == 0)
         if len(again):
             lines = [line for kind in kinds for line in self._elements[kind].lines]
-            first, second = sorted((lines[order[again[0]]], lines[order[again[0] + 1]]), key=lambda line: line.number)
-            raise second.wrong(f"element {numbers[order[again[0]]]} was given in line {first.number} already; an element may be given once")
+            first, second = lines[order[again[0]]], lines[order[again[0] + 1]]
+            if first.path == second.path and first.number > second.number:  # of two kinds
+                first, second = second, first
+            element = self.written(int(numbers[order[again[0]]]))
+            raise second.wrong(f"element {element} was given in {_place_of(first, second)} already; an element may be given once")
         return numbers[order], order
 
     def _sets(self, sets: Mapping[str, Selection], numbers: Integers, places: Integers) -> dict[str, Integers]:
@@ -294,11 +308,17 @@ def _chosen_rows(elements: _Elements, chosen: Selection) -> list[int]:
     return [int(row) for row in order[chosen.places(numbers[order])]]
 
 
+def _place_of(line: TextLine, other: TextLine) -> str:
+    """Return where a line is, for a message that names the file of another one."""
+    return f"line {line.number}" if line.path == other.path else f"line {line.number} of {shortened(str(line.path), 200)}"
+
+
 def _made_text(complete: EdgeNodes) -> str:
     """Return what nodes were made, as a remark."""
     straight = f", of which {len(complete.linear)} move as the straight edges of neighbours of first order" if complete.linear else ""
+    were = "was" if complete.made == 1 else "were"
     return (
-        f"the mesh file leaves out nodes in the middle of edges of elements of second order: {complete.made} were made halfway "
+        f"the mesh file leaves out nodes in the middle of edges of elements of second order: {complete.made} {were} made halfway "
         f"between the corners{straight}; a curved edge is straight there"
     )
 

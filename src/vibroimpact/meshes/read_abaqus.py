@@ -8,7 +8,7 @@ from os import PathLike
 from pathlib import Path
 
 from vibroimpact.errors import did_you_mean
-from vibroimpact.meshes.abaqus_assembly import flattened, is_assembly
+from vibroimpact.meshes.abaqus_assembly import SPAN, flattened, is_assembly
 from vibroimpact.meshes.abaqus_blocks import Block, abaqus_include, blocks
 from vibroimpact.meshes.abaqus_links import AbaqusLinks
 from vibroimpact.meshes.abaqus_materials import AbaqusMaterials
@@ -69,7 +69,9 @@ def read_abaqus(path: str | PathLike[str]) -> Mesh:
     """
     reader = _Reader(Path(path))
     found = list(blocks(read_lines_with_includes(Path(path), abaqus_include)))
-    for block in flattened(found) if is_assembly(found) else found:
+    flat = is_assembly(found)
+    reader.parts.span = SPAN if flat else None
+    for block in flattened(found) if flat else found:
         reader.take(block)
     return reader.mesh()
 
@@ -114,9 +116,9 @@ class _Reader:
     def mesh(self) -> Mesh:
         if self.open:
             keyword, line = self.open.popitem()
-            raise line.wrong(f"*{keyword} has no *END {keyword}; the file is cut short")
+            raise line.wrong(f"*{keyword} has no *END {keyword}; the file is cut short, or that line was left out")
         sections = self.materials.sections()
-        self.parts.sections = [(self._known("ELSET", name, line), material) for line, name, material in sections]
+        self.parts.sections = [(self._of_section(name, line), material) for line, name, material in sections]
         self.links.add_to(self.parts, self._set_of)
         mesh = self.parts.mesh()
         return replace(mesh, remarks=(*mesh.remarks, *remarks_of(mesh.skipped)))
@@ -145,7 +147,9 @@ class _Reader:
         if solid is None or solid[1] not in _KINDS or self.in_assembly:
             if _OTHER_SOLID.match(given):
                 if solid is not None and solid[1] in _KINDS:
-                    raise block.line.wrong(f"{shown(given)} in the assembly is a solid element that is not read; it must be in a part")
+                    raise block.line.wrong(
+                        f"{shown(given)} in the assembly is a solid element that is not read; it must be in a part or an instance"
+                    )
                 raise block.line.wrong(
                     f"{shown(given)} is an element that is not read; solid elements must be "
                     "C3D4, C3D5, C3D6, C3D8, C3D10, C3D13, C3D15, C3D20 or C3D27, also with letters behind, as C3D8R"
@@ -175,9 +179,11 @@ class _Reader:
                 chosen.numbers.add(numbers[0])
                 numbers = []
             elif not goes_on or len(numbers) > wanted:
-                raise first.wrong(f"element {numbers[0]} has {len(numbers) - 1} nodes; {given} must have {wanted - 1}")
+                element = self.parts.written(numbers[0])
+                raise first.wrong(f"element {element} has {len(numbers) - 1} nodes; {given} must have {wanted - 1}")
         if numbers:
-            raise first.wrong(f"element {numbers[0]} has {len(numbers) - 1} nodes and its lines end there; {given} must have {wanted - 1}")
+            element = self.parts.written(numbers[0])
+            raise first.wrong(f"element {element} has {len(numbers) - 1} nodes and its lines end there; {given} must have {wanted - 1}")
 
     def _set(self, block: Block) -> None:
         kind = block.keyword
@@ -211,9 +217,19 @@ class _Reader:
     def _known(self, kind: str, name: str, line: TextLine) -> Selection:
         found = self._set_of(kind, name)
         if found is None:
-            suggestion = did_you_mean(name.upper(), [key for of, key in self.names if of == kind and len(key) < 100][:1000])
+            suggestion = self._suggestion(kind, name)
             raise line.wrong(f"{shown(name)} is neither a number nor a *{kind} before this line; it must be one of them.{suggestion}")
         return found
+
+    def _of_section(self, name: str, line: TextLine) -> Selection:
+        """Return the elements of a section, whose set may come after it."""
+        found = self._set_of("ELSET", name)
+        if found is None:
+            raise line.wrong(f"the file has no element set {shown(name)}, of which the section is.{self._suggestion('ELSET', name)}")
+        return found
+
+    def _suggestion(self, kind: str, name: str) -> str:
+        return did_you_mean(name.upper(), [key for of, key in self.names if of == kind and len(key) < 100][:1000])
 
 
 def _range(texts: list[str], line: TextLine) -> tuple[int, int, int]:

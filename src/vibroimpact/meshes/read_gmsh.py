@@ -189,10 +189,10 @@ class _Reader:
 
     def _element(self, line: TextLine, gmsh_type: int, number: str, words: list[str], tags: list[int]) -> None:
         if gmsh_type not in _SOLIDS and gmsh_type not in _SKINS:
-            what = "is a prism of 18 nodes" if gmsh_type == _PRISM18 else f"is of type {gmsh_type}"
-            raise line.wrong(
-                f"the element {what}, which is not read; the solids must be tetrahedra, prisms, pyramids or bricks of first or second order"
-            )
+            if gmsh_type == _PRISM18:
+                raise line.wrong("the element is a prism of 18 nodes, which is not read; prisms must have 6 or 15 nodes")
+            allowed = "all must be of first or second order, and solids tetrahedra, prisms, pyramids or bricks"
+            raise line.wrong(f"the element is of type {gmsh_type}, which is not read; {allowed}")
         solid = _SOLIDS.get(gmsh_type)
         dimension, count = (3, len(ELEMENT_KINDS[solid].reference)) if solid else _SKINS[gmsh_type]
         if len(words) != count:

@@ -82,7 +82,7 @@ def read_nastran(path: str | PathLike[str]) -> Mesh:
         if not ended and not materials.take(card) and not links.take(card):
             _read_card(card, parts, grids, held)
     if begin is not None and not ended:
-        raise InputError(f"{path}: there is a BEGIN BULK but no ENDDATA; the file is cut short")
+        raise InputError(f"{path}: there is a BEGIN BULK but no ENDDATA; the file is cut short, or that line was left out")
     grids.add_to(parts)
     links.add_to(parts, grids.turned)
     parts.sections = materials.sections(parts.element_sets)

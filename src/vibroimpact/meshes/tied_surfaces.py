@@ -94,8 +94,8 @@ def tied_nodes(mesh: Mesh, ties: Sequence[Tie], numbers: Integers, elements: tup
         followers = np.setdiff1d(followers[~tied[followers]], _nodes_of(leader))
         if not leader or not len(followers):
             found.remarks.append(
-                f"the tie {names} of the mesh file joins nothing: a surface of it has no faces or nodes of solid elements, or the nodes of "
-                "the first are tied already"
+                f"the tie {names} of the mesh file joins nothing: the second surface has no faces of solid elements, or the first has no "
+                "nodes of them but those of the second and those that are tied already"
             )
             continue
         rounding = _MOVED * float(mesh.extent.max())
@@ -122,9 +122,10 @@ def tied_nodes(mesh: Mesh, ties: Sequence[Tie], numbers: Integers, elements: tup
                 found.equations.append(Equation(tie.line, terms))
         away = sum(place is None for place in places)
         if away:
+            are = "is" if away == 1 else "are"
             found.remarks.append(
-                f"of the {len(places)} nodes that the mesh file ties by {names}, {away} are further than {reach:.4g} (in the unit of the "
-                "file) from the faces of the second, and are not tied; give the tie a larger POSITION TOLERANCE"
+                f"of the {len(places)} nodes that the mesh file ties by {names}, {away} {are} further than {reach:.4g} (in the unit of the "
+                f"file) from the faces of the second, and {are} not tied; give the tie a larger POSITION TOLERANCE"
             )
         if furthest > rounding:
             found.remarks.append(

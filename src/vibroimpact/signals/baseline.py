@@ -137,7 +137,9 @@ def without_baseline(record: Record) -> Record:
     if is_large(largest, peak):
         unit = "" if record.unit in ("", "1") else f" {record.unit}"
         drift = f" that drifts by {removed.drift:.4g}{unit}" if removed.drift > _LARGE * largest else ""
-        part = f"{largest / peak:.2g} times the largest magnitude of what is left" if peak else "all that there is"
+        part = (
+            f"{'up to ' if drift else ''}{largest / peak:.2g} times the largest magnitude of what is left" if peak else "all that there is"
+        )
         words = f"an offset of {removed.offset:.4g}{unit}{drift} was removed from {shown(record.name)}, {part}"
         doubts += (f"{words}: check that the channel rests at zero, and that it is not what you measure",)
     return replace(record, value=value, removed=removed, recorded=record.value, doubts=doubts)

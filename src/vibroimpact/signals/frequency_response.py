@@ -110,7 +110,7 @@ class FrequencyResponse:
                 "give two rows of the same length, of two numbers or more"
             )
         if not (frequency > 0.0).all() or not (np.diff(frequency) > 0.0).all() or not np.isfinite(frequency).all():
-            raise InputError(f"the frequencies of the response {name} do not rise from above 0; sort them, and leave 0 Hz out")
+            raise InputError(f"the frequencies of the response {name} do not rise from above 0; sort them, each once, and leave 0 Hz out")
         if not np.isfinite(value).all():
             raise InputError(f"the frequency response {name} has values that are not finite; leave those frequencies out")
         if self.unit not in ("", *RESPONSE_UNITS):

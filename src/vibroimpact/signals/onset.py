@@ -47,7 +47,9 @@ def from_onset(record: Record, duration: float, before: float = 0.0, threshold: 
     >>> found.value.tolist(), found.start
     ([0.0, 8.0, -5.0, 2.0], 0.0002)
     """
-    samples = round(duration * record.rate) if 0.0 < duration < np.inf else 0
+    if not 0.0 < duration < np.inf:
+        raise InputError(f"a window of {duration:g} s is not allowed; it must be greater than 0 and finite")
+    samples = round(duration * record.rate)
     if not 1 <= samples <= 2**31:
         raise InputError(f"a window of {duration:g} s has {samples} samples at {record.rate:g} Hz; it needs 1 to 2^31")
     if not 0.0 <= before <= duration:
@@ -89,5 +91,9 @@ def onset_time(record: Record, threshold: float | None = None) -> float:
     """
     packets = find_packets(record, threshold)
     if not len(packets.onset):
-        raise InputError(f"the envelope of {shown(record.name)} stays below the threshold; it has no onset")
+        if threshold is None:
+            what = "is zero throughout" if len(record.value) else "has no samples"
+            raise InputError(f"{shown(record.name)} {what}; it has no onset")
+        unit = "" if record.unit in ("", "1") else f" {record.unit}"
+        raise InputError(f"the envelope of {shown(record.name)} stays below {threshold:g}{unit}; it has no onset")
     return record.start + float(packets.onset[0]) / record.rate

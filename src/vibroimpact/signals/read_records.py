@@ -71,7 +71,9 @@ def read_records(path: str | PathLike[str], columns: str | None = None) -> Itera
     """
     files = record_files(path)
     if columns is not None and not any(_is_table(file) for file in files):
-        raise with_path(path, InputError(f"--columns states the columns of tables ({', '.join(TABLES)}), and this is none; leave it out"))
+        words = f"--columns (in a case the key columns) states the columns of tables ({', '.join(TABLES)})"
+        what = "there is none in this folder" if Path(path).is_dir() else "this is none"
+        raise with_path(path, InputError(f"{words}, and {what}; leave it out"))
     for file in files:
         if columns is not None and _is_table(file):
             found = table_records(file, columns)

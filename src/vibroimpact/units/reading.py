@@ -7,24 +7,18 @@ second to start, and is imported with the first unit that is not an SI unit with
 from __future__ import annotations
 
 import math
-import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from functools import cache, lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from vibroimpact.errors import InputError
 from vibroimpact.shown import shortened, shown
 from vibroimpact.units.grammar import is_unit
-from vibroimpact.units.spelling import by_gravity, spelled
+from vibroimpact.units.quantity_text import comma_remedy, has_comma, number_and_unit
+from vibroimpact.units.spelling import by_gravity, plain_factor, spelled
 
 if TYPE_CHECKING:
     import pint
-
-_QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*((?:1/)?[^\d\s.+-].*)?")
-
-_COMMA = re.compile(r"\s*[+-]?\d+,\d")
-_THOUSANDS = re.compile(r"\s*[+-]?[1-9]\d{0,2}(,\d{3})+(?!\d)")
-_LONGEST = 80  # characters of a quantity
 
 _KIND = {
     "m": "length",
@@ -163,20 +157,6 @@ def parse_quantity(text: str) -> tuple[float, str]:
     return _finite(parts[0], text), parts[1]
 
 
-def number_and_unit(text: str) -> tuple[float, str] | None:
-    """Return the number and the unit of a text, "" for no unit, neither of which is checked; None if it does not begin with a number.
-
-    Examples
-    --------
-    >>> number_and_unit("25 mm"), number_and_unit("0.3"), number_and_unit("mm")
-    ((25.0, 'mm'), (0.3, ''), None)
-    """
-    match = _QUANTITY.fullmatch(text) if len(text) <= _LONGEST else None
-    if match is None or _COMMA.match(text):
-        return None
-    return float(match[1]), (match[2] or "").strip()
-
-
 def convert_units(value: float, unit: str, to: str) -> float:
     """Convert a number from one unit to another.
 
@@ -277,17 +257,25 @@ def _power(name: str, power: float) -> str:
 
 def _dimension_words(unit: pint.Unit) -> str:
     """Return the kind of quantity of a unit in words, and its dimension."""
-    registry = _registry()
     if not unit.dimensionality:
         return "a plain number"
-    kind = next(
-        (k for u, k in _KIND.items() if u not in _WITHOUT_DIMENSION and unit.dimensionality == registry.parse_units(u).dimensionality), None
-    )
+    kinds = _kinds_of(unit.dimensionality)
     dimension = unit_text(_dimension(unit).items())
-    if kind is None:
+    if not kinds:
         return f"of the dimension {dimension}"
-    named = f"{_article(kind)} {kind}"
-    return named if kind == dimension else f"{named} ({dimension})"
+    named = _either(kinds)
+    return named if kinds == [dimension] else f"{named} ({dimension})"
+
+
+def _kinds_of(dimension: Mapping[str, Any]) -> list[str]:
+    """Return the kinds of quantity that have a dimension: a stiffness and a work of adhesion have the same."""
+    registry = _registry()
+    dimensional = ((registry.parse_units(name), kind) for name, kind in _KIND.items() if name not in _WITHOUT_DIMENSION)
+    return [kind for known, kind in dimensional if known.dimensionality == dimension]
+
+
+def _either(kinds: Iterable[str]) -> str:
+    return " or ".join(f"{_article(kind)} {kind}" for kind in kinds)
 
 
 def _known_unit(text: str) -> pint.Unit:
@@ -300,13 +288,13 @@ def _known_unit(text: str) -> pint.Unit:
 
 
 def _parse(text: str, unit: str) -> float:
-    parts = _split(text, plain=not unit)
+    parts = _split(text, unit)
     if parts is None:
         raise InputError(f"{shown(text, 80)} is not {_wanted(unit)}")
     number, given = parts
     if not unit:
         if given:
-            digits = f"{_finite(number / 100.0 if given == '%' else number, text):.15g}"
+            digits = f"{_finite(number * _plain_factor(given), text):.15g}"
             raise InputError(f"{shown(text, 80)} has a unit, but a plain number is wanted: write {digits}")
         return number
     if not given:
@@ -315,15 +303,26 @@ def _parse(text: str, unit: str) -> float:
     return number * _factor(given, unit, text)
 
 
-def _split(text: str, *, plain: bool = False) -> tuple[float, str] | None:
-    """Return number and unit of a text, "" for no unit; None if it does not begin with a number. `plain`: whether no unit is wanted."""
+def _plain_factor(unit: str) -> float:
+    """Return what a unit without a dimension is as a plain number, such as a hundredth for %; 1 of another unit, or of an unknown one."""
+    known = plain_factor(unit)
+    if known is not None:
+        return known
+    try:
+        have = _known_unit(unit)
+        return 1.0 if have.dimensionality else float(_registry().Quantity(1.0, have).to("").magnitude)
+    except InputError:
+        return 1.0
+
+
+def _split(text: str, unit: str | None = None) -> tuple[float, str] | None:
+    """Return number and unit of a text, "" for no unit; None if it does not begin with a number.
+
+    The wanted unit is for messages: "" if none is wanted, None if any is.
+    """
     parts = number_and_unit(text)
-    if parts is None and len(text) <= _LONGEST and _COMMA.match(text):
-        pointed = text.replace(",", ".", 1).strip()
-        with_point = number_and_unit(pointed)
-        remedy = f"{with_point[0]:.15g}" if plain and with_point is not None else f'"{pointed}"'
-        thousands = ", or leave the comma out if it separates thousands" if _THOUSANDS.match(text) else ""
-        raise InputError(f"{shown(text, 80)} has a comma in its number; write a point: {remedy}{thousands}")
+    if parts is None and has_comma(text):
+        raise InputError(f"{shown(text, 80)} has a comma in its number; {comma_remedy(text, unit)}")
     return parts
 
 
@@ -358,11 +357,8 @@ def _converted(given: str, unit: str, text: str) -> float:
             have = other if other.dimensionality == want.dimensionality else have
         return float(have.to(want).magnitude)
     except pint.DimensionalityError:
-        dimensional = (name for name in _KIND if name not in _WITHOUT_DIMENSION)
-        kind = next((_KIND[name] for name in dimensional if have.check(registry.parse_units(name).dimensionality)), None)
-        kind = kind if have.dimensionality else "number without a dimension"
-        is_a = f"is {_article(kind)} {kind}" if kind else "is another kind of quantity"
-        raise InputError(f"{shown(text, 80)} {is_a}; expected {_wanted(unit)}") from None
+        kinds = _kinds_of(have.dimensionality) if have.dimensionality else ["number without a dimension"]
+        raise InputError(f"{shown(text, 80)} is {_either(kinds) or 'another kind of quantity'}; expected {_wanted(unit)}") from None
     except Exception as error:  # pint raises many kinds for a unit that it can't read
         raise InputError(f"{shown(given, 80)} in {shown(text, 80)} is not a unit that is known; expected {_wanted(unit)}") from error
 
@@ -382,9 +378,8 @@ def _article(noun: str) -> str:
 def _wanted(unit: str) -> str:
     if not unit:
         return "a plain number"
-    example = _EXAMPLE.get(unit, f"1 {unit}")
-    kind = _KIND.get(unit, "quantity")
-    return f'{_article(kind)} {kind} (a number in {unit}, or a string such as "{example}")'
+    kind = _either([_KIND.get(unit, "quantity")])
+    return f'{kind} (a number in {unit}, or a string such as "{_EXAMPLE.get(unit, f"1 {unit}")}")'
 
 
 def _finite(number: float, value: float | str) -> float:

@@ -7,7 +7,8 @@ from typing import Any
 
 from vibroimpact.errors import InputError
 from vibroimpact.shown import shown
-from vibroimpact.units.reading import number_and_unit, to_si
+from vibroimpact.units.quantity_text import number_and_unit
+from vibroimpact.units.reading import to_si
 
 _PLUS_MINUS = re.compile(r"\s*(?:\+/?[-\u2212]|±)\s*")
 _HALF_STEP = 12.0**-0.5

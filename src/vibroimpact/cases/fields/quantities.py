@@ -12,7 +12,8 @@ from pydantic_core import CoreSchema, core_schema
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.ranges import Range
 from vibroimpact.shown import shown
-from vibroimpact.units.reading import number_and_unit, to_si
+from vibroimpact.units.quantity_text import number_and_unit
+from vibroimpact.units.reading import to_si
 from vibroimpact.units.written import Written, has_deviation, read_written, without_deviation
 
 SMALLEST, LARGEST = 1e-50, 1e50

@@ -206,7 +206,7 @@ def _chance_doubts(chain: Floats, strange: Floats, duration: float) -> tuple[str
     heard, why = len(chain) + len(strange), ""
     if len(chain) == 3:
         if not len(strange):
-            return ("there are only three touches: they need not be bounces of one ball",)
+            return ("the series has only three touches: they need not be bounces of one ball",)
         why = "as any three might; among other touches it takes four"
     else:
         interval = np.diff(chain)
@@ -218,5 +218,6 @@ def _chance_doubts(chain: Floats, strange: Floats, duration: float) -> tuple[str
         elif _BETWEEN * np.count_nonzero((strange > chain[0]) & (strange < chain[-1])) > len(chain):
             why = "and too many lie between them"
     if why:
-        raise InputError(f"it holds no series of bounces: of its {heard} touches {len(chain)} at most have decreasing intervals, {why}")
+        words = f"of its {heard} touches {len(chain)} at best have intervals that shrink as those of bounces, {why}"
+        raise InputError(f"it holds no series of bounces: {words}")
     return ()

@@ -164,7 +164,9 @@ def _checked(records: Sequence[Record], band: tuple[float, float]) -> tuple[Floa
     for one in records:
         if not np.isfinite(one.value).all():
             raise InputError(f"a sample of {shown(one.name)} is not a finite number")
-        if samples == 0 or np.ptp(one.value) == 0.0:
+        if samples == 0:
+            raise InputError(f"the record {shown(one.name)} has no samples")
+        if np.ptp(one.value) == 0.0:
             raise InputError(f"the record {shown(one.name)} is constant; nothing decays in it")
     low, high = band
     if not 0.0 < low < high <= 0.5 * rate:
@@ -172,8 +174,8 @@ def _checked(records: Sequence[Record], band: tuple[float, float]) -> tuple[Floa
             f"a band from {low:g} to {high:g} Hz is not allowed; its ends must rise, from above 0 to {0.5 * rate:g} Hz, half the rate"
         )
     if (high - low) * samples < _BINS * rate:
-        values = (high - low) * samples / rate
-        words = f"the spectrum has {values:.3g} values in a band of {high - low:g} Hz by a decay of {samples / rate:.3g} s"
+        values = int((high - low) * samples / rate)
+        words = f"the spectrum has {values} values in a band of {high - low:g} Hz by a decay of {samples / rate:.3g} s"
         raise InputError(f"{words}, and {_BINS} at least are needed; take a longer decay or a wider band")
     return np.stack([one.value for one in records]), rate
 

@@ -16,6 +16,7 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError
 from vibroimpact.files.reading import FileKind, opened, with_path
+from vibroimpact.shown import shortened
 from vibroimpact.signals.record import Record, checked_rate
 from vibroimpact.structures.free_memory import check_memory
 
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 FORMATS = {".m4a": "mp4", ".mp3": "mp3", ".ogg": "ogg", ".opus": "ogg", ".flac": "flac"}
 """Endings of files with coded sound, and FFmpeg's names of their formats."""
 
-SOUND = FileKind("a sound file is M4A, MP3, Ogg or FLAC", 1_000_000_000, "keep the part with the impacts")
+SOUND = FileKind("sound is read from WAV, M4A, MP3, Ogg, Opus and FLAC files", 1_000_000_000, "keep the part with the impacts")
 """Requirements on a file with coded sound."""
 
 _BLUR = 4e-3
@@ -55,8 +56,11 @@ def _records(file: FileIO, path: Path) -> Iterator[Record]:
     try:
         import av
         from av import logging
-    except ImportError:
-        raise InputError(f'sound in {path.suffix} needs PyAV, which is not installed: pip install "vibroimpact[audio]"') from None
+    except ImportError as error:
+        if isinstance(error, ModuleNotFoundError) and error.name == "av":
+            raise InputError(f'sound in {path.suffix} needs PyAV, which is not installed: pip install "vibroimpact[audio]"') from None
+        fault = f"which can't be loaded ({shortened(str(error), 200)}); install it anew, or convert the file to WAV"
+        raise InputError(f"sound in {path.suffix} needs PyAV, {fault}") from None
     logging.set_level(None)  # what FFmpeg has to say is an error here, or of no account
     try:
         with av.open(_Opened(file), "r", format=FORMATS[path.suffix.lower()]) as container:
@@ -70,7 +74,7 @@ def _records(file: FileIO, path: Path) -> Iterator[Record]:
     except UnicodeDecodeError:
         raise InputError(f"its labels are damaged; {SOUND.what}") from None
     except (av.FFmpegError, ValueError) as error:
-        raise InputError(f"it can't be read as its name says ({error}); {SOUND.what}") from None
+        raise InputError(f"it can't be read as its name says ({_cause(error)}); {SOUND.what}") from None
     if not value.shape[1]:
         raise InputError("there are no samples in it")
     coded = (_loss_doubt(stream),) if stream.codec_context.codec.lossy and not stream.codec_context.codec.lossless else ()
@@ -114,9 +118,14 @@ def _samples(container: InputContainer, stream: AudioStream, rate: float) -> tup
     except av.FFmpegError as error:
         if not samples:
             raise
-        faults = (f"it is damaged, or cut off, {samples / rate:.4g} s after its start ({error}); what comes after is left out",)
+        faults = (f"it is damaged, or cut off, {samples / rate:.4g} s after its start ({_cause(error)}); what comes after is left out",)
     blocks += [block.to_ndarray().astype(np.float64, copy=False) for block in plain.resample(None)]
     return np.concatenate(blocks, axis=1), faults
+
+
+def _cause(error: Exception) -> str:
+    """Return what FFmpeg or Python says of a fault, without numbers and names of their own."""
+    return str(getattr(error, "strerror", None) or error)
 
 
 def _loss_doubt(stream: AudioStream) -> str:

@@ -20,6 +20,7 @@ _WHOLE = 1e-3
 """Distance from a multiple of the last digit, as a part of it, that is none."""
 _MOST_DIGITS = 9
 """Largest number of significant digits of times that are sought."""
+_THEY_MUST = "they must rise by equal steps"
 _FEWEST = 16
 """Least number of times whose rounding or jitter is told."""
 
@@ -71,10 +72,13 @@ def rate_of(time: Floats, lines: Sequence[int] | None = None) -> float:
     back = np.flatnonzero(np.diff(time) < 0.0)
     if back.size:
         at = int(back[0])
-        words = f"{_sample(at + 1, lines)} is {time[at] - time[at + 1]:.3g} s before the one above, at {time[at + 1]:.9g} s"
-        raise InputError(f"the times do not rise: {words}; if the file has several records, one below the other, keep one of them")
+        above = "the previous one" if lines is None else "the one above"
+        words = f"{_sample(at + 1, lines)} is {time[at] - time[at + 1]:.3g} s before {above}, at {time[at + 1]:.9g} s"
+        several = "if the file has several records, one below the other, keep one of them"
+        raise InputError(f"the times do not rise: {words}; {_THEY_MUST if lines is None else several}")
     if not (step > 0.0 and np.isfinite(step)):
-        raise InputError(f"the times do not rise: all are {time[0]:.9g} s; write them with more digits")
+        remedy = _THEY_MUST if lines is None else "write them with more digits"
+        raise InputError(f"the times do not rise: all are {time[0]:.9g} s; {remedy}")
     shift = np.abs(time - (time[0] + step * np.arange(len(time)))) / step
     worst = int(np.argmax(shift))
     if not shift[worst] <= _LARGEST_SHIFT:
@@ -147,7 +151,13 @@ def at_equal_steps(time: Floats, values: Sequence[Floats], lines: Sequence[int] 
         last_digit = float(step[step > _WHOLE * step.max()].min(initial=np.inf))
         multiple = (time - time[0]) / last_digit
         off = np.abs(time - begin - slope * place).max()
-        if np.abs(multiple - np.round(multiple)).max() < _WHOLE and off < _ROUNDED * last_digit and last_digit > slope * _LARGEST_SHIFT:
+        is_rounded = (
+            np.abs(multiple - np.round(multiple)).max() < _WHOLE and off < _ROUNDED * last_digit and last_digit > slope * _LARGEST_SHIFT
+        )
+        # of steps that are no multiple of the last digit, such as 2 and 3 of it, the least is not that digit
+        if not is_rounded and (behind := behind_decimals(time)) is not None:
+            is_rounded, last_digit = True, behind[1]
+        if is_rounded:
             words = f"its times are rounded to {last_digit:.3g} s, {last_digit / slope:.3g} steps; the equal steps behind them are taken"
             unsure = 100.0 * last_digit / (time[-1] - time[0])
             return Sampled(1.0 / slope, begin, list(values), (f"{words}, which are known to {unsure:.2g} %",) * len(values))

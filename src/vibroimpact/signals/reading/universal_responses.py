@@ -152,7 +152,7 @@ def _unit(one: FunctionOfFrequency, factors: dict[str, float] | None) -> tuple[f
         )
     unit = f"{_MOTIONS[motion]}/N"
     if factors is None:
-        return 1.0, unit, f"it states no unit, and there is no dataset 164: its values are taken to be in {unit}"
+        return 1.0, unit, f"it states no unit of its motion, and there is no dataset 164: its values are taken to be in {unit}"
     return factors["N"] / factors["m"], unit, ""
 
 

@@ -22,7 +22,7 @@ from vibroimpact.signals.reading.wave_header import FullScale, WaveHeader, read_
 from vibroimpact.signals.record import Record, checked_rate
 from vibroimpact.structures.free_memory import check_memory
 
-WAVE = FileKind("a WAV file begins with RIFF", 4_300_000_000, "keep the part with the impacts")
+WAVE = FileKind("a WAV file begins with RIFF, RIFX or RF64", 4_300_000_000, "keep the part with the impacts")
 """Requirements on a WAV file."""
 
 _BLOCK = 2**22
@@ -79,7 +79,8 @@ def _scale(full_scale: FullScale | None, stem: str) -> tuple[float, str, str]:
 def _doubts(header: WaveHeader) -> tuple[str, ...]:
     if header.samples >= header.stated:
         return ()
-    return (f"the file is cut off: it has {header.samples:,} of the {header.stated:,} samples of a channel that its header states",)
+    words = f"it has {header.samples:,} of the {header.stated:,} samples of a channel that its header states"
+    return (f"the file is cut off, or its header is wrong: {words}",)
 
 
 def _samples(file: FileIO, header: WaveHeader, channels: range) -> Floats:

@@ -87,7 +87,7 @@ def read_wave_header(file: FileIO) -> WaveHeader:
     length = file.seek(0, SEEK_END)
     kind = _at(file, 0, 12)
     if not kind.startswith((b"RIFF", b"RIFX", b"RF64")):
-        raise InputError("this is no WAV file; a WAV file begins with RIFF")
+        raise InputError("this is no WAV file, which would begin with RIFF, RIFX or RF64")
     order = ">" if kind.startswith(b"RIFX") else "<"
     form: _Format | None = None
     long_size: int | None = None
