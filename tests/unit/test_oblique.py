@@ -449,6 +449,10 @@ FAULTS: list[tuple[dict[str, Any], str]] = [
         {"contact": {"law": "newton", "restitution": 0.5, "friction": {"law": "mdr", "coefficient": 0.2}}},
         "contact.friction.law: newton gives no normal force, which mdr follows; take another contact law, or friction by the impulse",
     ),
+    (
+        {"plate": ELASTIC_PLATE, "contact": {"law": "newton", "restitution": 0.5, "friction": {"law": "mdr", "coefficient": 0.2}}},
+        "contact.friction.law: newton gives no normal force, which mdr follows; take another contact law",
+    ),
     (with_friction(law="mindlinn"), 'contact.friction.law: there is no friction law "mindlinn"; there are "none", "coulomb"'),
     (with_friction(coefficient=0.2), 'contact.friction: it needs law = "...", one of "none", "coulomb", "mdr"'),
     (with_friction(law="mdr"), "contact.friction.coefficient: this key is missing; mdr needs coefficient of friction mu"),

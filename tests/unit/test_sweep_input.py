@@ -90,7 +90,7 @@ FAULTS: list[tuple[object, str]] = [
         "there would be 100000000",
     ),
     # cases that are wrong
-    (over(drop__height=[1.0, 0.01]), "at drop.height = 0.01: drop.height: 0.01 m is not above the surface"),
+    (over(drop__height=[1.0, 0.01]), "at drop.height = 0.01: drop.height: 0.01 m does not lift the sphere off the surface"),
     (over(drop__speed=[1.0]), "drop: give either height or speed; both are given"),
     (over(contact__law=["flores", "hertzz"]), 'at contact.law = "hertzz": contact.law: there is no contact law "hertzz"'),
     (over(contact__law=["flores", "thornton"]), 'at contact.law = "thornton"'),

@@ -279,7 +279,8 @@ def check_plate(section: Any) -> None:
         solid = section.element == "solid"
         for key in ("theory", "margin") if solid else ("elements", "layers", "kind", "splits", "lower_splits"):
             if getattr(mesh, key) is not None:
-                raise InputError(f'element = "{section.element or "plate"}" does not take it', f"mesh.{key}")
+                words = f'element = "{section.element or "plate"}" does not take it'
+                raise InputError(f'{words}; leave it out, or give element = "{"plate" if solid else "solid"}"', f"mesh.{key}")
 
 
 def check_sphere_below(case: Any) -> None:
