@@ -29,7 +29,7 @@ def _medium(drops: Conditions) -> Mapping[str, Array] | None:
 
 def _drag_sentence(drop: Conditions, number: float) -> str:
     remedy = (
-        "give a measured one as drop.air.drag_coefficient"
+        "give a measured one as drop.air.drag_coefficient, in place of drop.air.viscosity"
         if drop.case["drop"].get("air") is not None
         else "take the speeds after flights for uncertain"
     )
@@ -46,7 +46,10 @@ def _mach(drops: Conditions) -> Array:
 
 
 def _sound_sentence(drop: Conditions, number: float) -> str:
-    start = "" if drop.case["drop"].get("height") is None else "begin with the speed at first touch, drop.speed, and "
+    start, given = "", drop.case["drop"]
+    if given.get("height") is not None:
+        key = "drop.speed" if given.get("velocity") is None else "drop.velocity without drop.height"
+        start = f"begin with the speed at first touch, {key}, and "
     return (
         f"the sphere flies at {number:.2g} of the speed of sound in air at 20 C, and the compression of the air increases the drag, which "
         f"is that of slow flight here; {start}take the rebounds for uncertain"

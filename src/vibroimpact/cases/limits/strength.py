@@ -92,7 +92,7 @@ def _unknown_sentence(drop: Conditions, _: float) -> str:
     return (
         f"whether {' and '.join(bodies)} {'yield or crack' if len(bodies) > 1 else 'yields or cracks'} under Hertz's peak pressure of "
         f"{_stress(float(drop.peak_pressure))} is not known: no strength is given; give yield_strength, compressive_strength or "
-        "tensile_strength in its material"
+        f"tensile_strength in {'their materials' if len(bodies) > 1 else 'its material'}"
     )
 
 
