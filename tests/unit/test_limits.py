@@ -206,8 +206,8 @@ def test_a_plate_that_stretches_is_doubted_with_how_much_stiffer_it_is() -> None
     assert not any("stretches" in doubt for doubt in told(case, deflection=0.00099))
     (doubt,) = (doubt for doubt in told(case, deflection=0.0025) if "stretches" in doubt)
     assert "0.5 of its thickness" in doubt
-    assert "5.0 % if its edges may slide" in doubt
-    assert "11.1 % if they are held" in doubt
+    assert "about 5 % if its edges may slide" in doubt
+    assert "11 % if they are held" in doubt
     assert not any("stretches" in doubt for doubt in told(quiet(plate={"material": STEEL, "size": [0.4, 0.3, 0.005]}), deflection=0.01))
 
 
@@ -319,7 +319,7 @@ def test_a_study_says_how_many_drops_which_and_the_worst(tmp_path: Path) -> None
     (found,) = (doubt for doubt in study.doubts if doubt.limit == "air_drag")
     assert (found.drops, found.worst) == (int((drag > 0.01).sum()), 0) == (2, 0)
     assert found.number == pytest.approx(float(drag[0]))
-    said = f"air drag: 2 of 3 drops, worst -{100 * drag[0]:.1f} % at drop 0 (sphere.radius 2.000 mm)"
+    said = f"air drag: 2 of 3 drops, worst -{100 * drag[0]:.2g} % at drop 0 (sphere.radius 2.000 mm)"
     console = Console(width=200)
     with console.capture() as printed:
         console.print(study_summary(study, 200))

@@ -70,17 +70,16 @@ def numbers_of(drops: Conditions) -> dict[str, Array]:
 
 
 def percent_less(part: float) -> str:
-    """Return a relative loss in per cent: 0.135 is -13.5 %.
+    """Return an estimated relative loss in per cent, with two significant digits: 0.135 is -14 %.
 
     Examples
     --------
-    >>> percent_less(0.1352), percent_less(0.0119)
-    ('-13.5 %', '-1.2 %')
+    >>> percent_less(0.1352), percent_less(0.0119), percent_less(7.7)
+    ('-14 %', '-1.2 %', '-770 %')
     """
-    percent = 100.0 * part
-    return f"-{percent:.1f} %" if percent >= 1.0 else f"-{percent:.2g} %"
+    return f"-{float(f'{100.0 * part:.2g}'):g} %"
 
 
 def percent_more(part: float) -> str:
-    """Return a relative gain in per cent: 0.135 is +13.5 %."""
+    """Return an estimated relative gain in per cent, with two significant digits: 0.135 is +14 %."""
     return percent_less(part).replace("-", "+", 1)

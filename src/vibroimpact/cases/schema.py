@@ -193,7 +193,8 @@ class DropSection(Section):
             words = f"its z is {self.velocity[2]:g} m/s, which does not lead to the plate"
             raise InputError(f"{words}; at first touch it is negative, or give the height at which the drop starts", "velocity")
         if self.angle is not None and self.speed is None:
-            raise InputError("an angle needs the speed at first touch; give speed, or velocity in place of both", "angle")
+            given = " and ".join(key for key in ("height", "velocity") if getattr(self, key) is not None)
+            raise InputError(f"an angle needs the speed at first touch; give speed in place of {given}, or leave this out", "angle")
         return self
 
 
