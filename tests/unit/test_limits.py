@@ -167,6 +167,24 @@ def test_the_loss_by_drag_is_that_of_a_fall_in_air(drop: dict[str, Any], plate: 
     assert ("or drop.speed = " in doubt) == ("velocity" not in drop and not plate)
 
 
+def test_a_ball_that_is_too_light_for_drag_alone_is_sent_into_air_as_a_liquid() -> None:
+    foam = {"density": 30, "youngs_modulus": 1e7, "poissons_ratio": 0.3}
+    (doubt,) = (doubt for doubt in told(quiet(sphere__material=foam, drop={"height": 1.0})) if "in air the first touch" in doubt)
+    liquid = {"density": 1.2, "viscosity": 1.81e-05}
+    assert "give contact.liquid = { density = 1.2, viscosity = 1.81e-05 } with a law that takes a restitution" in doubt
+    with pytest.raises(vi.InputError, match=r"drop\.air\.density"):
+        vi.read_case(quiet(sphere__material=foam, drop={"height": 1.0, "air": True}))
+    vi.read_case(quiet(sphere__material=foam, contact={"law": "tsuji", "restitution": 0.6, "liquid": liquid}))
+
+
+def test_no_law_that_a_liquid_refuses_is_proposed_in_one() -> None:
+    wet = {"contact": {"law": "tsuji", "restitution": 0.6, "liquid": True}}
+    assert not any("adhesion" in doubt for doubt in told(quiet(**{**small(1e-5), **wet})))
+    soft = {**STEEL, "yield_strength": 1e7}
+    (doubt,) = (doubt for doubt in told(quiet(sphere__material=soft, **wet)) if "yields" in doubt)
+    assert "meyer" not in doubt
+
+
 def test_an_edge_is_as_near_as_an_oblique_drop_flies_to_it() -> None:
     size = {"plate__size": [1.0, 1.0, 0.01]}
     case = quiet(drop={"height": 0.5, "position": [0.43, 0.0], "velocity": [0.2, 0.0, 0.0]}, **size)

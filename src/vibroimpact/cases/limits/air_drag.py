@@ -9,8 +9,9 @@ import numpy as np
 from vibroimpact.arrays import Array
 from vibroimpact.cases.conditions import Conditions
 from vibroimpact.cases.limit import Limit, percent_less
-from vibroimpact.dynamics.air import AIR_DENSITY, AIR_VISCOSITY
+from vibroimpact.dynamics.air import AIR_DENSITY, AIR_VISCOSITY, check_thin
 from vibroimpact.dynamics.core.fall import drag_coefficient
+from vibroimpact.errors import InputError
 
 _ROUNDS = 2  # fixed-point iterations of speed and drag coefficient; each reduces the error of the speed by a factor of 20
 
@@ -61,7 +62,7 @@ def _sentence(drop: Conditions, lost: float) -> str:
     plate, flight = drop.case["plate"], drop.case["drop"]
     velocity, is_inclined = flight.get("velocity"), plate.get("inclination") is not None
     about = "" if velocity is None else "at least " if is_inclined or any(velocity[:2]) else "about "
-    remedy = "give drop.air = true"
+    remedy = f"give {_air_for(drop)}"
     if velocity is None and not is_inclined and plate.get("motion") is None:
         speed = math.sqrt(2.0 * flight["gravity"] * (flight["height"] - drop.radius)) * (1.0 - lost)
         remedy += f", or drop.speed = {speed:.4g} in place of the height to begin with that speed"
@@ -69,6 +70,15 @@ def _sentence(drop: Conditions, lost: float) -> str:
         f"in air the first touch would be {about}{percent_less(lost).removeprefix('-')} slower than in the vacuum that this drop falls "
         f"through, and each rebound loses speed again; {remedy}"
     )
+
+
+def _air_for(drop: Conditions) -> str:
+    """Return the key that makes a sphere fall through air, of which a very light one takes more than drag."""
+    try:
+        check_thin(AIR_DENSITY, drop.density)
+    except InputError:
+        return f"contact.liquid = {{ density = {AIR_DENSITY:g}, viscosity = {AIR_VISCOSITY:g} }} with a law that takes a restitution"
+    return "drop.air = true"
 
 
 LIMITS = (

@@ -61,7 +61,7 @@ def _strength_sentence(body: str, drop: Conditions, ratio: float) -> str:
         how = f", {times} that at which it begins to {begins} ({_YIELD} times {known})"
     remedy = (
         "take a law that yields, such as meyer"
-        if name == "yield_strength"
+        if name == "yield_strength" and drop.case["contact"].get("liquid") is None  # in which laws take a restitution
         else "take the force for an upper bound, and the restitution from a measurement"
     )
     beginning = f"{_named(body, material)} {verb} under Hertz's peak pressure of {_stress(pressure)}{how}"
