@@ -38,7 +38,9 @@ if TYPE_CHECKING:
     from vibroimpact.cases.schema import CaseTable, PlateSection, SphereSection
 
 
-_BALL_FALLS = "under gravity a sphere that is free falls away from under the other; hold it, or give drop.gravity = 0 and drop.speed"
+_BALL_FALLS = (
+    "under gravity a sphere that is free falls away from under the other; hold it, or give drop.gravity = 0 and drop.speed or drop.velocity"
+)
 
 
 def check_case(case: CaseTable) -> None:

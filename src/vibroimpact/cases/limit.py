@@ -69,6 +69,17 @@ def numbers_of(drops: Conditions) -> dict[str, Array]:
     return {name: number for name, number in found.items() if not np.all(np.isnan(number))}
 
 
+def two_digits(value: float) -> str:
+    """Return a number with two significant digits and without an exponent, unless it is very large or very small.
+
+    Examples
+    --------
+    >>> two_digits(0.996), two_digits(123.0)
+    ('1', '120')
+    """
+    return f"{float(f'{value:.2g}'):g}"
+
+
 def percent_less(part: float) -> str:
     """Return an estimated relative loss in per cent, with two significant digits: 0.135 is -14 %.
 
@@ -77,7 +88,7 @@ def percent_less(part: float) -> str:
     >>> percent_less(0.1352), percent_less(0.0119), percent_less(7.7)
     ('-14 %', '-1.2 %', '-770 %')
     """
-    return f"-{float(f'{100.0 * part:.2g}'):g} %"
+    return f"-{two_digits(100.0 * part)} %"
 
 
 def percent_more(part: float) -> str:

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from vibroimpact.cases.limit import two_digits
 from vibroimpact.dynamics.sensors.electronics import Converter
 from vibroimpact.dynamics.sensors.recording import Signal
 from vibroimpact.resolved_case import ResolvedCase
@@ -112,10 +113,11 @@ def _baffle_doubts(case: ResolvedCase, signal: Signal, speed: float) -> list[str
     part = float(power[np.fft.rfftfreq(len(signal.value), 1.0 / signal.sensor.rate) < lowest].sum() / power.sum())
     if part < _LOW:
         return []
+    share, below = f"{two_digits(100.0 * part)} % of the power", text(lowest, "Hz")
     return [
-        f'{_per_cent(part)} of the power of the signal of microphone "{signal.sensor.name}" lies below {text(lowest, "Hz")}, where half a '
-        "wavelength is longer than the plate is wide: the plate is assumed to lie in a rigid baffle, and without one its two sides cancel "
-        "there; use the signal above that frequency only"
+        f'{share} of the signal of microphone "{signal.sensor.name}" lies below {below}, where half a wavelength is longer than the plate '
+        "is wide: the plate is assumed to lie in a rigid baffle, and without one its two sides cancel there; use the signal above that "
+        "frequency only"
     ]
 
 
@@ -159,4 +161,4 @@ def _finite_or_zero(part: float) -> float:
 
 
 def _per_cent(part: float) -> str:
-    return f"{100.0 * part:.2g} %" if part < 1.0 else "100 % or more"
+    return f"{two_digits(100.0 * part)} %" if part < 0.995 else "100 % or more"

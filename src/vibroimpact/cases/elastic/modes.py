@@ -13,6 +13,7 @@ from vibroimpact.bodies.ball import ball_volume
 from vibroimpact.bodies.elastic import ElasticBody
 from vibroimpact.cases.elastic.bodies import elastic_bodies
 from vibroimpact.cases.elastic.meshes import meshes_of
+from vibroimpact.cases.limit import two_digits
 from vibroimpact.errors import InputError
 from vibroimpact.materials import Material
 from vibroimpact.structures.damping import ConstantRatio, RatioOfEach, RatioTable
@@ -146,7 +147,7 @@ def _doubts_of_frequencies(case: CaseTable, name: str, body: ElasticBody, model:
     which = f"{off} of the {len(errors)} modes" if len(errors) > 1 else "the mode"
     yield (
         f"the frequencies of {which} of the {name} may be off by more than {100 * _FREQUENCY_OFF:g} %, most that of mode {worst + 1}, "
-        f"{model.frequencies[worst]:.4g} Hz, by about {float(f'{100.0 * errors[worst]:.2g}'):g} %, due to {cause}; {remedy}"
+        f"{model.frequencies[worst]:.4g} Hz, by about {two_digits(100.0 * errors[worst])} %, due to {cause}; {remedy}"
     )
 
 

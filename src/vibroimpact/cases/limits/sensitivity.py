@@ -8,7 +8,7 @@ import numpy as np
 
 from vibroimpact.arrays import Array
 from vibroimpact.cases.conditions import Conditions
-from vibroimpact.cases.limit import Limit
+from vibroimpact.cases.limit import Limit, two_digits
 from vibroimpact.dynamics.change_by_impact import RELATIVE_CHANGE
 
 _PREDICTED = 1e-3  # largest relative change of an impact that is not doubted
@@ -41,7 +41,7 @@ def _start(drop: Conditions) -> str:
 
 
 def _shown(change: float) -> str:
-    part = f"{100.0 * change:.2g} %" if change < 1.0 else "100 % or more"
+    part = f"{two_digits(100.0 * change)} %" if change < 0.995 else "100 % or more"
     return (
         f"an impact that changes by {part} for a relative change of the drop by {RELATIVE_CHANGE:g}, or by the tolerance if that is larger"
     )
