@@ -185,6 +185,14 @@ def test_no_law_that_a_liquid_refuses_is_proposed_in_one() -> None:
     assert "meyer" not in doubt
 
 
+def test_a_flight_along_the_plate_is_as_fast_as_one_to_it() -> None:
+    assert number(quiet(**in_air(104.0)), "mach") == pytest.approx(104.0 / 343.0)
+    oblique = {"drop": {"speed": 104.0, "angle": "60 deg", "air": True}}
+    assert number(quiet(**oblique), "mach") == pytest.approx(104.0 / 343.0)
+    thrown = {"drop": {"velocity": [0.6 * 104.0, 0.0, -0.8 * 104.0], "air": True}}
+    assert number(quiet(**thrown), "mach") == pytest.approx(104.0 / 343.0)
+
+
 def test_an_edge_is_as_near_as_an_oblique_drop_flies_to_it() -> None:
     size = {"plate__size": [1.0, 1.0, 0.01]}
     case = quiet(drop={"height": 0.5, "position": [0.43, 0.0], "velocity": [0.2, 0.0, 0.0]}, **size)

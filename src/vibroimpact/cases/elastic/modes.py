@@ -98,6 +98,10 @@ def compute_modes(
     [12700.0, 12700.0]
     """
     bodies = elastic_bodies(case)
+    if not bodies and case.plate.radius is not None:
+        raise InputError(
+            "two spheres are rigid but for their contact, and have no modes; leave out plate.radius for a plate", "plate.radius"
+        )
     if not bodies:
         raise InputError('no body of the case is elastic; give the sphere or the plate model = "elastic"')
     found = {}

@@ -295,9 +295,14 @@ def check_sphere_below(case: Any) -> None:
     if any(case.drop.position):
         words = "beside the top of a sphere the impact is oblique, and spheres meet head on here"
         raise InputError(f"{words}; leave it out", "drop.position")
-    if case.sphere.model == "elastic" or local.local_compliance is not None or local.finite_sphere:
-        words = "two spheres are rigid but for their contact"
-        raise InputError(f"{words}; leave this out", "sphere.model" if case.sphere.model == "elastic" else "contact")
+    given = {
+        "sphere.model": case.sphere.model == "elastic",
+        "contact.local_compliance": local.local_compliance is not None,
+        "contact.finite_sphere": local.finite_sphere,
+    }
+    for key, is_given in given.items():
+        if is_given:
+            raise InputError("two spheres are rigid but for their contact; leave this out", key)
 
 
 def reduction_of(body: Literal["sphere", "plate"], section: Any, place: Place) -> Reduction:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
+import numpy as np
+
 from vibroimpact.arrays import Array
 from vibroimpact.cases.conditions import Conditions
 from vibroimpact.cases.limit import Limit
@@ -18,7 +20,19 @@ def _reynolds(drops: Conditions) -> Array:
     medium = _medium(drops)
     if medium is None or "viscosity" not in medium:
         return math.nan
-    return medium["density"] * drops.summary.speed * 2.0 * drops.radius / medium["viscosity"]
+    return medium["density"] * _speed(drops) * 2.0 * drops.radius / medium["viscosity"]
+
+
+def _speed(drops: Conditions) -> Array:
+    """Return the speed at first touch, also along the plate [m/s]."""
+    drop, normal, along = drops.case["drop"], drops.summary.speed, 0.0
+    if drop.get("velocity") is not None:
+        along = np.hypot(drop["velocity"][0], drop["velocity"][1])
+    elif drop.get("angle") is not None:
+        along = drop["speed"] * np.sin(drop["angle"])
+    elif drop.get("height") is not None:  # it falls straight down on a plate that may be inclined
+        along = normal * np.tan(drops.case["plate"].get("inclination") or 0.0)
+    return np.hypot(normal, along)
 
 
 def _medium(drops: Conditions) -> Mapping[str, Array] | None:
@@ -42,7 +56,7 @@ def _drag_sentence(drop: Conditions, number: float) -> str:
 def _mach(drops: Conditions) -> Array:
     if drops.case["drop"].get("air") is None:
         return math.nan
-    return drops.summary.speed / _SPEED_OF_SOUND
+    return _speed(drops) / _SPEED_OF_SOUND
 
 
 def _sound_sentence(drop: Conditions, number: float) -> str:

@@ -31,7 +31,7 @@ def _sentence(body: str, drop: Conditions, _: float) -> str:
     return (
         f"the modes of the {body} end at {text(highest, 'Hz')}, and the contact lasts {text(duration, 's', 3)}: the modes left out may "
         f"change the largest force by up to {two_digits(100.0 * part)} %, and rebound and vibration by more; ask for "
-        f'{body}.max_frequency = "{wanted / 1e3:.3g} kHz"{instead} or so'
+        f'{body}.max_frequency = "{float(f"{wanted / 1e3:.3g}"):g} kHz"{instead} or so'
     )
 
 
