@@ -27,11 +27,11 @@ def _sentence(body: str, drop: Conditions, _: float) -> str:
     (part, highest), duration = drop.summary.modes[body], float(drop.summary.duration)
     enough = _ENOUGH / duration
     wanted = enough if highest < enough else 2.0 * highest  # those of a very compliant body may matter beyond
-    instead = f", in place of {body}.modes," if drop.case and "modes" in drop.case[body] else ""  # type: ignore[literal-required]
+    instead = f", in place of {body}.modes" if drop.case and "modes" in drop.case[body] else ""  # type: ignore[literal-required]
     return (
         f"the modes of the {body} end at {text(highest, 'Hz')}, and the contact lasts {text(duration, 's', 3)}: the modes left out may "
         f"change the largest force by up to {two_digits(100.0 * part)} %, and rebound and vibration by more; ask for "
-        f'{body}.max_frequency = "{float(f"{wanted / 1e3:.3g}"):g} kHz"{instead} or so'
+        f'{body}.max_frequency = "{float(f"{wanted / 1e3:.3g}"):g} kHz" or so{instead}'
     )
 
 
