@@ -36,7 +36,7 @@ FAULTS = [
     ({"sphere__radius": 0}, "sphere.radius: 0 is not allowed; it must be greater than 0 m"),
     ({"sphere__radius": "-25 mm"}, 'sphere.radius: "-25 mm" is not allowed; it must be greater than 0 m'),
     ({"drop__gravity": -9.8}, "drop.gravity: -9.8 is not allowed; it must be at least 0 m/s^2"),
-    ({"drop__height": 0.02}, "drop.height: 0.02 m is not above the surface"),
+    ({"drop__height": 0.02}, "drop.height: 0.02 m does not lift the sphere off the surface"),
     ({"drop__speed": 3}, "drop: give either height or speed; both are given"),
     ({"drop__height": None}, "drop: give either height or speed; neither is given"),
     ({"drop__gravity": 0}, "drop.gravity: without gravity a sphere does not fall"),
@@ -71,6 +71,31 @@ FAULTS = [
     (
         {"run__impacts": "all", "contact": {"law": "thornton", "yield_pressure": 1e7}},
         'run.impacts: "all" needs a law that loses energy, and thornton loses none on a dent that it has made',
+    ),
+    (
+        {"run__impacts": "all", "contact": {"law": "hertz"}, "drop__air": True},
+        "and this hertz loses none; give a number, or run.duration",
+    ),
+    (
+        {"run__impacts": "all", "contact__restitution": {"speed": [0.1, 1.0], "value": [1.0, 0.5]}},
+        "and this lankarani-nikravesh loses none of slow impacts",
+    ),
+    (
+        {"contact__finite_sphere": True, "contact__friction": {"law": "coulomb", "coefficient": 0.2}},
+        "contact.finite_sphere: this is for drops along the normal, without spin and friction; leave it out, or contact.friction",
+    ),
+    (
+        {"contact": {"law": "linear-spring-dashpot", "stiffness": 1e6, "damping": 3.0, "liquid": True}},
+        "linear-spring-dashpot is given without a restitution, of which a liquid leaves a part; give contact.restitution in place of "
+        "contact.damping",
+    ),
+    (
+        {"plate__radius": 0.1, "sensors": [{"name": "a", "position": [0, 0]}]},
+        "sensors: sensors are on a plate, and a sphere takes its place",
+    ),
+    (
+        {"contact": {"law": "walton-braun", "stiffness": 1e6, "restitution": 0.8, "loaded_to": {"speed": [1, 2], "value": [0, 1]}}},
+        "contact.loaded_to: it is the state before the first impact, and can't be a function of the approach speed",
     ),
     ({"contact__restitution": "80 %"}, "write 0.8"),
     ({"run__impacts": 2.5}, "run.impacts: 2.5 is not allowed"),

@@ -83,8 +83,18 @@ def test_a_rebound_that_no_local_element_gives_is_refused_with_what_it_can() -> 
 
 def test_a_basis_that_leaves_nothing_of_the_law_is_refused() -> None:
     sphere = {"model": "elastic", "modes": 8, "attachment_mode": True, **COARSE}
-    with pytest.raises(vi.InputError, match=r"sphere\.modes: the modes of the sphere carry .* so that the force would not be unique"):
+    with pytest.raises(vi.InputError, match=r"sphere\.attachment_mode: the modes of the sphere carry .* not be unique; leave this out"):
         vi.read_case(case(sphere, RIGID)).to_problem()
+
+
+def test_a_correction_that_leaves_nothing_of_a_stiff_law_is_refused_without_a_word_of_modes() -> None:
+    stiff = case(plate=RIGID)
+    stiff["contact"] = {"law": "hertz", "stiffness": 1e12, "finite_sphere": True}
+    with pytest.raises(
+        vi.InputError, match=r"contact\.finite_sphere: .* the law is much stiffer than Hertz's contact; leave this out"
+    ) as refused:
+        vi.read_case(stiff).to_problem()
+    assert "modes" not in str(refused.value)
 
 
 @pytest.mark.parametrize("name", [f"paper:type{number}{kind}" for number in (2, 3) for kind in ("", "-superposed", "-identified")])

@@ -176,7 +176,7 @@ def test_speeds_beyond_the_function_are_doubted() -> None:
         return " ".join(result_of(vi.simulate(case)).doubts)
 
     assert "given for approach speeds" not in doubts(6.2, run={"impacts": 4})
-    assert "from 1 to 6 m/s, and impacts come at" in doubts(6.4, run={"impacts": 1})
+    assert "from 1 to 6 m/s, and the first impact comes at" in doubts(6.4, run={"impacts": 1})
     assert "beyond the ends the value at the nearest one holds" in doubts(1.1, run={"impacts": 4})
 
 

@@ -51,9 +51,13 @@ def case(**sensor: Any) -> vi.Case:
             {"instrument": "accelerometer", "geophone": GEOPHONE},
             "its instrument is an accelerometer; leave out this table, or take instrument",
         ),
-        ({"accelerometer": {}, "geophone": GEOPHONE}, "its instrument is an accelerometer; leave out this table"),
+        (
+            {"accelerometer": {}, "geophone": GEOPHONE},
+            "its instrument is an accelerometer; leave out this table, or the table accelerometer",
+        ),
+        ({"accelerometer": {}, "strain_gauge": {}}, r'"a1"\.strain_gauge: its instrument is an accelerometer'),
         ({"quantity": "velocity", "geophone": GEOPHONE}, "a geophone measures voltage; leave out quantity, or the geophone"),
-        ({"quantity": "voltage"}, 'voltage is the output of an instrument; name one, such as instrument = "geophone"'),
+        ({"quantity": "voltage"}, r"voltage is the output of an instrument; name one, such as geophone = \{ \.\.\. \}"),
         ({"instrument": "strain-gauge", "direction": "z"}, r'"a1"\.direction: a strain gauge lies in the face; give a direction along it'),
         ({"instrument": "strain-gauge", "direction": [1, 0, 1]}, "a strain gauge lies in the face"),
         ({"instrument": "strain-gauge", "quantity": "voltage"}, "a strain gauge measures strain; leave out quantity"),
@@ -118,7 +122,19 @@ def test_a_converter_that_clips_or_reads_nothing_is_doubted() -> None:
     (clipped,) = sensor_doubts({"sensors": [sensor]}, {"a1": signal}, 1e4, 1e-4)  # type: ignore[list-item]
     assert 'the converter of sensor "a1" clips 2 of 4 samples at its range of 1.000' in clipped
     (silent,) = sensor_doubts({"sensors": [sensor]}, {"a1": Signal(signal.sensor, np.zeros(4))}, 1e4, 1e-4)  # type: ignore[list-item]
-    assert "has no signal: its step is 7.812" in silent
+    assert "reads zero all along: each sample is below half its step, 7.812" in silent
+
+
+def test_solid_elements_have_the_motion_through_the_thickness_near_the_contact() -> None:
+    steel = {"density": 7850.0, "youngs_modulus": 2.1e11, "poissons_ratio": 0.3}
+    plate = {"model": "elastic", "size": [0.3, 0.2, 0.02], "material": steel}
+    sensor = {"name": "a1", "position": [0.0, 0.01]}
+    signal = Signal(vi.Sensor("a1", rate=50e3), np.ones(4), uncertainty=0.001)
+    for element, words in (("plate", "0.5 thicknesses from the contact, the motion through the thickness"), ("solid", "")):
+        case = {"plate": {**plate, "element": element}, "drop": {"position": [0.0, 0.0]}, "sensors": [sensor]}
+        found = "".join(sensor_doubts(case, {"a1": signal}, 1e5, 1e-4))  # type: ignore[arg-type]
+        assert words in found
+        assert bool(found) == bool(words)
 
 
 def test_every_quantity_has_a_type_in_universal_files_and_a_header() -> None:

@@ -444,10 +444,17 @@ FAULTS: list[tuple[dict[str, Any], str]] = [
         "drop.velocity: its z is 2 m/s, which does not lead to the plate; at first touch it is negative",
     ),
     ({"drop": {"speed": 3.0, "velocity": [1.0, 0.0, -2.0]}}, "drop: give either speed or velocity; both are given"),
-    ({"drop": {"height": 1.0, "angle": 0.2}}, "drop.angle: an angle needs the speed at first touch; give speed, or velocity in place"),
+    (
+        {"drop": {"height": 1.0, "angle": 0.2}},
+        "drop.angle: an angle needs the speed at first touch; give speed in place of height, or leave this out",
+    ),
     (
         {"contact": {"law": "newton", "restitution": 0.5, "friction": {"law": "mdr", "coefficient": 0.2}}},
         "contact.friction.law: newton gives no normal force, which mdr follows; take another contact law, or friction by the impulse",
+    ),
+    (
+        {"plate": ELASTIC_PLATE, "contact": {"law": "newton", "restitution": 0.5, "friction": {"law": "mdr", "coefficient": 0.2}}},
+        "contact.friction.law: newton gives no normal force, which mdr follows; take another contact law",
     ),
     (with_friction(law="mindlinn"), 'contact.friction.law: there is no friction law "mindlinn"; there are "none", "coulomb"'),
     (with_friction(coefficient=0.2), 'contact.friction: it needs law = "...", one of "none", "coulomb", "mdr"'),

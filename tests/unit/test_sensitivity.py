@@ -96,6 +96,12 @@ def test_only_what_has_no_damping_is_asked_for_it(sphere: str, damping: float | 
     assert found.endswith("them by their distribution in a study over drop.height")
 
 
+def test_the_study_is_over_what_the_case_gives() -> None:
+    case = resolved_case(vi.read_case(plain_case(drop={"speed": 1.0})))
+    (found,) = (doubt for doubt in doubts(case, DropSummary(changes=np.array([1e-9, 0.5]))) if "sensitive" in doubt)
+    assert found.endswith("in a study over drop.speed")
+
+
 def test_a_drop_that_is_not_sensitive_is_printed_as_before(variable: vi.Response) -> None:
     result = result_of(variable)
     assert not result.change_by_impact.any()
@@ -106,10 +112,10 @@ def test_a_drop_that_is_not_sensitive_is_printed_as_before(variable: vi.Response
 def test_the_doubt_names_the_impact_and_the_remedy(undamped: Result) -> None:
     (found,) = (doubt for doubt in undamped.doubts if "sensitive" in doubt)
     assert "from impact 2 on" in found
-    assert "to 0.2 % of impact 2 and to all of impact 4" in found
+    assert "to 0.2 % of impact 2 and to 30 % or more of impact 4" in found
     assert "damping" in found
     assert not doubts({}, DropSummary(changes=np.array([1e-9, 5e-4])))
-    assert "grows to all of impact 1," in doubts({}, DropSummary(changes=np.array([np.inf])))[0]
+    assert "grows to 30 % or more of impact 1," in doubts({}, DropSummary(changes=np.array([np.inf])))[0]
 
 
 def test_a_loose_tolerance_counts(undamped: Result) -> None:

@@ -307,7 +307,7 @@ def test_a_period_of_a_harmonic_motion_shakes_as_it_does(tmp_path: Path) -> None
     [
         (
             lambda t, s: (np.append(t, 0.2), np.append(s, s[0])),
-            r"line \d+: the displacement .* where the period repeats, and at most .* within",
+            r"line \d+: the displacement .* where the period repeats, and at most \S+ m within it",
         ),
         (lambda t, s: (t[:-1], s[:-1]), "one whole period"),
         (lambda t, s: (t, s + 1e-5 * t / t[-1]), "where the period repeats"),

@@ -132,10 +132,12 @@ def test_a_run_that_is_over_too_soon_is_told_when_it_should_end() -> None:
     """A sphere of 25 mm that falls from 0.5 m, centre above surface, touches after sqrt(2 0.475 / 9.80665) s = 0.31125 s."""
     assert "is over before the sphere touches the plate, at 0.3112 s; give 0.32 s or more" in told(run={"duration": 0.311})[0]
     (said,) = told(run={"duration": 0.3113})
-    assert "is over before the first contact is, which ends at about 0.311" in said
+    assert "is over before the first contact is, which by Hertz's theory ends at about 0.311" in said
     assert told(run={"duration": 0.3125}) == []
     assert "give 0.00034 s or more" in told(drop={"speed": 3.0}, run={"duration": 2e-4})[0]
     assert "touches the plate, at 0.4402 s" in told(plate__inclination="60 deg", run={"duration": 0.4})[0]  # half of gravity
+    wet = {"contact": {"law": "tsuji", "restitution": 0.7, "liquid": True}}
+    assert "touches the plate, after 0.3112 s; give 0.32 s or more, as the fluid slows the fall" in told(run={"duration": 0.311}, **wet)[0]
     shaken = {"amplitude": "1 mm", "frequency": "20 Hz"}
     assert told(plate__motion=shaken, run={"duration": 0.3}) == []
 

@@ -130,6 +130,11 @@ def test_it_is_not_exported(tmp_path: Path) -> None:
         load_drop(folder)
 
 
+def test_two_spheres_have_no_modes() -> None:
+    with pytest.raises(vi.InputError, match=r"plate\.radius: two spheres are rigid but for their contact, and have no modes"):
+        vi.compute_modes(case_of({"radius": 0.02}))
+
+
 @pytest.mark.parametrize(
     ("plate", "sections", "words"),
     [
@@ -143,7 +148,7 @@ def test_it_is_not_exported(tmp_path: Path) -> None:
         ),
         ({"radius": 0.02}, {"drop": {"position": [0.001, 0.0]}}, "drop.position: beside the top of a sphere the impact is oblique"),
         ({"radius": 0.02}, {"sphere": {"model": "elastic"}}, "sphere.model: two spheres are rigid but for their contact"),
-        ({"radius": 0.02}, {"contact": {"finite_sphere": True}}, "contact: two spheres are rigid but for their contact"),
+        ({"radius": 0.02}, {"contact": {"finite_sphere": True}}, "contact.finite_sphere: two spheres are rigid but for their contact"),
         ({"radius": 0.02, "supports": "free", "material": "rigid"}, {}, 'plate.material: "rigid" has no density'),
         ({"radius": -0.02}, {}, "plate.radius: -0.02 is not allowed; it must be greater than 0 m"),
         ({"supports": "free"}, {}, "plate.supports: a rigid body does not take it"),

@@ -180,7 +180,7 @@ def test_failures_are_told_with_their_points_and_left_out_of_the_numbers(tmp_pat
     assert '<th scope="row">5</th><td>30.00\u00a0mm</td><td>40.00\u00a0mm</td>' in page
     spreads = {one.name: one.spread for one in study_outputs(study)}
     assert spreads["number_of_impacts"].drops == 5
-    assert "1: drop.height: 0.03 m is not above the surface" in told(study, 200)
+    assert "1: drop.height: 0.03 m does not lift the sphere off the surface" in told(study, 200)
 
 
 def test_a_study_of_which_every_drop_failed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

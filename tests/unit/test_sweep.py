@@ -128,7 +128,7 @@ def test_the_table_has_a_row_a_drop(tmp_path: Path) -> None:
 def test_a_drop_that_fails_is_kept_with_its_reason_and_the_rest_go_on(tmp_path: Path) -> None:
     study = run(tmp_path, {"over": {"sphere.radius": ["5 mm", "50 mm"], "drop.height": ["1 m", "20 mm"]}})
     assert study.failures == {3: next(iter(study.failures.values()))}
-    assert "0.02 m is not above the surface" in study.failures[3]
+    assert "0.02 m does not lift the sphere off the surface" in study.failures[3]
     assert np.isfinite(study.values("largest_force_N")).tolist() == [[True, True], [True, False]]
     assert study.values("outcome")[1, 1] == list(vi.Outcome).index(vi.Outcome.FAILED)
     alone = single(study, 0, 1)

@@ -35,13 +35,14 @@ FAULTS: list[tuple[object, str]] = [
         'sweep.ovr: unknown key "ovr"; it takes design, over, samples, seed, keep, window, classes, falls_per_rock, rocks_per_plate. '
         'Did you mean "over"?',
     ),
-    (over(sphere__raduis=[0.01]), 'sweep.over."sphere.raduis": unknown key; it must be a key of [sphere]'),
+    (over(sphere__raduis=[0.01]), 'sweep.over."sphere.raduis": no such key is swept; it must be one of [sphere]'),
     (over(sphere__raduis=[0.01]), 'Did you mean "sphere.radius"?'),
-    (over(radius=[0.01]), 'sweep.over."radius": unknown key'),
+    (over(contact__measured__max_force=["1 kg"]), '"1 kg" is a mass; expected a force'),
+    (over(radius=[0.01]), 'sweep.over."radius": no such key is swept'),
     (over(contact__restitutoin=[0.5]), 'Did you mean "contact.restitution"?'),
     (over(sphere__material__young_modulus=[1e9]), 'Did you mean "sphere.material.youngs_modulus"?'),
     (over(sensors__0__rate=[1e3]), 'there is no sensor called "0"; the case has none with a name'),
-    (over(tube__radius=[1e3]), "unknown key; it must be a key of [sphere], [plate], [drop], [contact], [run] or of a sensor"),
+    (over(tube__radius=[1e3]), "no such key is swept; it must be one of [sphere], [plate], [drop], [contact], [run] or of a sensor"),
     (over(sphere__radius=[]), f"{RADIUS}: the list is empty"),
     (over(sphere__radius=0.01), f"{RADIUS}: 0.01 is not allowed; it must be a list of values, a range"),
     (over(sphere__radius=[0.01, -0.02]), f"{RADIUS}: -0.02 is not allowed; it must be greater than 0 m"),
@@ -90,14 +91,14 @@ FAULTS: list[tuple[object, str]] = [
         "there would be 100000000",
     ),
     # cases that are wrong
-    (over(drop__height=[1.0, 0.01]), "at drop.height = 0.01: drop.height: 0.01 m is not above the surface"),
+    (over(drop__height=[1.0, 0.01]), "at drop.height = 0.01: drop.height: 0.01 m does not lift the sphere off the surface"),
     (over(drop__speed=[1.0]), "drop: give either height or speed; both are given"),
     (over(contact__law=["flores", "hertzz"]), 'at contact.law = "hertzz": contact.law: there is no contact law "hertzz"'),
     (over(contact__law=["flores", "thornton"]), 'at contact.law = "thornton"'),
     (over(contact__restitution=[0.5, 1.5]), 'sweep.over."contact.restitution": 1.5 is not allowed'),
     (over(sphere__material=["rock-paper", "stel"]), 'there is no material "stel"'),
     (over(plate__model=["rigid", "elastic"]), 'at plate.model = "elastic": plate'),
-    (over(sphere__radius__deep=[1.0]), "unknown key"),
+    (over(sphere__radius__deep=[1.0]), "no such key is swept"),
     (over(plate__size__thickness=[0.01]), "plate.size: it is missing, so that it has no thickness that could be swept"),
     ({"over": {"sphere.radius": [0.01], "sphere": {"radius": [0.02]}}}, f"{RADIUS}: this key stands there twice"),
     (over(drop__height=[1.0, 2.0, "100 cm"]), 'sweep.over."drop.height": 1.0 stands there twice, and a grid has each value once'),
@@ -155,7 +156,7 @@ def command(monkeypatch: pytest.MonkeyPatch, *arguments: object) -> int:
 @pytest.mark.parametrize(
     ("sweep", "options", "words"),
     [
-        (over(sphere__raduis=[0.01]), [], 'study.toml: sweep.over."sphere.raduis": unknown key'),
+        (over(sphere__raduis=[0.01]), [], 'study.toml: sweep.over."sphere.raduis": no such key is swept'),
         (
             over(sphere__radius={"from": 1e-3, "to": 2e-3, "number": 100_001}),
             [],

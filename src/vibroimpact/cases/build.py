@@ -27,6 +27,7 @@ from vibroimpact.cases.rigid import (
 )
 from vibroimpact.contact.friction.law import CompliantFriction
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, is_conservative
+from vibroimpact.contact.speed_function import held
 from vibroimpact.dynamics.air import check_thin
 from vibroimpact.dynamics.liquid import check_sinks
 from vibroimpact.dynamics.problem import Problem
@@ -37,7 +38,9 @@ if TYPE_CHECKING:
     from vibroimpact.cases.schema import CaseTable, PlateSection, SphereSection
 
 
-_BALL_FALLS = "under gravity a sphere that is free falls away from under the other; hold it, or give drop.gravity = 0 and drop.speed"
+_BALL_FALLS = (
+    "under gravity a sphere that is free falls away from under the other; hold it, or give drop.gravity = 0 and drop.speed or drop.velocity"
+)
 
 
 def check_case(case: CaseTable) -> None:
@@ -52,11 +55,12 @@ def check_case(case: CaseTable) -> None:
     law = contact_laws_of(case)[-1]
     # without a limit of impacts or time only losses in the contact end a run
     if impact_limit(case) is None and run_duration(case) is None:
-        remedy = "give a number or a duration"
-        if is_conservative(law):
-            raise InputError(
-                f'"all" needs a law that loses energy, and under this {law.name} the sphere never comes to rest; {remedy}', "run.impacts"
-            )
+        remedy = "give a number, or run.duration"
+        # what a function of the approach speed is for the slowest impacts, the last ones
+        slow = {key: held(function, 0.0) for key, function in by_speed_of(case).items()}
+        if is_conservative(law.changed(slow)):
+            words = f"and this {law.name} loses none{' of slow impacts' if slow else ''}"
+            raise InputError(f'"all" needs a law that loses energy, {words}; {remedy}', "run.impacts")
         if isinstance(law, CompliantLaw) and law.lasting and case.drop.same_spot and is_conservative(law.after_compression(1.0)):
             words = f"and {law.name} loses none on a dent that it has made"
             raise InputError(f'"all" needs a law that loses energy, {words}; {remedy}, or drop.same_spot = false', "run.impacts")
@@ -66,8 +70,10 @@ def check_case(case: CaseTable) -> None:
         check_thin(case.drop.air.density, sphere_density(case.sphere), "drop.air.density")
     _check_motion(case)
     if case.sensors and case.plate.model == "rigid" and case.plate.motion is None:
-        remedy = 'give it model = "elastic", or leave out the sensors' if case.plate.radius is None else "leave out the sensors"
-        raise InputError(f"the plate is rigid, so that its points do not move; {remedy}", "sensors")
+        if case.plate.radius is not None:
+            raise InputError("sensors are on a plate, and a sphere takes its place; leave out the sensors, or plate.radius", "sensors")
+        remedy = 'give it model = "elastic" or motion, or leave out the sensors'
+        raise InputError(f"the plate is rigid and at rest, so that its points do not move; {remedy}", "sensors")
     for number, sensor in enumerate(case.sensors):
         if case.plate.motion is not None and sensor.instrument in AT_REST:
             words = f"{INSTRUMENTS[sensor.instrument]} is for plates whose supports are at rest; leave out the sensor, or the motion"
@@ -76,8 +82,8 @@ def check_case(case: CaseTable) -> None:
     if local.local_compliance == "identified" and case.sphere.model == "elastic":
         raise InputError('the local element of "identified" stands for the deformation of the sphere; leave it "rigid"', "sphere.model")
     if local.finite_sphere and case.sphere.model == "elastic":
-        words = 'an elastic sphere deforms in its modes, and "consistent" corrects the rest already; leave this out'
-        raise InputError(words, "contact.finite_sphere")
+        words = 'an elastic sphere deforms in its modes, and local_compliance = "consistent" corrects the rest'
+        raise InputError(f"this is for a rigid sphere: {words}; leave this out", "contact.finite_sphere")
     if local.finite_sphere and not isinstance(law, CompliantLaw):
         raise InputError(f"{law.name} gives no force that a finite sphere would change; leave this out", "contact.finite_sphere")
     check_positions(case)
@@ -100,7 +106,8 @@ def _check_oblique(case: CaseTable, law: ContactLaw) -> None:
     if not keys:
         return
     if case.contact.local.finite_sphere:
-        raise InputError("an oblique drop has Hertz's half space in its contact; leave this out", "contact.finite_sphere")
+        words = f"this is for drops along the normal, without spin and friction; leave it out, or {' and '.join(keys)}"
+        raise InputError(words, "contact.finite_sphere")
     if case.plate.radius is not None:
         raise InputError("a sphere may fall obliquely, spin or rub on a flat plate only, not on another sphere; leave this out", keys[0])
     if isinstance(case.plate.mesh, BroughtMeshTable):
@@ -113,7 +120,9 @@ def _check_oblique(case: CaseTable, law: ContactLaw) -> None:
         raise InputError(f'{words}; take "mdr" or one of the "mindlin" laws', "contact.friction.law")
     if isinstance(friction, CompliantFriction) and not isinstance(law, CompliantLaw):
         words = f"{law.name} gives no normal force, which {friction.name} follows"
-        raise InputError(f'{words}; take another contact law, or friction by the impulse: "coulomb" or "rigid"', "contact.friction.law")
+        # bodies that deform take no friction by the impulse
+        remedy = "" if deforms(case) else ', or friction by the impulse: "coulomb" or "rigid"'
+        raise InputError(f"{words}; take another contact law{remedy}", "contact.friction.law")
 
 
 def _check_liquid(case: CaseTable, law: ContactLaw) -> None:
@@ -128,7 +137,11 @@ def _check_liquid(case: CaseTable, law: ContactLaw) -> None:
         return
     if law.free_parameter != "restitution":
         words = f"{law.name} takes no restitution, of which a liquid leaves a part"
-        raise InputError(f'{words}; take a law that does, such as "tsuji" or "flores", or leave this out', "contact.liquid")
+        remedy = 'take a law that does, such as "tsuji" or "flores"'
+        if "restitution" in {item.name for item in fields(law)}:
+            words = f"{law.name} is given without a restitution, of which a liquid leaves a part"
+            remedy = f"give contact.restitution in place of contact.{law.free_parameter}"
+        raise InputError(f"{words}; {remedy}, or leave this out", "contact.liquid")
     if case.plate.radius is not None:
         raise InputError(
             "what a liquid leaves of the restitution is known for a sphere that meets a plate; leave this out", "contact.liquid"
@@ -153,7 +166,7 @@ def _check_motion(case: CaseTable) -> None:
         raise InputError("only a plate that supports hold moves with them; leave this out", "plate.motion")
     length = motion_length(case)
     if case.run.duration is not None and case.run.duration > length:
-        raise InputError(f"the motion of the plate ends at {length:.6g} s; stop the run by then", "run.duration")
+        raise InputError(f"the motion of the plate ends at {length:.9g} s; stop the run by then", "run.duration")
     try:
         rigid_problem(case)
     except InputError as error:

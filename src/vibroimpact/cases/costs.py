@@ -133,12 +133,17 @@ def _impact_costs(case: Case) -> Iterator[Cost]:
     number = impacts_expected(case)
     vibrate = deforms(case)  # energy lost to vibration only reduces the number of impacts
     points = min(_POINTS * number, MOST_POINTS)
+    less = "give fewer run.impacts"
+    if case.run.duration is not None:
+        less += ", or a shorter run.duration"
+    elif impact_limit(case) is None and case.plate.motion is None:
+        less += ", or a higher run.rest_speed"
     yield Cost(
         (_VIBRATING_SECONDS if vibrate else _IMPACT_SECONDS) * number,
         _IMPACT_BYTES * number + _POINT_BYTES * points,
         _IMPACT_ON_DISK * number + _POINT_ON_DISK * points,
         f"{'up to ' if vibrate else ''}about {float(f'{number:.2g}'):,.0f} impact{'s' if number > 1 else ''}",
-        "give fewer run.impacts, or a higher run.rest_speed" if impact_limit(case) is None else "give fewer run.impacts",
+        less,
     )
 
 

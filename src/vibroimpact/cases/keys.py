@@ -11,7 +11,7 @@ from vibroimpact.cases.fields.air import AirTable
 from vibroimpact.cases.fields.contact import law_of
 from vibroimpact.cases.fields.friction import check_friction_law
 from vibroimpact.cases.fields.liquid import LiquidTable
-from vibroimpact.cases.fields.local import LocalSection
+from vibroimpact.cases.fields.local import LocalSection, MeasuredImpact
 from vibroimpact.cases.fields.material import InlineMaterial, material_table
 from vibroimpact.cases.fields.motion import MotionTable
 from vibroimpact.cases.fields.quantities import Quantity, quantity_among, quantity_of
@@ -80,7 +80,9 @@ def find_quantity(table: Mapping[str, Any], key: str) -> Quantity | None:
         _check_law_is_named(table, "contact.law")
         if rest.startswith("friction."):
             _check_law_is_named(table, "contact.friction.law")
-    words = f'unknown key; it must be a key of [sphere], [plate], [drop], [contact], [run] or of a sensor, such as "{_like(key, known)}"'
+    words = (
+        f'no such key is swept; it must be one of [sphere], [plate], [drop], [contact], [run] or of a sensor, such as "{_like(key, known)}"'
+    )
     raise InputError(f"{words}.{did_you_mean(key, known)}")
 
 
@@ -124,7 +126,9 @@ def holds_keys(key: str) -> bool:
     (True, False)
     """
     section, _, field = key.partition(".")
-    return holds_sensor_keys(key) or (section in (*SECTIONS, "contact") and field in ("", "material", "motion", "air", "liquid", *_PLACES))
+    return holds_sensor_keys(key) or (
+        section in (*SECTIONS, "contact") and field in ("", "material", "motion", "air", "liquid", "measured", *_PLACES)
+    )
 
 
 def with_values(table: Mapping[str, Any], values: Mapping[str, Any], done: str = "swept") -> dict[str, Any]:
@@ -219,7 +223,8 @@ def _keys(table: Mapping[str, Any]) -> Iterator[tuple[str, Quantity | None]]:
                 yield f"contact.friction.{item.name}", Quantity(metadata["unit"], metadata["meaning"], metadata["range"])
     for field, info in LocalSection.model_fields.items():
         yield f"contact.{field}", quantity_of(info)
-    yield from ((f"contact.liquid.{part}", quantity_of(inner)) for part, inner in LiquidTable.model_fields.items())
+    for name, kind in (("liquid", LiquidTable), ("measured", MeasuredImpact)):
+        yield from ((f"contact.{name}.{part}", quantity_of(inner)) for part, inner in kind.model_fields.items())
 
 
 def _parts(annotation: Any) -> tuple[Any, ...]:

@@ -69,18 +69,28 @@ def numbers_of(drops: Conditions) -> dict[str, Array]:
     return {name: number for name, number in found.items() if not np.all(np.isnan(number))}
 
 
-def percent_less(part: float) -> str:
-    """Return a relative loss in per cent: 0.135 is -13.5 %.
+def two_digits(value: float) -> str:
+    """Return a number with two significant digits and without an exponent, unless it is very large or very small.
 
     Examples
     --------
-    >>> percent_less(0.1352), percent_less(0.0119)
-    ('-13.5 %', '-1.2 %')
+    >>> two_digits(0.996), two_digits(123.0)
+    ('1', '120')
     """
-    percent = 100.0 * part
-    return f"-{percent:.1f} %" if percent >= 1.0 else f"-{percent:.2g} %"
+    return f"{float(f'{value:.2g}'):g}"
+
+
+def percent_less(part: float) -> str:
+    """Return an estimated relative loss in per cent, with two significant digits: 0.135 is -14 %.
+
+    Examples
+    --------
+    >>> percent_less(0.1352), percent_less(0.0119), percent_less(7.7)
+    ('-14 %', '-1.2 %', '-770 %')
+    """
+    return f"-{two_digits(100.0 * part)} %"
 
 
 def percent_more(part: float) -> str:
-    """Return a relative gain in per cent: 0.135 is +13.5 %."""
+    """Return an estimated relative gain in per cent, with two significant digits: 0.135 is +14 %."""
     return percent_less(part).replace("-", "+", 1)

@@ -124,7 +124,7 @@ def _check_seam(table: TableFile, name: str, values: Floats) -> None:
     worst = int(wrong.argmax())  # the last two samples, then the first two
     if wrong[worst] > _SEAM * usual:
         row = worst - 2
-        words = f"{_off(name, values[row], wrong[worst])} where the period repeats, and at most {usual:.3g} within it"
+        words = f"{_off(name, values[row], wrong[worst])} where the period repeats, and at most {usual:.3g} {_unit(name)} within it"
         remedy = "give one whole period, without the sample at its end that is the first of the next"
         raise InputError(f"{table.path}, line {table.lines[row]}: {words}; {remedy}")
 
@@ -136,5 +136,8 @@ def _off_neighbours(values: Floats) -> Floats:
 
 def _off(name: str, value: float, wrong: float) -> str:
     """Return in words how far a sample is from its neighbours."""
-    unit = "m" if name == "displacement" else "m/s^2"
-    return f"the {name} {value:.6g} {unit} is {wrong:.3g} {unit} away from the curve through its neighbours"
+    return f"the {name} {value:.6g} {_unit(name)} is {wrong:.3g} {_unit(name)} away from the curve through its neighbours"
+
+
+def _unit(name: str) -> str:
+    return "m" if name == "displacement" else "m/s^2"

@@ -28,7 +28,7 @@ _DEFAULT_IMPACTS = 5
 
 PLATE_FALLS = (
     "the supports let the plate fall or tilt: under gravity it falls away from under the sphere; hold it vertically, leave it rigid, or "
-    "hit it in free space, with drop.gravity = 0 and drop.speed"
+    "hit it in free space, with drop.gravity = 0 and drop.speed or drop.velocity"
 )
 """Message for a plate that its supports do not hold, raised before its modes are computed (`"free"`) or after."""
 

@@ -193,7 +193,8 @@ class DropSection(Section):
             words = f"its z is {self.velocity[2]:g} m/s, which does not lead to the plate"
             raise InputError(f"{words}; at first touch it is negative, or give the height at which the drop starts", "velocity")
         if self.angle is not None and self.speed is None:
-            raise InputError("an angle needs the speed at first touch; give speed, or velocity in place of both", "angle")
+            given = " and ".join(key for key in ("height", "velocity") if getattr(self, key) is not None)
+            raise InputError(f"an angle needs the speed at first touch; give speed in place of {given}, or leave this out", "angle")
         return self
 
 
@@ -206,6 +207,9 @@ def _read_impacts(value: Any) -> Any:
 
 _MEASURED_BY = {"strain": "strain-gauge", "pressure": "microphone", "force": "force"}
 """Instruments by the quantity that no other measures."""
+
+_WITH_PROPERTIES = ("geophone", "microphone")
+"""Instruments that need a table."""
 
 _DIRECTIONS = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
@@ -271,7 +275,9 @@ class SensorSection(Section):
             raise InputError("a microphone is omnidirectional; leave out the direction", "direction")
         if instrument is None and self.quantity not in (None, *MOTIONS):
             kind = _MEASURED_BY.get(str(self.quantity), "geophone")
-            raise InputError(f'{self.quantity} is the output of an instrument; name one, such as instrument = "{kind}"', "quantity")
+            # some need properties, which their table gives
+            one = f"{kind} = {{ ... }}" if kind in _WITH_PROPERTIES else f'instrument = "{kind}"'
+            raise InputError(f"{self.quantity} is the output of an instrument; name one, such as {one}", "quantity")
         if instrument is not None and self.quantity not in (None, instrument.quantity):
             words = f"{INSTRUMENTS[str(self.instrument)]} measures {instrument.quantity}"
             raise InputError(f"{words}; leave out quantity, or the {self.instrument}", "quantity")
@@ -301,12 +307,15 @@ class SensorSection(Section):
             return None
         wrong = next((name for name in given if name != kind), None)
         if wrong is not None:
-            raise InputError(f'its instrument is {INSTRUMENTS[kind]}; leave out this table, or take instrument = "{wrong}"', wrong)
+            other = f', or take instrument = "{wrong}"'
+            if kind in given:
+                other = f", or the table {kind.replace('-', '_')}" if self.instrument is None else ""
+            raise InputError(f"its instrument is {INSTRUMENTS[kind]}; leave out this table{other}", wrong.replace("-", "_"))
         self.__dict__["instrument"] = kind
         if (table := tables[kind]) is not None:
             found: Instrument = table.instrument()
             return found
-        if kind in ("geophone", "microphone"):
+        if kind in _WITH_PROPERTIES:
             raise InputError(f"{INSTRUMENTS[kind]} has properties; give them in a table {kind} = {{ ... }}", kind)
         ideal: dict[str, Instrument] = {"accelerometer": Accelerometer(), "strain-gauge": StrainGauge(), "force": ForceSensor()}
         return ideal[kind]
@@ -367,8 +376,8 @@ class CaseTable(Section):
         if height is not None and height <= radius:
             hint = likely_lengths([radius], [min(height, 3.0)]).replace("Write", "Write sphere.radius =")
             raise InputError(
-                f"{height:g} m is not above the surface; it is the height of the sphere's centre, so it must be "
-                f"greater than the radius, {radius:g} m{hint}",
+                f"{height:g} m does not lift the sphere off the surface; it is the height of its centre, so it must be greater than the "
+                f"radius, {radius:g} m{hint}",
                 "drop.height",
             )
         if height is not None and self.drop.gravity == 0:

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from vibroimpact.cases.limit import two_digits
 from vibroimpact.dynamics.sensors.electronics import Converter
 from vibroimpact.dynamics.sensors.recording import Signal
 from vibroimpact.resolved_case import ResolvedCase
@@ -54,11 +55,13 @@ def sensor_doubts(case: ResolvedCase, signals: Mapping[str, Signal], highest: fl
         if apart < _NEAR:
             part = _finite_or_zero(signal.uncertainty) + _thickness_error(case, signal, duration)
             cause = f"{apart:.2g} thicknesses from the contact, the motion through the thickness and the modes left out"
-            remedy = _remedy(signal, highest) if signal.uncertainty > _PROMISED else f"keep a distance of {_NEAR:g} thicknesses or more"
+            remedy = (
+                _remedy(case, signal, highest) if signal.uncertainty > _PROMISED else f"keep a distance of {_NEAR:g} thicknesses or more"
+            )
             alike.setdefault((cause, remedy), {})[name] = part
         elif signal.uncertainty > _PROMISED:
             cause = f"the modes of the plate left out (above {text(highest, 'Hz')}, at {signal.sensor.rate:g} samples per second)"
-            alike.setdefault((cause, _remedy(signal, highest)), {})[name] = signal.uncertainty
+            alike.setdefault((cause, _remedy(case, signal, highest)), {})[name] = signal.uncertainty
     return found + [_sentence(cause, remedy, parts) for (cause, remedy), parts in alike.items()]
 
 
@@ -94,7 +97,8 @@ def _converter_doubts(signal: Signal, converter: Mapping[str, Any]) -> list[str]
         return [f'the converter of sensor "{name}" clips {part} at its range of {end}; give it a wider one, or the amplifier less gain']
     if read.step and not signal.value.any():
         return [
-            f'the converter of sensor "{name}" has no signal: its step is {text(read.step, unit)}; give it more bits, or the amplifier gain'
+            f'the converter of sensor "{name}" reads zero all along: each sample is below half its step, {text(read.step, unit)}; give it '
+            "more bits, or the amplifier gain"
         ]
     return []
 
@@ -109,25 +113,37 @@ def _baffle_doubts(case: ResolvedCase, signal: Signal, speed: float) -> list[str
     part = float(power[np.fft.rfftfreq(len(signal.value), 1.0 / signal.sensor.rate) < lowest].sum() / power.sum())
     if part < _LOW:
         return []
+    share, below = f"{two_digits(100.0 * part)} % of the power", text(lowest, "Hz")
     return [
-        f'{_per_cent(part)} of the power of the signal of microphone "{signal.sensor.name}" lies below {text(lowest, "Hz")}, where half a '
-        "wavelength is longer than the plate is wide: the plate is assumed to lie in a rigid baffle, and without one its two sides cancel "
-        "there; use the signal above that frequency only"
+        f'{share} of the signal of microphone "{signal.sensor.name}" lies below {below}, where half a wavelength is longer than the plate '
+        "is wide: the plate is assumed to lie in a rigid baffle, and without one its two sides cancel there; use the signal above that "
+        "frequency only"
     ]
 
 
-def _remedy(signal: Signal, highest: float) -> str:
+def _remedy(case: ResolvedCase, signal: Signal, highest: float) -> str:
     if signal.sensor.filter == "none":
         return 'take filter = "sigma-delta", or more modes'
     wanted = max(signal.sensor.rate, 2.0 * highest if signal.sensor.rate <= highest else 0.0)
-    return f'ask for plate.max_frequency = "{wanted / 1e3:.3g} kHz" or so, or for a lower rate'
+    instead = ", in place of plate.modes" if "modes" in case.get("plate", {}) else ""
+    return f'ask for plate.max_frequency = "{float(f"{wanted / 1e3:.3g}"):g} kHz" or so{instead}, or for a lower rate'
 
 
 def _distance_in_thicknesses(case: ResolvedCase, place: Any) -> float:
-    """Return the in-plane distance of a sensor from the contact over the plate thickness; infinite if not known, or the plate is rigid."""
+    """Return the in-plane distance of a sensor from the contact over the plate thickness; infinite if not known, or without plate elements.
+
+    A rigid plate does not deform, and solid elements have the motion through the thickness.
+    """
     plate = case.get("plate", {})
     size, mesh = plate.get("size"), plate.get("mesh", {})
-    if plate.get("model") == "rigid" or size is None or place is None or isinstance(place, str) or "file" in mesh:
+    if (
+        plate.get("model") == "rigid"
+        or plate.get("element") == "solid"
+        or size is None
+        or place is None
+        or isinstance(place, str)
+        or "file" in mesh
+    ):
         return math.inf
     return math.dist(place, case["drop"]["position"]) / float(size[2])
 
@@ -145,4 +161,4 @@ def _finite_or_zero(part: float) -> float:
 
 
 def _per_cent(part: float) -> str:
-    return f"{100.0 * part:.2g} %" if part < 1.0 else "100 % or more"
+    return f"{two_digits(100.0 * part)} %" if part < 0.995 else "100 % or more"

@@ -11,7 +11,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -269,13 +269,25 @@ def _check_well_posed(case: CaseTable, series: QuasiStatic, facts: Mapping[str, 
     if slopes.min() >= _LEAST_SLOPE:
         return
     place = float(delta[slopes < _LEAST_SLOPE][0])
-    taken = cast(float, facts.get("sphere_modal_compliance_m_N", 0.0))
-    raise InputError(
-        f"the modes of the sphere carry {taken:.3g} m/N of its quasi-static compliance, and taking that out of the contact leaves less "
-        f"than {_LEAST_SLOPE:g} of the law's own from an indentation of {place:.2g} m on, so that the force would not be unique; "
-        "keep fewer modes, such as 10, or leave out attachment_mode or craig-bampton",
-        "sphere.modes",
+    leaves = (
+        f"leaves less than {_LEAST_SLOPE:g} of the law's own compliance from an indentation of {place:.2g} m on, so that the force would "
+        "not be unique"
     )
+    taken = facts.get("sphere_modal_compliance_m_N")
+    if taken is None:  # only the correction of a rigid sphere takes from the compliance, that of a half space of its material
+        words = "the correction of Hertz's half space for the finite size of the sphere"
+        raise InputError(
+            f"{words} {leaves}: the law is much stiffer than Hertz's contact; leave this out, or take a lower stiffness",
+            "contact.finite_sphere",
+        )
+    words = f"the modes of the sphere carry {taken:.3g} m/N of its quasi-static compliance, and taking that out of the contact {leaves}"
+    sphere = case.sphere
+    remedy, key = "keep fewer modes", "modes" if sphere.max_frequency is None else "max_frequency"
+    if sphere.attachment_mode:
+        remedy, key = "leave this out", "attachment_mode"
+    elif sphere.reduction == "craig-bampton":
+        remedy, key = 'take "modal"', "reduction"
+    raise InputError(f'{words}; {remedy}, or take contact.local_compliance = "superposed"', f"sphere.{key}")
 
 
 def _rebound(case: CaseTable, measured: MeasuredImpact) -> dict[str, float]:

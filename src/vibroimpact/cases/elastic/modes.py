@@ -13,6 +13,7 @@ from vibroimpact.bodies.ball import ball_volume
 from vibroimpact.bodies.elastic import ElasticBody
 from vibroimpact.cases.elastic.bodies import elastic_bodies
 from vibroimpact.cases.elastic.meshes import meshes_of
+from vibroimpact.cases.limit import two_digits
 from vibroimpact.errors import InputError
 from vibroimpact.materials import Material
 from vibroimpact.structures.damping import ConstantRatio, RatioOfEach, RatioTable
@@ -97,6 +98,10 @@ def compute_modes(
     [12700.0, 12700.0]
     """
     bodies = elastic_bodies(case)
+    if not bodies and case.plate.radius is not None:
+        raise InputError(
+            "two spheres are rigid but for their contact, and have no modes; leave out plate.radius for a plate", "plate.radius"
+        )
     if not bodies:
         raise InputError('no body of the case is elastic; give the sphere or the plate model = "elastic"')
     found = {}
@@ -131,7 +136,8 @@ def _doubts(case: CaseTable, name: str, body: ElasticBody, model: ModalModel, ba
     if any(block.element.order == 1 for block in model.mesh.blocks):
         yield f"the mesh of the {name} has elements of first order, which are far too stiff in bending; take elements of second order"
     if isinstance(body.damping, (ConstantRatio, RatioOfEach, RatioTable)) and basis.damping_ratios.max() >= 1.0:
-        yield f"the damping of the {name} is critical or more; a ratio of 0.01 is 1 %"
+        which = "" if isinstance(body.damping, ConstantRatio) else "of at least one mode "
+        yield f"the damping {which}of the {name} is critical or more; a ratio of 0.01 is 1 %"
 
 
 def _doubts_of_frequencies(case: CaseTable, name: str, body: ElasticBody, model: ModalModel) -> Iterator[str]:
@@ -145,7 +151,7 @@ def _doubts_of_frequencies(case: CaseTable, name: str, body: ElasticBody, model:
     which = f"{off} of the {len(errors)} modes" if len(errors) > 1 else "the mode"
     yield (
         f"the frequencies of {which} of the {name} may be off by more than {100 * _FREQUENCY_OFF:g} %, most that of mode {worst + 1}, "
-        f"{model.frequencies[worst]:.4g} Hz, by about {100.0 * errors[worst]:.2g} %, due to {cause}; {remedy}"
+        f"{model.frequencies[worst]:.4g} Hz, by about {two_digits(100.0 * errors[worst])} %, due to {cause}; {remedy}"
     )
 
 

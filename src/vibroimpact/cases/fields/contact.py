@@ -65,7 +65,11 @@ def read_contact(value: Any) -> ContactSection:
                 parameters[key] = tuple(read_quantity(item, unit, allowed) for item in given)
             elif isinstance(given, dict):
                 if not varies_with_speed(known[key]):
-                    why = "it is an exponent" if key == "exponent" else "it follows from the bodies"
+                    why = "it follows from the bodies"
+                    if known[key].metadata["memory"]:
+                        why = "it is the state before the first impact"
+                    elif key == "exponent":
+                        why = "it is an exponent"
                     words = "and can't be a function of the approach speed; give a number, or a list with one value per impact"
                     raise InputError(f"{why}, {words}")
                 parameters[key] = read_by_speed(given, unit, allowed)

@@ -279,7 +279,8 @@ def check_plate(section: Any) -> None:
         solid = section.element == "solid"
         for key in ("theory", "margin") if solid else ("elements", "layers", "kind", "splits", "lower_splits"):
             if getattr(mesh, key) is not None:
-                raise InputError(f'element = "{section.element or "plate"}" does not take it', f"mesh.{key}")
+                words = f'element = "{section.element or "plate"}" does not take it'
+                raise InputError(f'{words}; leave it out, or give element = "{"plate" if solid else "solid"}"', f"mesh.{key}")
 
 
 def check_sphere_below(case: Any) -> None:
@@ -294,9 +295,14 @@ def check_sphere_below(case: Any) -> None:
     if any(case.drop.position):
         words = "beside the top of a sphere the impact is oblique, and spheres meet head on here"
         raise InputError(f"{words}; leave it out", "drop.position")
-    if case.sphere.model == "elastic" or local.local_compliance is not None or local.finite_sphere:
-        words = "two spheres are rigid but for their contact"
-        raise InputError(f"{words}; leave this out", "sphere.model" if case.sphere.model == "elastic" else "contact")
+    given = {
+        "sphere.model": case.sphere.model == "elastic",
+        "contact.local_compliance": local.local_compliance is not None,
+        "contact.finite_sphere": local.finite_sphere,
+    }
+    for key, is_given in given.items():
+        if is_given:
+            raise InputError("two spheres are rigid but for their contact; leave this out", key)
 
 
 def reduction_of(body: Literal["sphere", "plate"], section: Any, place: Place) -> Reduction:

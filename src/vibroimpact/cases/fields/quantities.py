@@ -35,7 +35,7 @@ def read_quantity(value: Any, unit: str, allowed: Range) -> float:
     """
     if has_deviation(value):
         keys = "drop.height, drop.speed, drop.gravity, sphere.radius and material.density"
-        words = f"a standard deviation enters the intervals of a calibration by {keys} alone"
+        words = f"a standard deviation, for the intervals of a calibration, may stand at {keys} alone"
         raise InputError(f'{shown(value, 80)}: {words}; write "{without_deviation(value)}"')
     try:
         number = to_si(value, unit)

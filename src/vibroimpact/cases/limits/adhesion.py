@@ -40,8 +40,8 @@ def sticking_speed(radius: Array, modulus: Array, mass: Array, work_of_adhesion:
 
 
 def _number(drops: Conditions) -> Array:
-    """Return the relative loss of the first restitution by adhesion; NaN for laws that include it."""
-    if "work_of_adhesion" in drops.case["contact"]:
+    """Return the relative loss of the first restitution by adhesion; NaN for laws that include it, and in a liquid, of bodies not dry."""
+    if "work_of_adhesion" in drops.case["contact"] or drops.case["contact"].get("liquid") is not None:
         return np.nan
     ratio = sticking_speed(drops.effective_radius, drops.modulus, drops.effective_mass) / drops.summary.speed
     return 1.0 - np.sqrt(1.0 - np.minimum(ratio, 1.0) ** 2)

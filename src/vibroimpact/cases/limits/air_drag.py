@@ -9,13 +9,14 @@ import numpy as np
 from vibroimpact.arrays import Array
 from vibroimpact.cases.conditions import Conditions
 from vibroimpact.cases.limit import Limit, percent_less
-from vibroimpact.dynamics.air import AIR_DENSITY, AIR_VISCOSITY
+from vibroimpact.dynamics.air import AIR_DENSITY, AIR_VISCOSITY, check_thin
 from vibroimpact.dynamics.core.fall import drag_coefficient
+from vibroimpact.errors import InputError
 
 _ROUNDS = 2  # fixed-point iterations of speed and drag coefficient; each reduces the error of the speed by a factor of 20
 
 
-def drag_loss(radius: Array, density: Array, fall: Array, gravity: Array) -> Array:
+def drag_loss(radius: Array, density: Array, fall: Array, gravity: Array, longer: Array = 1.0) -> Array:
     r"""Return the relative loss of speed by air drag of a sphere that falls from rest.
 
     With a constant drag coefficient the speed after a fall of height H is
@@ -30,12 +31,14 @@ def drag_loss(radius: Array, density: Array, fall: Array, gravity: Array) -> Arr
         Height fallen [m].
     gravity : float or array
         Acceleration of gravity [m/s^2].
+    longer : float or array, default 1
+        What drag takes on the way of the sphere over what it takes in the fall from rest.
     """
     speed = np.sqrt(2.0 * gravity * fall)
     part, exponent = 1.0, 0.0
     for _ in range(_ROUNDS):
         reynolds = AIR_DENSITY * math.sqrt(2.0 / 3.0) * speed * part * 2.0 * radius / AIR_VISCOSITY
-        exponent = 0.75 * AIR_DENSITY / density * drag_coefficient(reynolds) * fall / radius
+        exponent = 0.75 * AIR_DENSITY / density * drag_coefficient(reynolds) * longer * fall / radius
         part = np.sqrt(-np.expm1(-exponent) / exponent)
     return 1.0 - part
 
@@ -44,17 +47,38 @@ def _number(drops: Conditions) -> Array:
     height = drops.case["drop"].get("height")
     if height is None or drops.case["drop"].get("air") is not None or drops.case["contact"].get("liquid") is not None:
         return math.nan
-    return drag_loss(drops.radius, drops.density, height - drops.radius, drops.case["drop"]["gravity"])
+    gravity, slope = drops.case["drop"]["gravity"], np.cos(drops.case["plate"].get("inclination") or 0.0)
+    velocity = drops.case["drop"].get("velocity")
+    if velocity is None:  # straight down
+        return drag_loss(drops.radius, drops.density, (height - drops.radius) / slope, gravity)
+    # along the normal: the top of a flight that is thrown up, or from which it would have the speed that it is thrown down with, is higher;
+    # on the way from there drag takes energy with the square of its length, up once more in the first case, and none in the second
+    higher = 0.5 * velocity[2] ** 2 / (gravity * slope)
+    whole = height - drops.radius + higher
+    return drag_loss(drops.radius, drops.density, whole, gravity * slope, 1.0 + np.sign(velocity[2]) * (higher / whole) ** 2)
 
 
 def _sentence(drop: Conditions, lost: float) -> str:
-    fall = drop.case["drop"]["height"] - drop.radius
-    speed = math.sqrt(2.0 * drop.case["drop"]["gravity"] * fall)
+    plate, flight = drop.case["plate"], drop.case["drop"]
+    velocity, is_inclined = flight.get("velocity"), plate.get("inclination") is not None
+    about = "" if velocity is None else "at least " if is_inclined or any(velocity[:2]) else "about "
+    remedy = f"give {_air_for(drop)}"
+    if velocity is None and not is_inclined and plate.get("motion") is None:
+        speed = math.sqrt(2.0 * flight["gravity"] * (flight["height"] - drop.radius)) * (1.0 - lost)
+        remedy += f", or drop.speed = {speed:.4g} in place of the height to begin with that speed"
     return (
-        f"in air the first touch would be {percent_less(lost).removeprefix('-')} slower than in the vacuum that this drop falls through, "
-        f"and each rebound loses speed again; give drop.air = true, or drop.speed = {speed * (1.0 - lost):.4g} in "
-        "place of the height to begin with that speed"
+        f"in air the first touch would be {about}{percent_less(lost).removeprefix('-')} slower than in the vacuum that this drop falls "
+        f"through, and each rebound loses speed again; {remedy}"
     )
+
+
+def _air_for(drop: Conditions) -> str:
+    """Return the key that makes a sphere fall through air, of which a very light one takes more than drag."""
+    try:
+        check_thin(AIR_DENSITY, drop.density)
+    except InputError:
+        return f"contact.liquid = {{ density = {AIR_DENSITY:g}, viscosity = {AIR_VISCOSITY:g} }} with a law that takes a restitution"
+    return "drop.air = true"
 
 
 LIMITS = (

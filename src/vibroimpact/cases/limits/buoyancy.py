@@ -22,10 +22,15 @@ def _number(drops: Conditions) -> Array:
 
 def _sentence(drop: Conditions, lost: float) -> str:
     air = Air(**drop.case["drop"]["air"])
+    remedy = (
+        f"give contact.liquid = {{ density = {air.density:g}, viscosity = {air.viscosity:g} }} in its place, which has all three, with a "
+        "law that takes a restitution"
+    )
+    if drop.case["plate"].get("radius") is not None:  # a sphere in a liquid falls on a plate
+        remedy = "take the speeds of impacts for too high"
     return (
         f"buoyancy and the air that moves along would take {percent_less(lost).removeprefix('-')} of the acceleration of so light a ball, "
-        f"of a mean density of {drop.density:.3g} kg/m^3, and drop.air has drag alone; give contact.liquid = {{ density = "
-        f"{air.density:g}, viscosity = {air.viscosity:g} }} in its place, which has all three, with a law that takes a restitution"
+        f"of a mean density of {drop.density:.3g} kg/m^3, and drop.air has drag alone; {remedy}"
     )
 
 

@@ -9,10 +9,13 @@ import numpy as np
 from vibroimpact.arrays import Array
 from vibroimpact.cases.conditions import Conditions
 from vibroimpact.cases.limit import Limit
+from vibroimpact.materials import RIGID
 
 _RADII, _THICKNESSES = 10.0, 2.0
 """Least distance of the contact from an edge: for a rigid plate in contact radii, where a half space is 3 to 5 % too stiff; for an elastic
 plate in thicknesses, beyond which the local deformation vanishes (it decays as exp(-pi d / h))."""
+
+_NEAR = 2.0  # contact radii: a nearer edge softens more than to first order
 
 
 def softening(contact_radius: Array, distance: Array, poissons_ratio: Array, share: Array) -> Array:
@@ -49,13 +52,32 @@ def _distance(drops: Conditions) -> Array:
     """Return the distance of the contact from the nearest edge [m]; NaN if the edges of the plate are not known."""
     if drops.size is None or (isinstance(drops.case["plate"].get("mesh"), dict) and "file" in drops.case["plate"]["mesh"]):
         return math.nan
-    sides = zip(drops.size[:2], drops.case["drop"]["position"], strict=True)
-    return np.minimum(*(0.5 * length - abs(place) for length, place in sides))
+    sides = zip(drops.size[:2], _place(drops), strict=True)
+    distance = np.minimum(*(0.5 * length - abs(place) for length, place in sides))
+    return np.where(distance >= 0.0, distance, math.nan)[()]  # beyond an edge it falls past the plate
+
+
+def _place(drops: Conditions) -> tuple[Array, Array]:
+    """Return x and y of the first contact [m], to which an oblique drop flies through a vacuum."""
+    drop, inclination = drops.case["drop"], drops.case["plate"].get("inclination") or 0.0
+    x, y = drop["position"]
+    if drop.get("height") is None or not _is_oblique(drops):
+        return x, y
+    along_x, along_y, up = drop.get("velocity") or (0.0, 0.0, 0.0)
+    down = drop["gravity"] * np.cos(inclination)
+    time = (up + np.sqrt(up**2 + 2.0 * down * (drop["height"] - drops.radius))) / down
+    return x + along_x * time + 0.5 * drop["gravity"] * np.sin(inclination) * time**2, y + along_y * time
+
+
+def _is_oblique(drops: Conditions) -> bool:
+    return "velocity" in drops.case["drop"] or "inclination" in drops.case["plate"]
 
 
 def _least_distance(drops: Conditions) -> Array:
-    """Return the distance from the edge beyond which the half space holds [m]."""
-    return _THICKNESSES * drops.size[2] if drops.model("plate") == "elastic" else _RADII * drops.contact_radius
+    """Return the distance from the edge beyond which the half space holds [m]; a rigid one holds where it is touched."""
+    if drops.model("plate") == "elastic":
+        return _THICKNESSES * drops.size[2]
+    return (1.0 if drops.materials["plate"] is RIGID else _RADII) * drops.contact_radius
 
 
 def _number(drops: Conditions) -> Array:
@@ -65,16 +87,18 @@ def _number(drops: Conditions) -> Array:
 
 def _sentence(drop: Conditions, _: float) -> str:
     distance, plate = float(_distance(drop)), drop.materials["plate"]
-    share = float(drop.modulus / plate.plane_strain_modulus)
-    soft = float(softening(drop.contact_radius, max(distance, float(drop.contact_radius)), plate.poissons_ratio, share))
-    if drop.model("plate") == "elastic":
-        reach = f"{distance / drop.size[2]:.2g} thicknesses"
-    else:
-        reach = f"{distance / float(drop.contact_radius):.2g} contact radii"
-    return (
-        f"the contact is {distance:.3g} m from the edge of the plate, {reach}: a half space is too stiff there, by about "
-        f"{100.0 * soft:.2g} % where the edge is free; move drop.position to {float(_least_distance(drop)):.3g} m or more from it"
-    )
+    patch, least = float(drop.contact_radius), float(_least_distance(drop))
+    reach = f"{distance / drop.size[2]:.2g} thicknesses" if drop.model("plate") == "elastic" else f"{distance / patch:.2g} contact radii"
+    why = "it reaches over the edge, and is computed as on a plane"
+    if plate is not RIGID:
+        soft = float(softening(patch, max(distance, patch), plate.poissons_ratio, float(drop.modulus / plate.plane_strain_modulus)))
+        by = "at least" if distance < _NEAR * patch else "about"
+        why = f"a half space is too stiff there, by {by} {100.0 * soft:.2g} % where the edge is free"
+    remedy = f"choose drop.position so that it keeps {least:.3g} m"
+    if least > 0.5 * float(min(drop.size[:2])):
+        remedy = f"take a larger plate, on which it keeps {least:.3g} m"
+    about = "about " if _is_oblique(drop) else ""
+    return f"the first contact is {about}{distance:.3g} m from the edge of the plate, {reach}: {why}; {remedy}"
 
 
 LIMITS = (

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
+import numpy as np
+
 from vibroimpact.arrays import Array
 from vibroimpact.cases.conditions import Conditions
 from vibroimpact.cases.limit import Limit
@@ -18,7 +20,19 @@ def _reynolds(drops: Conditions) -> Array:
     medium = _medium(drops)
     if medium is None or "viscosity" not in medium:
         return math.nan
-    return medium["density"] * drops.summary.speed * 2.0 * drops.radius / medium["viscosity"]
+    return medium["density"] * _speed(drops) * 2.0 * drops.radius / medium["viscosity"]
+
+
+def _speed(drops: Conditions) -> Array:
+    """Return the speed at first touch, also along the plate [m/s]."""
+    drop, normal, along = drops.case["drop"], drops.summary.speed, 0.0
+    if drop.get("velocity") is not None:
+        along = np.hypot(drop["velocity"][0], drop["velocity"][1])
+    elif drop.get("angle") is not None:
+        along = drop["speed"] * np.sin(drop["angle"])
+    elif drop.get("height") is not None:  # it falls straight down on a plate that may be inclined
+        along = normal * np.tan(drops.case["plate"].get("inclination") or 0.0)
+    return np.hypot(normal, along)
 
 
 def _medium(drops: Conditions) -> Mapping[str, Array] | None:
@@ -29,7 +43,7 @@ def _medium(drops: Conditions) -> Mapping[str, Array] | None:
 
 def _drag_sentence(drop: Conditions, number: float) -> str:
     remedy = (
-        "give a measured one as drop.air.drag_coefficient"
+        "give a measured one as drop.air.drag_coefficient, in place of drop.air.viscosity"
         if drop.case["drop"].get("air") is not None
         else "take the speeds after flights for uncertain"
     )
@@ -42,11 +56,14 @@ def _drag_sentence(drop: Conditions, number: float) -> str:
 def _mach(drops: Conditions) -> Array:
     if drops.case["drop"].get("air") is None:
         return math.nan
-    return drops.summary.speed / _SPEED_OF_SOUND
+    return _speed(drops) / _SPEED_OF_SOUND
 
 
 def _sound_sentence(drop: Conditions, number: float) -> str:
-    start = "" if drop.case["drop"].get("height") is None else "begin with the speed at first touch, drop.speed, and "
+    start, given = "", drop.case["drop"]
+    if given.get("height") is not None:
+        key = "drop.speed" if given.get("velocity") is None else "drop.velocity without drop.height"
+        start = f"begin with the speed at first touch, {key}, and "
     return (
         f"the sphere flies at {number:.2g} of the speed of sound in air at 20 C, and the compression of the air increases the drag, which "
         f"is that of slow flight here; {start}take the rebounds for uncertain"

@@ -83,9 +83,11 @@ def _sentence(drop: Conditions, lacking: float) -> str:
     case = drop.case
     oblique = {"velocity", "angle", "spin"} & set(case["drop"]) or "inclination" in case["plate"] or "friction" in case["contact"]
     remedy = "" if oblique else "; contact.finite_sphere = true corrects it"
+    ratio = float(drop.contact_radius / drop.radius)
+    about = "about" if ratio <= FITTED[1] else "at least"
     return (
-        f"Hertz's half space makes the largest force about {percent_less(lacking).removeprefix('-')} too small: the contact radius is "
-        f"{float(drop.contact_radius / drop.radius):.2g} of the sphere's, which is stiffer than a half space{remedy}"
+        f"Hertz's half space makes the largest force {about} {percent_less(lacking).removeprefix('-')} too small: the contact radius is "
+        f"{ratio:.2g} of the sphere's, which is stiffer than a half space{remedy}"
     )
 
 

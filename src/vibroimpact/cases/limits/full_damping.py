@@ -16,7 +16,7 @@ def _number(drops: Conditions) -> Array:
 def _sentence(drop: Conditions, ratio: float) -> str:
     fade = float(drop.law_parameter("full_damping_penetration"))
     return (
-        f"the largest indentation, {drop.summary.depth:.2g} m, stays below the full-damping penetration, {fade:.2g} m: the damping never "
+        f"the largest indentation, {drop.summary.depth:.3g} m, stays below the full-damping penetration, {fade:.3g} m: the damping never "
         f"acts in full, and less energy is lost; take a full_damping_penetration of {0.1 * drop.summary.depth:.1g} m or so, or calibrate"
     )
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from vibroimpact.arrays import Array
 from vibroimpact.cases.conditions import Conditions
-from vibroimpact.cases.limit import Limit
+from vibroimpact.cases.limit import Limit, two_digits
 from vibroimpact.units.display import text
 
 _TRUNCATED = 0.05  # allowed relative change of the largest force by truncated modes
@@ -27,10 +27,11 @@ def _sentence(body: str, drop: Conditions, _: float) -> str:
     (part, highest), duration = drop.summary.modes[body], float(drop.summary.duration)
     enough = _ENOUGH / duration
     wanted = enough if highest < enough else 2.0 * highest  # those of a very compliant body may matter beyond
+    instead = f", in place of {body}.modes" if drop.case and "modes" in drop.case[body] else ""  # type: ignore[literal-required]
     return (
         f"the modes of the {body} end at {text(highest, 'Hz')}, and the contact lasts {text(duration, 's', 3)}: the modes left out may "
-        f"change the largest force by up to {float(f'{100.0 * part:.2g}'):g} %, and rebound and vibration by more; ask for "
-        f'{body}.max_frequency = "{wanted / 1e3:.3g} kHz" or so'
+        f"change the largest force by up to {two_digits(100.0 * part)} %, and rebound and vibration by more; ask for "
+        f'{body}.max_frequency = "{float(f"{wanted / 1e3:.3g}"):g} kHz" or so{instead}'
     )
 
 
@@ -43,7 +44,9 @@ LIMITS = tuple(
         threshold=1.0,
         number=partial(_number, body),
         sentence=partial(_sentence, body),
-        shown=lambda ratio: f"{ratio:.2g} times the limit (5 % of the largest force, or 1.5 periods of the highest mode in a contact)",
+        shown=lambda ratio: (
+            f"{two_digits(ratio)} times the limit (5 % of the largest force, or 1.5 periods of the highest mode in a contact)"
+        ),
         without_case=True,
     )
     for body in ("sphere", "plate")

@@ -20,8 +20,8 @@ def _number(drops: Conditions) -> Array:
 def _sentence(drop: Conditions, number: float) -> str:
     stokes = CRITICAL_STOKES / number
     return (
-        f"the first impact has a Stokes number of {stokes:.3g}, and below about {CRITICAL_STOKES:g} spheres were seen to stay on the wall, "
-        f"where the correlation leaves {float(restitution_kept(stokes)):.2g} of the restitution; read it as no rebound"
+        f"the first impact has a Stokes number of {stokes:.3g}: the correlation leaves {float(restitution_kept(stokes)):.2g} of the "
+        f"restitution, and below about {CRITICAL_STOKES:g} spheres were seen to stay on the wall; read it as no rebound"
     )
 
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from vibroimpact.cases.conditions import Conditions
-from vibroimpact.cases.limit import Limit, percent_more
+from vibroimpact.cases.limit import Limit, percent_more, two_digits
 
 PLATE_MESH_COMPLIANCE = "plate_mesh_compliance_m_N"
 """The fact of the elastic bodies with the compliance that the elements of the plate lack at the contact point."""
@@ -55,7 +55,7 @@ def _sentence(drop: Conditions, error: float) -> str:
     finer = float(drop.case["plate"]["mesh"]["element_size"]) * math.sqrt(_ALLOWED / (_SPARE * error))
     return (
         "the elements of the plate are large for its thickness and do not follow its deflection next to the contact, which makes "
-        f'the first largest force about {large} too large; give plate.mesh.element_size = "{1e3 * finer:.2g} mm"'
+        f'the first largest force about {large} too large; give plate.mesh.element_size = "{two_digits(1e3 * finer)} mm"'
     )
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from vibroimpact.arrays import Array
 from vibroimpact.cases.conditions import Conditions
-from vibroimpact.cases.limit import Limit
+from vibroimpact.cases.limit import Limit, two_digits
 
 
 def _number(drops: Conditions) -> Array:
@@ -17,9 +17,10 @@ def _number(drops: Conditions) -> Array:
 
 def _sentence(drop: Conditions, ratio: float) -> str:
     time = float(drop.law_parameter("dissipation_time"))
+    second = two_digits(50.0 * (math.pi * ratio) ** 2)
     return (
-        f"the dissipation time, {time:.2g} s, is {ratio:.2g} of the contact's {drop.summary.duration:.2g} s: "
-        f"{drop.law.name} keeps the first order of it, and the second would be about {50.0 * (math.pi * ratio) ** 2:.2g} % of the force; "
+        f"the dissipation time, {time:.2g} s, is {two_digits(ratio)} of the contact's {drop.summary.duration:.2g} s: "
+        f"{drop.law.name} keeps the first order of it, and the second would be about {second} % of the force; "
         "take a shorter time, or a law that is fitted to a restitution"
     )
 
@@ -32,6 +33,6 @@ LIMITS = (
         threshold=0.1,
         number=_number,
         sentence=_sentence,
-        shown=lambda ratio: f"{ratio:.2g} of the contact",
+        shown=lambda ratio: f"{two_digits(ratio)} of the contact",
     ),
 )

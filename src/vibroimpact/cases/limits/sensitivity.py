@@ -8,11 +8,11 @@ import numpy as np
 
 from vibroimpact.arrays import Array
 from vibroimpact.cases.conditions import Conditions
-from vibroimpact.cases.limit import Limit
+from vibroimpact.cases.limit import Limit, two_digits
 from vibroimpact.dynamics.change_by_impact import RELATIVE_CHANGE
 
 _PREDICTED = 1e-3  # largest relative change of an impact that is not doubted
-_LOST = 0.3  # relative change above which no significant digit remains
+_LOST = 0.3  # relative change above which it is not told how large it is
 
 
 def _number(drops: Conditions) -> Array:
@@ -24,19 +24,27 @@ def _sentence(drop: Conditions, _: float) -> str:
     changes = np.asarray(drop.summary.changes, dtype=float)
     first, lost = np.flatnonzero(~(changes <= _PREDICTED))[0], np.flatnonzero(~(changes <= _LOST))
     grown = [] if lost.size and lost[0] == first else [f"to {100.0 * changes[first]:.2g} % of impact {first + 1}"]
-    grown += [f"to all of impact {lost[0] + 1}"] if lost.size else []
+    grown += [f"to {100.0 * _LOST:g} % or more of impact {lost[0] + 1}"] if lost.size else []
     undamped = _undamped(drop)
     remedy = f"give {undamped} damping, or judge" if undamped else "judge"
     small = max(RELATIVE_CHANGE, drop.case["run"]["tolerance"]) if drop.case else RELATIVE_CHANGE
     return (
         f"the drop is sensitive from impact {first + 1} on: a relative change of {small:g} in it grows {' and '.join(grown)}, "
-        f"so that these impacts are not predictable; {remedy} them by their distribution in a study over drop.height"
+        f"so that these impacts are not predictable; {remedy} them by their distribution in a study over {_start(drop)}"
     )
 
 
+def _start(drop: Conditions) -> str:
+    """Return the key by which the case gives how the drop begins."""
+    given = drop.case["drop"] if drop.case else {}
+    return next((f"drop.{key}" for key in ("height", "speed") if given.get(key) is not None), "drop.velocity.z" if given else "drop.height")
+
+
 def _shown(change: float) -> str:
-    part = f"{100.0 * change:.2g} %" if change < 1.0 else "100 % or more"
-    return f"an impact that changes by {part} for a relative change of {RELATIVE_CHANGE:g} in the drop"
+    part = f"{two_digits(100.0 * change)} %" if change < 0.995 else "100 % or more"
+    return (
+        f"an impact that changes by {part} for a relative change of the drop by {RELATIVE_CHANGE:g}, or by the tolerance if that is larger"
+    )
 
 
 def _undamped(drop: Conditions) -> str:

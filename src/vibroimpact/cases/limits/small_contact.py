@@ -18,8 +18,9 @@ def _number(drops: Conditions) -> Array:
 
 
 def _sentence(drop: Conditions, part: float) -> str:
+    whose = "the sphere's" if drop.case["plate"].get("radius") is None else "the effective radius of both spheres"
     return (
-        f"the contact radius reaches about {part:.2g} of the sphere's, and strains about {0.2 * part:.2g}: Hertz's theory, and its "
+        f"the contact radius reaches about {part:.2g} of {whose}, and strains about {0.2 * part:.2g}: Hertz's theory, and its "
         "correction for a finite sphere, hold for small ones; take a lower speed or a stiffer material, or measure the force"
     )
 
@@ -28,7 +29,7 @@ LIMITS = (
     Limit(
         name="small_contact",
         title="large contact",
-        meaning="contact radius over the radius of the sphere",
+        meaning="contact radius over the radius of the sphere, or over the effective radius of two",
         threshold=0.3,
         number=_number,
         sentence=_sentence,

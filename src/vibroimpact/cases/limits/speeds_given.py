@@ -23,9 +23,9 @@ def _number(drops: Conditions) -> Array:
 def _sentence(drop: Conditions, number: float) -> str:
     slow, fast = float(np.fmin(drop.summary.slowest, drop.summary.speed)), float(drop.summary.speed)
     name, one = max(drop.by_speed.items(), key=lambda item: max(fast / item[1].fastest, item[1].slowest / slow))
-    speeds = f"{fast:.4g} m/s" if slow == fast else f"{slow:.4g} to {fast:.4g} m/s"
+    speeds = f"the first impact comes at {fast:.4g} m/s" + ("" if slow == fast else f", the slowest at {slow:.4g} m/s")
     return (
-        f"contact.{name} is given for approach speeds from {one.slowest:.4g} to {one.fastest:.4g} m/s, and impacts come at {speeds}: "
+        f"contact.{name} is given for approach speeds from {one.slowest:.4g} to {one.fastest:.4g} m/s, and {speeds}: "
         "beyond the ends the value at the nearest one holds; give it for more speeds"
     )
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from vibroimpact.arrays import Array
 from vibroimpact.cases.conditions import Conditions
-from vibroimpact.cases.limit import Limit
+from vibroimpact.cases.limit import Limit, two_digits
 from vibroimpact.materials import RIGID, Material
 
 _YIELD = 1.6  # Johnson 1985, section 6.1: yield begins below the surface at a peak pressure of 1.6 times the yield strength
@@ -54,14 +54,14 @@ def _strength_sentence(body: str, drop: Conditions, ratio: float) -> str:
     material, pressure = drop.materials[body], float(drop.peak_pressure)
     name, (stress, strength, verb) = max(demands(material, pressure).items(), key=lambda item: item[1][0] / item[1][1])
     known = f"its {name.replace('_', ' ')} of {_stress(strength)}"
-    how = f": the tension at the rim of the contact is {_stress(stress)}, {ratio:.2g} times {known}"
+    how = f": the tension at the rim of the contact is {_stress(stress)}, {two_digits(ratio)} times {known}"
     if name != "tensile_strength":
         begins = "yield" if name == "yield_strength" else "be crushed"
-        times = "just above" if ratio < 1.05 else f"{ratio:.2g} times"
+        times = "just above" if ratio < 1.05 else f"{two_digits(ratio)} times"
         how = f", {times} that at which it begins to {begins} ({_YIELD} times {known})"
     remedy = (
         "take a law that yields, such as meyer"
-        if name == "yield_strength"
+        if name == "yield_strength" and drop.case["contact"].get("liquid") is None  # in which laws take a restitution
         else "take the force for an upper bound, and the restitution from a measurement"
     )
     beginning = f"{_named(body, material)} {verb} under Hertz's peak pressure of {_stress(pressure)}{how}"
@@ -92,7 +92,7 @@ def _unknown_sentence(drop: Conditions, _: float) -> str:
     return (
         f"whether {' and '.join(bodies)} {'yield or crack' if len(bodies) > 1 else 'yields or cracks'} under Hertz's peak pressure of "
         f"{_stress(float(drop.peak_pressure))} is not known: no strength is given; give yield_strength, compressive_strength or "
-        "tensile_strength in its material"
+        f"tensile_strength in {'their materials' if len(bodies) > 1 else 'its material'}"
     )
 
 

@@ -87,6 +87,11 @@ class HertzEstimate:
         drop = self.case["drop"]
         return 0.0 if drop.get("height") is None else (self._upward + self.speed) / self.gravity
 
+    @property
+    def in_fluid(self) -> bool:
+        """Whether air or a liquid slows the fall, which the estimates leave out."""
+        return bool(self.case["drop"].get("air") or self.case["contact"].get("liquid"))
+
     @cached_property
     def stiffness(self) -> float:
         """Hertz's stiffness of the two bodies [N/m^1.5]."""

@@ -116,7 +116,9 @@ def support_stiffness(estimate: HertzEstimate, table: Mapping[str, Any]) -> Plau
     return PlausibleRange(
         low=weight / (4.0 * estimate.across),
         high=1e13,
-        below=lambda value: f"would let the plate, which weighs {number_text(weight, 3)} N, sag by {number_text(weight / value, 2)} m",
+        below=lambda value: (
+            f"would alone let the plate, which weighs {number_text(weight, 3)} N on earth, sag by {number_text(weight / value, 2)} m"
+        ),
         above="is very stiff for a support",
     )
 
@@ -163,7 +165,9 @@ def full_damping_penetration(estimate: HertzEstimate, table: Mapping[str, Any]) 
     """Return the range of the full-damping penetration of the Adams impact law."""
     return PlausibleRange(
         high=float(np.fmax(0.3 * estimate.radius, 10.0 * estimate.depth)),
-        above=lambda value: f"is {count_text(value / estimate.depth)} times the largest indentation, {number_text(estimate.depth, 2)} m",
+        above=lambda value: (
+            f"is {count_text(value / estimate.depth)} times Hertz's largest indentation, {number_text(estimate.depth, 2)} m"
+        ),
         reference=0.1 * estimate.depth,
     )
 
@@ -173,7 +177,7 @@ def dissipation_time(estimate: HertzEstimate, table: Mapping[str, Any]) -> Plaus
     lasts = estimate.contact_time
     return PlausibleRange(
         high=10.0 * lasts,
-        above=lambda value: f"is {count_text(value / lasts)} times as long as the contact, {number_text(lasts, 2)} s",
+        above=lambda value: f"is {count_text(value / lasts)} times as long as Hertz's contact, {number_text(lasts, 2)} s",
         reference=0.03 * lasts,
     )
 
@@ -189,10 +193,12 @@ def run_duration(estimate: HertzEstimate, table: Mapping[str, Any]) -> Plausible
     # a plate that is moved is touched at another time
     earliest = 0.0 if estimate.case["plate"].get("motion") else touch + lasts
 
+    when = "after" if estimate.in_fluid else "at"
+
     def below(value: float) -> str:
         if value < touch:
-            return f"is over before the sphere touches the plate, at {touch:.4g} s"
-        return f"is over before the first contact is, which ends at about {touch + lasts:.6g} s"
+            return f"is over before the sphere touches the plate, {when} {touch:.4g} s"
+        return f"is over before the first contact is, which by Hertz's theory ends {when} about {touch + lasts:.6g} s"
 
     return PlausibleRange(
         low=earliest,
@@ -201,7 +207,9 @@ def run_duration(estimate: HertzEstimate, table: Mapping[str, Any]) -> Plausible
         above="is far longer than a sphere bounces",
         reference=touch + lasts,
         within=500.0,
-        remedy=lambda value: f"give {_rounded_up(earliest)} s or more" if value < earliest else "",
+        remedy=lambda value: (
+            f"give {_rounded_up(earliest)} s or more{', as the fluid slows the fall' * estimate.in_fluid}" if value < earliest else ""
+        ),
     )
 
 
@@ -213,7 +221,8 @@ def _rounded_up(value: float) -> str:
 
 def rest_speed(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
     """Return the range of the rest speed, less than the approach speed of the first impact."""
-    return PlausibleRange(high=0.9 * estimate.speed, above=f"is not well below the speed of the first touch, {estimate.speed:.3g} m/s")
+    what = "that the first touch would have in a vacuum" if estimate.in_fluid else "of the first touch"
+    return PlausibleRange(high=0.9 * estimate.speed, above=f"is not well below the speed {what}, {estimate.speed:.3g} m/s")
 
 
 def modal_frequency(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
