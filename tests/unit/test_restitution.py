@@ -43,6 +43,9 @@ def test_what_can_not_be_achieved_is_named() -> None:
     law = LankaraniNikravesh(stiffness=5e8, restitution=0.7)
     with pytest.raises(vi.InputError, match=r"lankarani-nikravesh reaches restitutions from 0\.663 to 1 at 3 m/s, not 0\.5"):
         vi.law_achieving(law, 0.5, mass=0.09, speed=3.0)
+    adhesive = vi.find_contact_law("krijt")(effective_modulus=1e9, effective_radius=1e-3, work_of_adhesion=0.1, dissipation_time=1e-6)
+    with pytest.raises(vi.InputError, match=r"krijt reaches restitutions up to 0\.9999\d+ at 3 m/s, not 1$"):
+        vi.law_achieving(adhesive, 1.0, mass=0.09, speed=3.0)
     with pytest.raises(vi.InputError, match=r"not 0\.5"):
         vi.law_achieving(law, np.array([0.9, 0.5]), mass=0.09, speed=3.0)
     with pytest.raises(vi.InputError, match=r"hertz has no loss parameter; it achieves 1, not 0\.5"):
