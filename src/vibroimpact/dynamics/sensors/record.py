@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from vibroimpact.structures.modal_model import ModalBasis  # which loads sparse matrices
 
 MOST_SAMPLES = 100_000_000
-"""Largest number of samples of one sensor; more do not fit into memory."""
+"""Largest number of samples of all sensors, or by which the clipping of one is followed; more do not fit into memory."""
 _NONE = np.zeros(3)
 _WIDER = 8
 """Multiple of the rate: samples without a filter are taken to contain frequencies up to half of it."""
