@@ -15,7 +15,7 @@ from vibroimpact.errors import ComputationError, InputError
 _WITHIN = 1e-9  # relative, of force and speed
 _SWEEPS = 40
 _STEP = 1e-4  # relative, of difference quotients
-_LOSSES = np.geomspace(0.02, 50.0, 8)  # damping over that of a critical oscillator of the sphere's mass, to search
+_LOSSES = (1e-4, *np.geomspace(0.02, 50.0, 8).tolist())  # damping over that of a critical oscillator of the sphere's mass, to search
 
 
 def identify_local_element(
