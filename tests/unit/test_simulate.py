@@ -225,6 +225,15 @@ def test_strong_dashpot_peaks_at_first_touch() -> None:
     assert response.impacts["time_of_max_force_s"][0] == 0.0
 
 
+def test_the_end_that_a_message_names_lies_within_the_run() -> None:
+    for duration in (2.0 / 3.0, 1.2345678):
+        response = vi.simulate(problem(impacts=None, duration=duration))
+        with pytest.raises(vi.InputError, match="times must lie within the run") as raised:
+            response.at(duration + 1.0)
+        named = float(str(raised.value).split(" to ")[1].removesuffix(" s"))
+        assert response.at(named)["time_s"] == named
+
+
 def test_times_outside_the_run_are_refused(theory: vi.Response) -> None:
     for times in ([-1.0], [theory.end_time[0] + 1.0], [np.nan]):
         with pytest.raises(vi.InputError, match="within the run"):

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.arrays import Bools, Floats
+from vibroimpact.dynamics.end_of_run import end_in_words
 from vibroimpact.dynamics.system import MovingBody, System
 from vibroimpact.dynamics.vibrating.active_contact import ContactDefinition
 from vibroimpact.dynamics.vibrating.free_motion import FreePhase
@@ -150,7 +151,7 @@ class SystemResponse:
         except (TypeError, ValueError, OverflowError):
             found = np.full(1, np.nan)
         if not np.all((found >= 0.0) & (found <= self.end_time)):
-            raise InputError(f"times must be numbers within the run, 0 to {self.end_time:.6g} s")
+            raise InputError(f"times must be numbers within the run, 0 to {end_in_words(self.end_time)} s")
         return found
 
     @cached_property
