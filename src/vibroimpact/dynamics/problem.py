@@ -157,10 +157,8 @@ class Problem:
             object.__setattr__(self, "laws", (self.laws,))
         one_kind = isinstance(self.laws, (tuple, list)) and len({type(law) for law in self.laws}) == 1
         if not one_kind or not isinstance(self.laws[0], ContactLaw):
-            raise InputError(
-                'laws must be one or more contact laws with their parameters, such as vi.find_contact_law("newton")(restitution=0.7), '
-                "all of one kind"
-            )
+            example = 'such as vi.find_contact_law("newton")(restitution=0.7)'
+            raise InputError(f"laws must be one or more contact laws with their parameters, {example}, all of one kind")
         for name in self.by_speed:
             if name not in {item.name for item in fields(self.laws[0])}:
                 raise InputError(f"{self.laws[0].name} has no parameter {name} that could be a function of the approach speed")
@@ -201,10 +199,8 @@ class Problem:
         if self.local_element is not None and not all(0.0 < value < np.inf for value in self.local_element):
             raise InputError("stiffness and damping of the local element must be greater than 0 and finite")
         if self.plate.rigid is not None and np.any(np.asarray(self.gravity) > 0):
-            raise InputError(
-                "the supports let the plate fall or tilt: under gravity it falls away from under the sphere; "
-                "set gravity to 0, and give speed"
-            )
+            words = "the supports let the plate fall or tilt: under gravity it falls away from under the sphere"
+            raise InputError(f"{words}; set gravity to 0, and give speed")
         self._check_motion()
         if self.vibrates and isinstance(self.laws[0], InstantaneousLaw):
             raise InputError(f"{self.laws[0].name} gives no force, and bodies that deform or are free need one; take another law")
@@ -252,9 +248,8 @@ class Problem:
         if not isinstance(self.motion, PlateMotion):
             raise InputError(f"motion must be a PlateMotion, not {self.motion!r}")
         if self.plate.rigid is not None:
-            raise InputError(
-                "the supports let the plate fall or tilt, and a motion of supports is that of a plate that they hold; leave out its motion"
-            )
+            words = "the supports let the plate fall or tilt, and a motion of supports is that of a plate that they hold"
+            raise InputError(f"{words}; leave out its motion")
         if len(self.motion.phasors) > 1 and self.duration is None:
             raise InputError("a sphere may ride for ever on a motion of several harmonics: give the duration of the run")
         modes = self.plate.modes
