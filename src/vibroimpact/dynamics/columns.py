@@ -134,16 +134,20 @@ VIBRATION_HISTORY_COLUMNS: dict[str, Column] = {
         "energy lost so far in the damping of the sphere's modes", "Lost in the damping of the sphere's modes", "damping of the sphere"
     ),
     "sphere_rotational_J": Column("J", "part of sphere_vibration_J in rigid-body rotation of the sphere by its modes"),
-    "plate_kinetic_J": _held("kinetic energy of the plate", "Kinetic energy of the plate"),
+    "plate_kinetic_J": _held("kinetic energy of the plate, if shaken of the motion that impacts excite", "Kinetic energy of the plate"),
     "plate_strain_J": _held(
-        "strain energy of the plate's modes, from its rest position under its own weight",
+        "strain energy of the plate's modes, from its rest position under its own weight, if shaken of the motion that impacts excite",
         "Strain energy of the plate's modes, from its rest position",
     ),
     "plate_damping_J": _lost(
-        "energy lost so far in the damping of the plate's modes", "Lost in the damping of the plate's modes", "damping of the plate"
+        "energy lost so far in the damping of the plate's modes, if shaken of the motion that impacts excite",
+        "Lost in the damping of the plate's modes",
+        "damping of the plate",
     ),
     "plate_rotational_J": Column("J", "part of the plate's kinetic energy in its rigid-body rotation"),
-    "plate_potential_J": Column("J", "change of the plate's potential energy, balanced by the strain energy of its own weight"),
+    "plate_potential_J": Column(
+        "J", "change of the plate's potential energy by the motion that impacts excite, balanced by the strain energy of its own weight"
+    ),
     "plate_displacement_m": Column("m", "displacement of the plate's centre of mass, upwards"),
     "plate_velocity_m_s": Column("m/s", "velocity of the plate's centre of mass, upwards"),
     "plate_acceleration_m_s2": Column("m/s2", "acceleration of the plate's centre of mass, upwards"),
