@@ -146,3 +146,17 @@ def check_round_trip(law: type[vi.ContactLaw], wanted: float, mass: float, speed
         assert re.search(r"reaches restitutions (from|up to) ", str(error))  # noqa: PT017
         return
     assert vi.integrated_restitution(tuned, 10**mass, 10**speed) == pytest.approx(wanted, abs=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("law", "key", "words"),
+    [
+        ("hertz", "stiffness", "two rigid materials have no contact stiffness of their own"),
+        ("tsuji", "effective_mass", "that of the pair is infinite"),
+    ],
+)
+def test_what_a_pair_can_not_give_is_asked_for_with_its_cause(law: str, key: str, words: str) -> None:
+    pair = ContactPair(np.inf if key == "stiffness" else 1e9, 0.01, 0.01 if key == "stiffness" else np.inf)
+    given = {"restitution": 0.5} if law == "tsuji" else {}
+    with pytest.raises(vi.InputError, match=rf"^{key}: it must be given, since {words}$"):
+        vi.find_contact_law(law).for_pair(pair, **given)
