@@ -395,7 +395,7 @@ class TestPython:
         [
             ({"inertia": "full"}, '"full" is not allowed; inertia must be a number in kg m^2, "solid" or "hollow"'),
             ({"inertia": -1.0}, "the moment of inertia of a body must be positive and finite"),
-            ({"inertia": np.nan}, "it is nan times the mass and the squared radius"),
+            ({"inertia": np.nan}, "the moment of inertia of a body must be positive and finite"),
             ({"mass": -1.0}, "the mass of a body must be positive"),
         ],
     )
