@@ -395,7 +395,7 @@ class TestPython:
         [
             ({"inertia": "full"}, '"full" is not allowed; inertia must be a number in kg m^2, "solid" or "hollow"'),
             ({"inertia": -1.0}, "the moment of inertia of a body must be positive and finite"),
-            ({"inertia": np.nan}, "it is nan times the mass and the squared radius"),
+            ({"inertia": np.nan}, "the moment of inertia of a body must be positive and finite"),
             ({"mass": -1.0}, "the mass of a body must be positive"),
         ],
     )
@@ -592,3 +592,13 @@ def test_identification_has_the_mean_density() -> None:
     assert found["mass_kg"].value == pytest.approx(given["sphere"]["mass"], rel=0.05)
     for name, estimate in known.items():
         assert found[name].value == pytest.approx(estimate.value, rel=1e-6), name
+
+
+def test_a_mass_or_an_inertia_that_is_no_number_is_refused_as_such() -> None:
+    steel, rigid = vi.find_material("steel"), vi.find_material("rigid")
+    with pytest.raises(vi.InputError, match="the moment of inertia of a body must be positive and finite"):
+        vi.rigid_sphere(0.02, steel, inertia=float("nan"))
+    with pytest.raises(vi.InputError, match="the mass of a body must be positive"):
+        vi.rigid_sphere(0.02, rigid, inertia=1e-5)  # a rigid material has no density
+    with pytest.raises(vi.InputError, match="the mass of a body must be positive"):
+        vi.rigid_sphere(0.02, steel, mass=0.0, inertia=1e-5)

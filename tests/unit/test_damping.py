@@ -48,13 +48,14 @@ def test_table() -> None:
     np.testing.assert_allclose(table.ratios(at), [0.01, 0.01, 0.02, 0.03, 0.025, 0.02, 0.02], rtol=1e-12)
     assert table.description == "a table of 3 ratios from 100 to 1000 Hz"
     np.testing.assert_array_equal(RatioTable((100.0,), (0.05,)).ratios(at), 0.05)
+    assert RatioTable((100.0,), (0.05,)).description == ConstantRatio(0.05).description
 
 
 @pytest.mark.parametrize(
     ("frequencies", "ratios", "message"),
     [
         ((), (), "0 frequencies and 0 ratios do not make a table"),
-        ((1.0, 2.0), (0.1,), "2 frequencies and 1 ratios do not make a table"),
+        ((1.0, 2.0), (0.1,), "2 frequencies and 1 ratio do not make a table"),
         ((2.0, 1.0), (0.1, 0.1), "frequencies: the frequencies of the table must ascend"),
         ((1.0, 1.0), (0.1, 0.2), "frequencies: the frequencies of the table must ascend"),
     ],

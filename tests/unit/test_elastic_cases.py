@@ -82,7 +82,7 @@ FAULTS: list[tuple[dict, str]] = [
         plate_case(damping={"frequencies": [10, 5], "ratios": [0.1, 0.1]}),
         "plate.damping.frequencies: the frequencies of the table must ascend",
     ),
-    (plate_case(damping={"frequencies": [10], "ratios": [0.1, 0.1]}), "plate.damping: 1 frequencies and 2 ratios do not make a table"),
+    (plate_case(damping={"frequencies": [10], "ratios": [0.1, 0.1]}), "plate.damping: 1 frequency and 2 ratios do not make a table"),
     (plate_case(damping="loss-factor"), "needs a loss_factor of the material, and it has none"),
     (plate_case(modes=0), "plate.modes: 0 is not allowed"),
     (plate_case(modes=2.5), "plate.modes: 2.5 is not allowed"),
@@ -98,6 +98,10 @@ FAULTS: list[tuple[dict, str]] = [
     (plate_case(reduction="guyan"), 'plate.reduction: "guyan" is not allowed; it must be "modal" or "craig-bampton"'),
     (plain_case(sphere__modes=3), 'sphere.modes: a rigid body does not take it; add model = "elastic"'),
     (plain_case(sphere__model="elastic", sphere__mesh={"elements_across": 5}), "sphere.mesh.elements_across: 5 is not allowed"),
+    (
+        plain_case(sphere__model="elastic", sphere__max_frequency="2 MHz"),
+        "elements across the sphere, and 100 are the most; ask for fewer modes, or give mesh.elements_across",
+    ),
     (
         plain_case(sensors=[{"name": "a", "position": [0, 0], "fce": "upper"}]),
         'sensors."a".fce: unknown key "fce"; [[sensors]] takes name,',

@@ -185,6 +185,9 @@ def test_problems_check_their_liquid() -> None:
         vi.Problem(**parts, laws=problem.laws, liquid=1.0)  # type: ignore[arg-type]
     with pytest.raises(vi.InputError, match="hertz takes no restitution"):
         vi.Problem(**parts, laws=(vi.find_contact_law("hertz")(stiffness=1e9),), liquid=vi.Liquid())
+    damped = vi.find_contact_law("linear-spring-dashpot")(stiffness=1e6, damping=10.0)
+    with pytest.raises(vi.InputError, match=r"is given without a restitution, .*; give it one in place of damping, or take another law"):
+        vi.Problem(**parts, laws=(damped,), liquid=vi.Liquid())
     with pytest.raises(vi.InputError, match="viscosity of a liquid must be a finite number greater than 0"):
         vi.Liquid(viscosity=[1.0, -1.0])
 

@@ -360,6 +360,10 @@ def test_the_force_of_a_support_on_joined_nodes_is_refused(tmp_path: Path) -> No
         computed_support_forces(across, (0.1, 0.02), "upper", [(0.1, -0.05)])
     forces = computed_support_forces(away, (0.1, 0.02), "upper", [(-0.2, 0.0)])
     np.testing.assert_allclose(forces.static[0], [0.0, 0.0, -1.0], atol=1e-6)
+    both = replace(recipe, supports=(Edge("y-min", "clamped"), Edge("x-min", "clamped")))
+    assert computed_support_forces(both, (0.1, 0.02), "upper", [(-0.2, 0.02)]).static.shape == (1, 3)  # no sensor on the other edge
+    with pytest.raises(InputError, match=r"the force of edge y-min clamped is not known"):
+        computed_support_forces(both, (0.1, 0.02), "upper", [(-0.2, 0.02), (0.1, -0.05)])
 
 
 def test_a_drop_on_joined_parts(tmp_path: Path) -> None:

@@ -195,3 +195,8 @@ def test_the_outline_goes_around_holes_and_follows_curved_edges() -> None:
     upper = np.isfinite(y) & (y > 0.2499) & (np.abs(x) < 0.2499)
     on_a_curve = np.isclose(y[upper], 0.25 + 0.1 * x[upper] ** 2, atol=1e-3)
     assert on_a_curve.all()
+
+
+def test_the_caption_of_a_single_mode_counts_none() -> None:
+    (one,) = mode_charts({"plate": vi.compute_modes(plate_case(plate={"modes": 1}))["plate"]})
+    assert one.caption == "The lowest mode; which way is up is arbitrary."

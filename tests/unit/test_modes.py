@@ -107,6 +107,12 @@ def test_a_mechanism_is_refused(shared: int, supports: tuple[Support, ...]) -> N
         elastic(structure, supports)
 
 
+def test_springs_that_are_next_to_none_are_named() -> None:
+    springs = tuple(Spring(x, y, 1e-6, 1e-6) for x in (-0.2, 0.2) for y in (-0.1, 0.1))
+    with pytest.raises(ComputationError, match="all of it can on springs that are next to none; look for such springs"):
+        elastic(PLATE, springs)
+
+
 @pytest.mark.parametrize("number", [0, -1, 10**6])
 def test_too_many_modes_or_none(number: int) -> None:
     with pytest.raises(InputError, match=f"{number} modes are not to be had from"):
@@ -118,6 +124,12 @@ def test_as_many_modes_as_a_small_mesh_has() -> None:
     assert len(small.modes(18).angular_frequencies) == 18
     with pytest.raises(InputError, match="19 modes are not to be had from 24 degrees of freedom; ask for 1 to 18"):
         small.modes(19)
+
+
+def test_memory_that_is_not_known_to_be_free_is_not_said_to_be(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(free_memory, "_available", lambda: None)
+    with pytest.raises(InputError, match=r"need about 1e\+09 GB of memory, and \d[\d.e+]* GB are built in, of which 80 % may be used"):
+        free_memory.check_memory(1e18, "they need")
 
 
 def test_too_little_memory(monkeypatch: pytest.MonkeyPatch) -> None:

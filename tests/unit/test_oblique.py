@@ -667,3 +667,12 @@ def test_studies_of_oblique_drops_on_a_plate_that_vibrates(tmp_path: Path) -> No
     study = vi.read_study(vi.run_sweep(vi.read_sweep({**on_elastic(run={"impacts": 1}), "sweep": {"over": over}}), tmp_path / "study"))
     alone = vi.simulate(case_of(run={"impacts": 1}, drop={**DROP_ON_ELASTIC, "angle": "40 deg"}))
     assert float(study.values("tangential_restitution", 1)[0]) == float(alone.impacts["tangential_restitution"][0])
+
+
+def test_a_statement_names_what_it_takes() -> None:
+    with pytest.raises(vi.InputError, match=r'such as vi\.find_friction_law\("coulomb"\)\(coefficient=0\.3\), not <class'):
+        vi.Oblique(friction=vi.find_friction_law("coulomb"))  # type: ignore[arg-type]
+    assert vi.Oblique(friction=vi.find_friction_law("coulomb")(coefficient=0.3)).shape == ()
+    assert vi.Oblique(size=np.array([0.5, 0.4])).shape == ()  # type: ignore[arg-type]
+    with pytest.raises(vi.InputError, match="from its centre the plate reaches half its length along x and half its width along y"):
+        vi.Oblique(size=(0.5, 0.4), position=(0.0, 0.21))

@@ -43,6 +43,9 @@ def test_what_can_not_be_achieved_is_named() -> None:
     law = LankaraniNikravesh(stiffness=5e8, restitution=0.7)
     with pytest.raises(vi.InputError, match=r"lankarani-nikravesh reaches restitutions from 0\.663 to 1 at 3 m/s, not 0\.5"):
         vi.law_achieving(law, 0.5, mass=0.09, speed=3.0)
+    adhesive = vi.find_contact_law("krijt")(effective_modulus=1e9, effective_radius=1e-3, work_of_adhesion=0.1, dissipation_time=1e-6)
+    with pytest.raises(vi.InputError, match=r"krijt reaches restitutions up to 0\.9999\d+ at 3 m/s, not 1$"):
+        vi.law_achieving(adhesive, 1.0, mass=0.09, speed=3.0)
     with pytest.raises(vi.InputError, match=r"not 0\.5"):
         vi.law_achieving(law, np.array([0.9, 0.5]), mass=0.09, speed=3.0)
     with pytest.raises(vi.InputError, match=r"hertz has no loss parameter; it achieves 1, not 0\.5"):
@@ -143,3 +146,17 @@ def check_round_trip(law: type[vi.ContactLaw], wanted: float, mass: float, speed
         assert re.search(r"reaches restitutions (from|up to) ", str(error))  # noqa: PT017
         return
     assert vi.integrated_restitution(tuned, 10**mass, 10**speed) == pytest.approx(wanted, abs=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("law", "key", "words"),
+    [
+        ("hertz", "stiffness", "two rigid materials have no contact stiffness of their own"),
+        ("tsuji", "effective_mass", "that of the pair is infinite"),
+    ],
+)
+def test_what_a_pair_can_not_give_is_asked_for_with_its_cause(law: str, key: str, words: str) -> None:
+    pair = ContactPair(np.inf if key == "stiffness" else 1e9, 0.01, 0.01 if key == "stiffness" else np.inf)
+    given = {"restitution": 0.5} if law == "tsuji" else {}
+    with pytest.raises(vi.InputError, match=rf"^{key}: it must be given, since {words}$"):
+        vi.find_contact_law(law).for_pair(pair, **given)

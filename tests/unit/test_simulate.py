@@ -108,6 +108,12 @@ def test_a_contact_under_way_at_the_end_is_finished() -> None:
     assert response.end_time[0] >= touch + response.impacts["duration_s"][0]
 
 
+@pytest.mark.parametrize("rest_speed", [0.0, None])
+def test_a_sphere_that_does_not_leave_is_not_said_to_be_slower_than_a_rest_speed(rest_speed: float | None) -> None:
+    status = vi.simulate(problem(laws=(Newton(restitution=0.0),), impacts=None, rest_speed=rest_speed)).status
+    assert status == "At rest after 1 impact: it did not leave again (rest-speed rule)."
+
+
 def test_rest_by_speed_is_reported_with_its_threshold() -> None:
     response = vi.simulate(problem(impacts=None, rest_speed=0.5))
     assert response.outcomes == (vi.Outcome.REST_SPEED,)
@@ -219,6 +225,15 @@ def test_strong_dashpot_peaks_at_first_touch() -> None:
     assert response.impacts["time_of_max_force_s"][0] == 0.0
 
 
+def test_the_end_that_a_message_names_lies_within_the_run() -> None:
+    for duration in (2.0 / 3.0, 1.2345678):
+        response = vi.simulate(problem(impacts=None, duration=duration))
+        with pytest.raises(vi.InputError, match="times must lie within the run") as raised:
+            response.at(duration + 1.0)
+        named = float(str(raised.value).split(" to ")[1].removesuffix(" s"))
+        assert response.at(named)["time_s"] == named
+
+
 def test_times_outside_the_run_are_refused(theory: vi.Response) -> None:
     for times in ([-1.0], [theory.end_time[0] + 1.0], [np.nan]):
         with pytest.raises(vi.InputError, match="within the run"):
@@ -259,6 +274,8 @@ def test_tolerance_is_kept(tolerance: float) -> None:
         ({"height": None, "speed": 0.0}, "greater than 0"),
         ({"impacts": 0}, "impacts"),
         ({"duration": 0.0}, "duration"),
+        ({"duration": [1.0, 2.0]}, "duration must be a number in SI, one for all drops"),
+        ({"tolerance": [1e-9, 1e-8]}, "tolerance must be a number in SI, one for all drops"),
         ({"tolerance": 1.0}, "tolerance"),
         ({"plate": BALL}, "held fixed"),
         ({"height": [1.0, 2.0], "gravity": [9.8, 9.8, 9.8]}, "agree in shape"),

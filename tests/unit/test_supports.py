@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -271,6 +272,18 @@ def test_two_bodies_can_not_hold_one_point(patch_first: bool) -> None:
     bar, other = Bar(0.0, 0.0, 0.06, 0.1, STEEL), Patch(0.05, 0.0, 0.06) if patch_first else Bar(0.05, 0.0, 0.06, 0.1, STEEL)
     with pytest.raises(InputError, match=r"two supports hold the same point, .* supports must lie apart"):
         held_by(structure, [other, bar])
+
+
+def test_the_point_that_two_bodies_hold_is_named() -> None:
+    """It lies in both: in the bar from -0.06 m to 0.06 m along x, and in the patch from 0.03 m on."""
+    bar, patch = Bar(0.0, 0.0, 0.06, 0.1, STEEL), RectangularPatch(0.09, 0.0, 0.12, 0.12)
+    plate = PlateOfPlates((0.5, 0.4, 0.01), 0.02)
+    structure = plate.structure(plate.mesh((bar, patch)), STEEL)
+    with pytest.raises(InputError, match="two supports hold the same point") as raised:
+        held_by(structure, [patch, bar])
+    x, y = (float(number) for number in re.findall(r"-?[\d.]+(?=[,)])", str(raised.value))[:2])
+    assert x >= 0.03 - 1e-9
+    assert np.hypot(x, y) <= 0.06 + 1e-9
 
 
 def test_patches_may_overlap_on_a_mesh_that_was_brought() -> None:

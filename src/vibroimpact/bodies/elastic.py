@@ -17,6 +17,7 @@ from vibroimpact.structures.mode_count import OF_AN_EDGE
 from vibroimpact.structures.plate_waves import wave_numbers
 from vibroimpact.structures.recipe import PlateOfPlates, PlateOfSolids, Recipe, Reduction, Shape, SphereOfSolids
 from vibroimpact.structures.sound_paths import Listener
+from vibroimpact.structures.sphere_mesh import MOST_ACROSS
 from vibroimpact.structures.support_force import SupportForces, support_forces
 from vibroimpact.structures.supports.edge import Edge
 from vibroimpact.structures.supports.support import Support
@@ -119,6 +120,12 @@ def sphere_recipe(radius: float, material: Material, reduction: Reduction, **mes
         wave_number = _shear_wave_number(radius, material, reduction) * radius
         across = max(_ACROSS, 2 * math.ceil(_PER_WAVE * wave_number / (2.0 * math.pi)))
         mesh["elements_across"] = 2 * math.ceil(0.5 * across * math.sqrt(mesh.get("grading", 1.0)))
+        if mesh["elements_across"] > MOST_ACROSS:
+            kept = f"{reduction.modes} modes" if reduction.modes else f"modes up to {reduction.max_frequency:g} Hz"
+            raise InputError(
+                f"{kept} need {mesh['elements_across']} elements across the sphere, and {MOST_ACROSS} are the most; "
+                "ask for fewer modes, or give mesh.elements_across"
+            )
     return recipe_of(SphereOfSolids(radius, **mesh), material, reduction)
 
 

@@ -71,8 +71,10 @@ def _inertia(given: Array | str, mass: Array, radius: Array) -> Array:
             raise InputError(f'{shown(given)} is not allowed; inertia must be a number in kg m^2, "solid" or "hollow"', "inertia")
         return INERTIA_RATIOS[given] * unit
     found = _numbers(given)
-    part = np.max(np.asarray(found) / unit)
-    if not part <= HOLLOW * (1.0 + _ROUNDED):
+    with np.errstate(divide="ignore", invalid="ignore"):
+        parts = np.asarray(found) / unit
+    part = np.max(np.where(np.isfinite(parts) & (unit > 0.0), parts, 0.0))
+    if part > HOLLOW * (1.0 + _ROUNDED):
         raise InputError(
             f"it is {part:.4g} times the mass and the squared radius, and no sphere has more than the 2/3 of a thin shell: give at most "
             f'{float(np.min(HOLLOW * unit)):.4g} kg m^2, or "hollow"',

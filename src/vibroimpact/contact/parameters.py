@@ -159,7 +159,9 @@ class Parameters:
                         key,
                     )
                 if np.any(np.isinf(given[key])):
-                    raise InputError("it must be given, since two rigid materials have no contact stiffness of their own", key)
+                    of_materials = item.metadata["from_pair"] not in ("effective_radius", "effective_mass")
+                    why = "two rigid materials have no contact stiffness of their own" if of_materials else "that of the pair is infinite"
+                    raise InputError(f"it must be given, since {why}", key)
             if key not in given and item.default is dataclasses.MISSING:
                 raise InputError(f"this key is missing; {cls.name} needs {_with_unit(item)}", key)
         return cls(**given)

@@ -59,6 +59,6 @@ def check_thin(density: Array, of_sphere: Array, key: str = "") -> None:
         raise InputError(
             f"the medium of the fall has {100.0 * part:.3g} % of the density of the sphere, and {100.0 * _DENSEST:g} % are the most: only "
             "its drag is computed, and in what is denser buoyancy, the mass of fluid that moves along, and the film over the plate count "
-            "too; give a liquid as contact.liquid",
+            "too; give it as contact.liquid, with a law that takes a restitution",
             key,
         )

@@ -46,12 +46,28 @@ IMPACT_COLUMNS: dict[str, Column] = {
     "restitution_achieved": Column("1", "separation speed over approach speed", "Restitution achieved", "e achieved", "ratio"),
     "max_indentation_m": Column("m", "largest indentation", "Largest indentation", "indentation"),
     "max_force_N": Column("N", "largest contact force", "Largest force", "force"),
-    "max_acceleration_m_s2": Column("m/s2", "largest magnitude of the sphere's acceleration", "Largest acceleration", "acceleration"),
-    "rebound_height_m": Column("m", "height of the sphere's centre above the plate at the top of the rebound", "Rebound height", "rebound"),
-    "energy_lost_J": Column("J", "energy dissipated in the contact, without the energy of vibration", "Energy lost", "lost"),
+    "max_acceleration_m_s2": Column(
+        "m/s2",
+        "largest upward acceleration of the sphere's centre in the impact, or that of its fall if larger",
+        "Largest acceleration",
+        "acceleration",
+    ),
+    "rebound_height_m": Column(
+        "m",
+        "height of the sphere's centre above the plate at rest, if shaken above its mean position, at the top of the rebound",
+        "Rebound height",
+        "rebound",
+    ),
+    "energy_lost_J": Column(
+        "J", "energy dissipated in the contact, without friction and without the energy of vibration", "Energy lost", "lost"
+    ),
     "plastic_work_J": Column("J", "part of the energy lost that was dissipated by plastic deformation"),
     "restitution_asked": Column(
-        "1", "restitution parameter of the contact law, if it has one", "Restitution asked", "e\u00a0asked", "ratio"
+        "1",
+        "restitution parameter of the contact law, if it has one; in a liquid what the film leaves of it",
+        "Restitution asked",
+        "e\u00a0asked",
+        "ratio",
     ),
     "time_of_max_indentation_s": Column("s", "time of the largest indentation"),
     "time_of_max_force_s": Column("s", "time of the largest contact force"),
@@ -69,7 +85,7 @@ VIBRATION_IMPACT_COLUMNS: dict[str, Column] = {
     ),
     "sensitivity": Column(
         "1",
-        "relative change of the impact, for a small relative change of the drop's height or speed",
+        "relative change of the impact over the small relative change of the drop's height or speed that causes it",
         "Sensitivity",
         "sensitivity",
         "factor",
@@ -79,22 +95,25 @@ VIBRATION_IMPACT_COLUMNS: dict[str, Column] = {
 
 HISTORY_COLUMNS: dict[str, Column] = {
     "time_s": Column("s", "time since the start"),
-    "position_m": Column("m", "height of the sphere's centre above the plate's upper surface"),
+    "position_m": Column("m", "height of the sphere's centre above the plate's upper surface at rest, if shaken above its mean position"),
     "velocity_m_s": Column("m/s", "velocity of the sphere, upwards"),
     "acceleration_m_s2": Column("m/s2", "acceleration of the sphere, upwards"),
     "force_N": Column("N", "contact force on the sphere, upwards"),
     "indentation_m": Column("m", "indentation, zero without contact; negative where an adhesive contact is stretched"),
-    "kinetic_J": _held("kinetic energy of the sphere, and of a liquid that moves along", "Kinetic energy of the sphere", "kinetic"),
+    "kinetic_J": _held(
+        "kinetic energy of the sphere's centre, and of a liquid that moves along", "Kinetic energy of the sphere", "kinetic"
+    ),
     "potential_J": _held(
-        "potential energy of the sphere, zero at first touch of the undeformed plate",
-        "Potential energy of the sphere, zero at the height of first touch",
+        "potential energy of the sphere by its weight less buoyancy, zero where it touches the undeformed plate in its mean position, "
+        "if inclined at its place at the start",
+        "Potential energy of the sphere, zero where it touches the undeformed plate",
         "potential",
     ),
     "contact_elastic_J": _held("energy stored in the contact", "Stored in the contact", "stored in the contact"),
     "contact_dissipated_J": _lost(
-        "energy lost so far in the damping of the contact, and when an adhesive contact breaks",
-        "Lost in the damping of the contact, or when an adhesive contact broke",
-        "damping and adhesion",
+        "energy lost so far in the contact: by its damping, when an adhesive contact breaks, and by a law without a force",
+        "Lost in the contact: by damping, when adhesion broke, or by a law without a force",
+        "loss in the contact",
     ),
     "plastic_work_J": _lost("energy lost so far in plastic deformation", "Lost in plastic deformation", "plastic work"),
     "written_off_at_rest_J": _held(
@@ -114,17 +133,21 @@ VIBRATION_HISTORY_COLUMNS: dict[str, Column] = {
     "sphere_damping_J": _lost(
         "energy lost so far in the damping of the sphere's modes", "Lost in the damping of the sphere's modes", "damping of the sphere"
     ),
-    "sphere_rotational_J": Column("J", "kinetic energy of the sphere's rotation"),
-    "plate_kinetic_J": _held("kinetic energy of the plate", "Kinetic energy of the plate"),
+    "sphere_rotational_J": Column("J", "part of sphere_vibration_J in rigid-body rotation of the sphere by its modes"),
+    "plate_kinetic_J": _held("kinetic energy of the plate, if shaken of the motion that impacts excite", "Kinetic energy of the plate"),
     "plate_strain_J": _held(
-        "strain energy of the plate's modes, from its rest position under its own weight",
+        "strain energy of the plate's modes, from its rest position under its own weight, if shaken of the motion that impacts excite",
         "Strain energy of the plate's modes, from its rest position",
     ),
     "plate_damping_J": _lost(
-        "energy lost so far in the damping of the plate's modes", "Lost in the damping of the plate's modes", "damping of the plate"
+        "energy lost so far in the damping of the plate's modes, if shaken of the motion that impacts excite",
+        "Lost in the damping of the plate's modes",
+        "damping of the plate",
     ),
     "plate_rotational_J": Column("J", "part of the plate's kinetic energy in its rigid-body rotation"),
-    "plate_potential_J": Column("J", "change of the plate's potential energy, balanced by the strain energy of its own weight"),
+    "plate_potential_J": Column(
+        "J", "change of the plate's potential energy by the motion that impacts excite, balanced by the strain energy of its own weight"
+    ),
     "plate_displacement_m": Column("m", "displacement of the plate's centre of mass, upwards"),
     "plate_velocity_m_s": Column("m/s", "velocity of the plate's centre of mass, upwards"),
     "plate_acceleration_m_s2": Column("m/s2", "acceleration of the plate's centre of mass, upwards"),
@@ -133,14 +156,14 @@ VIBRATION_HISTORY_COLUMNS: dict[str, Column] = {
 """Further columns of a history, where a body vibrates."""
 
 SHAKEN_IMPACT_COLUMNS: dict[str, Column] = {
-    "plate_velocity_m_s": Column("m/s", "velocity of the plate's surface at first touch, upwards, of its own motion"),
+    "plate_velocity_m_s": Column("m/s", "velocity of the plate's surface at first touch, upwards, as its supports alone move it"),
     "plate_work_J": Column("J", "work of the prescribed motion of the plate by the contact force, from first touch to release"),
 }
 """Further columns of the impact table, where the plate is shaken."""
 
 SHAKEN_HISTORY_COLUMNS: dict[str, Column] = {
-    "surface_m": Column("m", "position of the plate's surface at the contact point by its own motion, upwards from its mean"),
-    "surface_velocity_m_s": Column("m/s", "velocity of the plate's surface at the contact point by its own motion, upwards"),
+    "surface_m": Column("m", "position of the plate's surface at the contact point as its supports alone move it, upwards from its mean"),
+    "surface_velocity_m_s": Column("m/s", "velocity of the plate's surface at the contact point as its supports alone move it, upwards"),
     "drive_J": _held(
         "minus the work that the moving plate has done so far: energy from its drive is negative",
         "Energy to the drive of the plate, negative from it",

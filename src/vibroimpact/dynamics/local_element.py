@@ -15,7 +15,7 @@ from vibroimpact.errors import ComputationError, InputError
 _WITHIN = 1e-9  # relative, of force and speed
 _SWEEPS = 40
 _STEP = 1e-4  # relative, of difference quotients
-_LOSSES = np.geomspace(0.02, 50.0, 8)  # damping over that of a critical oscillator of the sphere's mass, to search
+_LOSSES = (1e-4, *np.geomspace(0.02, 50.0, 8).tolist())  # damping over that of a critical oscillator of the sphere's mass, to search
 
 
 def identify_local_element(
@@ -83,6 +83,11 @@ def identify_local_element(
             stiffness, damping = np.exp(found).tolist()
             return stiffness, damping
     reached = _reached(outcome, max_force, soft, mass)
+    if not reached or min(reached) <= wanted[1] <= max(reached):
+        raise InputError(
+            f"no local element was found that gives both a largest force of {max_force:.5g} N and a rebound of {rebound:.5g} {unit}; see "
+            "whether both are of one impact, and in these units"
+        )
     raise InputError(
         f"no local element gives both: with a largest force of {max_force:.5g} N the rebound can be {min(reached):.3g} to "
         f"{max(reached):.3g} {unit}, and {rebound:.5g} {unit} was measured"
@@ -150,21 +155,24 @@ def _newton(function: Callable[[Floats], Floats], start: Floats) -> Floats | Non
             else:
                 return None
             place, value = place - step, new
-    except (np.linalg.LinAlgError, ComputationError):
+    except (np.linalg.LinAlgError, ComputationError, InputError):  # an element too soft or too stiff for a number
         return None
     return None
 
 
 def _reached(outcome: Callable[[tuple[float, float]], Floats], max_force: float, soft: float, mass: float) -> list[float]:
-    """Return the rebounds of elements that give the measured force, from low to high damping."""
+    """Return the rebounds of elements that give the measured force, from low to high damping; empty if none is found."""
     reached = []
     for loss in _LOSSES:
         low, high = 1e-6 * soft, 1e6 * soft
         for _ in range(40):  # bisection: the force grows with the stiffness, as the damping is a fixed multiple of critical damping
             middle = float(np.sqrt(low * high))
-            force, rebound = outcome((middle, 2.0 * loss * float(np.sqrt(middle * mass)))).tolist()
+            try:
+                force, rebound = outcome((middle, 2.0 * loss * float(np.sqrt(middle * mass)))).tolist()
+            except (ComputationError, InputError):  # too soft or too stiff to be computed
+                break
             low, high = (low, middle) if force > max_force else (middle, high)
             if abs(force / max_force - 1.0) < 1e-3:
                 reached.append(rebound)
                 break
-    return reached or [float("nan")]
+    return reached

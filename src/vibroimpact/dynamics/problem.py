@@ -157,14 +157,19 @@ class Problem:
             object.__setattr__(self, "laws", (self.laws,))
         one_kind = isinstance(self.laws, (tuple, list)) and len({type(law) for law in self.laws}) == 1
         if not one_kind or not isinstance(self.laws[0], ContactLaw):
-            raise InputError("laws must be one or more contact laws, all of one kind")
+            example = 'such as vi.find_contact_law("newton")(restitution=0.7)'
+            raise InputError(f"laws must be one or more contact laws with their parameters, {example}, all of one kind")
         for name in self.by_speed:
             if name not in {item.name for item in fields(self.laws[0])}:
                 raise InputError(f"{self.laws[0].name} has no parameter {name} that could be a function of the approach speed")
-        for name in ("height", "velocity", "speed", "gravity", "duration", "rest_speed", "tolerance"):
+        for name in ("height", "velocity", "speed", "gravity", "rest_speed"):
             value = getattr(self, name)
             if value is not None and np.asarray(value).dtype.kind not in "iuf":
                 raise InputError(f"{name} must be a number in SI, or an array of them, not {value!r}")
+        for name in ("duration", "tolerance"):
+            value = getattr(self, name)
+            if value is not None and (np.asarray(value).dtype.kind not in "iuf" or np.ndim(value) > 0):
+                raise InputError(f"{name} must be a number in SI, one for all drops of a batch, not {value!r}")
         if (self.height is None) == (self.speed is None):
             raise InputError("give either height [m] or speed [m/s] of the drop, and not both")
         if not (np.all(np.isfinite(self.sphere.mass)) and np.all(np.isfinite(self.sphere.contact_offset))):
@@ -194,10 +199,11 @@ class Problem:
         if self.local_element is not None and not all(0.0 < value < np.inf for value in self.local_element):
             raise InputError("stiffness and damping of the local element must be greater than 0 and finite")
         if self.plate.rigid is not None and np.any(np.asarray(self.gravity) > 0):
-            raise InputError("nothing holds the plate, so that it falls away from under the sphere: set gravity to 0, and give speed")
+            words = "the supports let the plate fall or tilt: under gravity it falls away from under the sphere"
+            raise InputError(f"{words}; set gravity to 0, and give speed")
         self._check_motion()
         if self.vibrates and isinstance(self.laws[0], InstantaneousLaw):
-            raise InputError(f"{self.laws[0].name} gives no force, and bodies that deform need one; take another law")
+            raise InputError(f"{self.laws[0].name} gives no force, and bodies that deform or are free need one; take another law")
         if self.oblique is not None and not isinstance(self.oblique, Oblique):
             raise InputError(f"oblique must be an Oblique, not {self.oblique!r}")
         if self.oblique is not None and not np.all(np.asarray(self.sphere.contact_offset) > 0.0):
@@ -242,7 +248,8 @@ class Problem:
         if not isinstance(self.motion, PlateMotion):
             raise InputError(f"motion must be a PlateMotion, not {self.motion!r}")
         if self.plate.rigid is not None:
-            raise InputError("nothing holds the plate, so that no motion of supports reaches it; leave out its motion")
+            words = "the supports let the plate fall or tilt, and a motion of supports is that of a plate that they hold"
+            raise InputError(f"{words}; leave out its motion")
         if len(self.motion.phasors) > 1 and self.duration is None:
             raise InputError("a sphere may ride for ever on a motion of several harmonics: give the duration of the run")
         modes = self.plate.modes
@@ -275,7 +282,9 @@ class Problem:
             raise InputError("a sphere that touches in a liquid needs a radius: its contact_offset, greater than 0 m")
         if self.laws[0].free_parameter != "restitution":
             optional = any(item.name == "restitution" for item in fields(self.laws[0]))
-            words, remedy = ("is given without a", "give it one, or take another law") if optional else ("takes no", "take another law")
+            words, remedy = "takes no", "take another law"
+            if optional:
+                words, remedy = "is given without a", f"give it one in place of {self.laws[0].free_parameter}, or take another law"
             raise InputError(f"{self.laws[0].name} {words} restitution, of which a liquid leaves a part; {remedy}")
         if self.air is not None:
             raise InputError("the sphere is either in a liquid or in air; leave one of them out")

@@ -20,6 +20,7 @@ from vibroimpact.dynamics.columns import (
     VIBRATION_HISTORY_COLUMNS,
     meanings,
 )
+from vibroimpact.dynamics.end_in_words import end_in_words
 from vibroimpact.dynamics.energy import why_failed
 from vibroimpact.dynamics.fluid_history import MOTION, fluid_history
 from vibroimpact.dynamics.history_grid import points_kept, thinned
@@ -176,7 +177,7 @@ class Response:
         flat = times.ravel()
         end = float(self.end_time[0])
         if not np.all((flat >= 0.0) & (flat <= end)):
-            raise InputError(f"times must lie within the run, 0 to {end:.6g} s")
+            raise InputError(f"times must lie within the run, 0 to {end_in_words(end)} s")
         starts = self._starts
         index = np.maximum(np.searchsorted(starts, flat, side="right") - 1, 0)
         found = {name: np.empty(flat.shape) for name in self._names(columns)}

@@ -154,7 +154,7 @@ def law_achieving(law: Law, restitution: Array, mass: Array, speed: Array) -> La
         now = np.asarray(achieved_restitution(law, mass, speed))
         if np.all(np.abs(now - wanted) <= 1e-12):
             return law
-        raise InputError(f"{law.name} has no loss parameter; it achieves {_between(now)}, not {_between(wanted)}")
+        raise InputError(f"{law.name} has no loss parameter; it achieves {_between(now)}, not {_between(wanted, 12)}")
     shape = np.broadcast_shapes(_shape(law, mass, speed), wanted.shape)
     allowed: Range = next(item for item in fields(law) if item.name == name).metadata["range"]
 
@@ -171,20 +171,33 @@ def law_achieving(law: Law, restitution: Array, mass: Array, speed: Array) -> La
         first = np.flatnonzero(missed.ravel())[0]
         numbers = (float(np.broadcast_to(value, shape).ravel()[first]) for value in (found.least, found.most, speed, wanted))
         least, most, at, asked = numbers
-        reach = f"up to {most:.4g}" if damps and asked > most else f"from {least:.4g} to {most:.4g}"
+        highest = _apart(most, asked)
+        reach = f"up to {highest}" if damps and asked > most else f"from {_apart(least, asked)} to {highest}"
         raise InputError(f"{law.name} reaches restitutions {reach} at {at:.4g} m/s, not {asked:g}")
     return law.changed({name: found.place if shape else float(found.place)})
 
 
-def _between(values: Array) -> str:
+def _between(values: Array, digits: int = 4) -> str:
     least, most = float(np.min(values)), float(np.max(values))
-    return f"{least:.4g}" if least == most else f"{least:.4g} to {most:.4g}"
+    return f"{least:.{digits}g}" if least == most else f"{least:.{digits}g} to {most:.{digits}g}"
+
+
+def _apart(value: float, asked: float) -> str:
+    """Return a value in four digits, or in as many as show on which side of the value asked for it lies.
+
+    Examples
+    --------
+    >>> _apart(0.662871, 0.5), _apart(0.9999702, 1.0)
+    ('0.6629', '0.99997')
+    """
+    texts = (f"{value:.{digits}g}" for digits in range(4, 17))
+    return next((text for text in texts if float(text) != asked and (float(text) < asked) == (value < asked)), f"{value:.4g}")
 
 
 def _shape(law: ContactLaw, mass: Array, speed: Array) -> tuple[int, ...]:
     """Return the common shape of the validated arguments."""
     if not isinstance(law, ContactLaw):
-        raise InputError(f"law must be a contact law with its parameters, such as Hertz(stiffness=5e8), not {law!r}")
+        raise InputError(f'law must be a contact law with its parameters, such as vi.find_contact_law("hertz")(stiffness=5e8), not {law!r}')
     for name, value, unit in (("mass", mass, "kg"), ("speed", speed, "m/s")):
         try:
             Range(above=0).check(value, unit)

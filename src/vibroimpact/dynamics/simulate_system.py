@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.arrays import Bools, Floats
+from vibroimpact.dynamics.end_in_words import end_in_words
 from vibroimpact.dynamics.system import MovingBody, System
 from vibroimpact.dynamics.vibrating.active_contact import ContactDefinition
 from vibroimpact.dynamics.vibrating.free_motion import FreePhase
@@ -150,7 +151,7 @@ class SystemResponse:
         except (TypeError, ValueError, OverflowError):
             found = np.full(1, np.nan)
         if not np.all((found >= 0.0) & (found <= self.end_time)):
-            raise InputError(f"times must be numbers within the run, 0 to {self.end_time:.6g} s")
+            raise InputError(f"times must be numbers within the run, 0 to {end_in_words(self.end_time)} s")
         return found
 
     @cached_property
@@ -200,7 +201,7 @@ def simulate_system(system: System, *, duration: float, progress: Callable[[floa
     Raises
     ------
     InputError
-        If the duration is not a number in range, or no surfaces can ever touch.
+        If the duration is not a number in range, or no contact can ever bear a force.
     ComputationError
         If a contact can't be integrated to the tolerance, the energy balance does not close, or contacts follow each other without end.
 
@@ -222,8 +223,8 @@ def simulate_system(system: System, *, duration: float, progress: Callable[[floa
     linear, start = system.linear()
     if not (linear.rates(start) > 0.0).any() and not (linear.gravity > 0.0).any():
         raise InputError(
-            "no surfaces will ever touch: none approach each other at the start, and gravity, if there is any, does not bring the bodies "
-            "of a contact together; give a body a velocity, or hold one"
+            "no contact will ever bear a force: no surfaces approach each other at the start, and gravity, if there is any, does not "
+            "bring the bodies of a contact together; give a body a velocity, or hold one"
         )
     march = March(
         linear, [ContactDefinition(one.law, one.series, not one.same_spot) for one in system.contacts.values()], start, system.tolerance

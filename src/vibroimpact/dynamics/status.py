@@ -123,6 +123,8 @@ def _at_rest(run: Ended) -> str:
         return f"from {when} s on it has too little energy left to break the adhesion, and sticks.{vibration}"
     speed, last = float(run.rest.speed[0]), float(run.impacts["separation_speed_m_s"][-1])
     limit = f" Bounces with the last restitution would end at {when} s." if np.isfinite(time) else ""
+    if not last:
+        return f"it did not leave again (rest-speed rule).{vibration}"
     return f"it left at {_shown(run, last, 3)} m/s, below the rest speed of {speed:.3g} m/s (rest-speed rule).{limit}{vibration}"
 
 

@@ -72,7 +72,7 @@ class MovingBody:
             _check_modes(self.modes)
         moves = np.any(self.velocity) or np.any(self.angular_velocity)
         if moves and np.isinf(self.mass):
-            raise InputError("a body that is held, of infinite mass, has no velocity")
+            raise InputError("a body that is held, of infinite mass, has no velocity and no angular_velocity")
         if np.any(self.angular_velocity) and self.inertia is None:
             raise InputError("a body without an inertia does not turn: give inertia [kg m^2], or no angular_velocity")
 
@@ -137,7 +137,9 @@ class PointContact:
                 raise InputError(f"{name} must be the name of a body, not {getattr(self, name)!r}")
         if not isinstance(self.law, CompliantLaw):
             if not isinstance(self.law, ContactLaw):
-                raise InputError(f"law must be a contact law with its parameters, such as Hertz(stiffness=5e8), not {self.law!r}")
+                raise InputError(
+                    f'law must be a contact law with its parameters, such as vi.find_contact_law("hertz")(stiffness=5e8), not {self.law!r}'
+                )
             raise InputError(f"the law of a contact of a system must give a force, which {self.law!r} does not")
         if any(np.ndim(getattr(self.law, item.name)) for item in fields(self.law)):
             raise InputError("the parameters of the law of a contact must be numbers: a system is one, and no batch")

@@ -73,5 +73,7 @@ def _chart(name: str, body: BodyModes) -> Chart:
     panels += [blank] * (-number % columns)
     rows = tuple(tuple(panels[start : start + columns]) for start in range(0, len(panels), columns))
     title = f"Modes of the {name}" if number > 1 else f"The mode of the {name}"
-    caption = f"The first {number} of {len(model.frequencies)} modes, each drawn as large as the others; which way is up is arbitrary."
+    way = "up" if flat else "outwards"
+    drawn = f"The first {number} of {len(model.frequencies)} modes, each drawn as large as the others" if number > 1 else "The lowest mode"
+    caption = f"{drawn}; which way is {way} is arbitrary."
     return Chart(f"{name}_modes", title, rows, caption, _WIDTH * shape + _TITLE, f"The {name} is {size}. {meaning}")

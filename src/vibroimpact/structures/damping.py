@@ -61,9 +61,10 @@ class RatioTable:
 
     def __post_init__(self) -> None:
         if len(self.frequencies) != len(self.damping_ratios) or not self.frequencies:
+            given, ratios = len(self.frequencies), len(self.damping_ratios)
             raise InputError(
-                f"{len(self.frequencies)} frequencies and {len(self.damping_ratios)} ratios do not make a table; "
-                "give one ratio for each frequency"
+                f"{given} frequenc{'y' if given == 1 else 'ies'} and {ratios} ratio{'' if ratios == 1 else 's'} do not make a table; "
+                "give one frequency or more, and one ratio for each"
             )
         if np.any(np.diff(self.frequencies) <= 0.0):
             raise InputError("the frequencies of the table must ascend", "frequencies")
@@ -71,6 +72,8 @@ class RatioTable:
     @property
     def description(self) -> str:
         """Short description for users."""
+        if len(self.frequencies) == 1:
+            return f"damping ratio {self.damping_ratios[0]:g} of every mode"
         return f"a table of {len(self.frequencies)} ratios from {self.frequencies[0]:g} to {self.frequencies[-1]:g} Hz"
 
     def ratios(self, frequencies: Floats) -> Floats:
@@ -121,14 +124,14 @@ class Rayleigh:
 
 @dataclass(frozen=True)
 class LossFactor:
-    """Loss factor of the material [-]: for light damping twice the damping ratio."""
+    """Loss factor [-], of the material or given: for light damping twice the damping ratio."""
 
     loss_factor: float
 
     @property
     def description(self) -> str:
         """Short description for users."""
-        return f"loss factor {self.loss_factor:g} of the material, damping ratio {0.5 * self.loss_factor:g}"
+        return f"loss factor {self.loss_factor:g}, damping ratio {0.5 * self.loss_factor:g} of every mode"
 
     def ratios(self, frequencies: Floats) -> Floats:
         """Return half the loss factor for each mode."""

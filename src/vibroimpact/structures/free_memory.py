@@ -21,20 +21,28 @@ def check_memory(need: float, what: str, remedy: str = "ask for fewer, or use la
     """
     free = free_memory()
     if need > _PART_OF_MEMORY * free:
+        there = "are free" if _available() is not None else "are built in"
         raise InputError(
-            f"{what} about {need / 1e9:.2g} GB of memory, and {free / 1e9:.2g} GB are free, "
+            f"{what} about {need / 1e9:.2g} GB of memory, and {free / 1e9:.2g} GB {there}, "
             f"of which {100.0 * _PART_OF_MEMORY:g} % may be used; {remedy}"
         )
 
 
 def free_memory() -> float:
     """Return the free memory [bytes]; where the system does not tell, its total memory, or infinity."""
-    try:
-        text = Path("/proc/meminfo").read_text(encoding="ascii")
-        return 1024.0 * float(text.split("MemAvailable:")[1].split()[0])
-    except (OSError, IndexError, ValueError):
-        pass
+    found = _available()
+    if found is not None:
+        return found
     try:
         return float(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
     except (AttributeError, OSError, ValueError):
         return math.inf
+
+
+def _available() -> float | None:
+    """Return the free memory [bytes]; None where the system does not tell."""
+    try:
+        text = Path("/proc/meminfo").read_text(encoding="ascii")
+        return 1024.0 * float(text.split("MemAvailable:")[1].split()[0])
+    except (OSError, IndexError, ValueError):
+        return None

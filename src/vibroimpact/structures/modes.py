@@ -132,8 +132,8 @@ class ElasticSystem:
         size, most = self.stiffness.shape[0], max_modes(self.mass, self.rigid.shape[1])
         if not 1 <= number <= most:
             raise InputError(
-                f"{number} modes are not to be had from {size} degrees of freedom; ask for 1 to {most}"
-                + ("" if number < 1 else ", or use smaller elements")
+                f"{number} modes are not to be had from {size} degrees of freedom; "
+                + " or ".join(([f"ask for 1 to {most}"] if most > 0 else []) + (["use smaller elements"] if number > most else []))
             )
         if size <= _DENSE:
             return self._dense(number)
@@ -159,9 +159,9 @@ class ElasticSystem:
             shape /= np.sqrt(shape @ (self.mass @ shape))
         if not shape @ (self.stiffness @ shape) > _ROUNDING * highest:
             raise ComputationError(
-                "the stiffness matrix is singular: part of the body can move without resistance, as a hinge does; "
-                "look for elements that share only an edge or a node, or for equations between nodes that lie apart: "
-                "replace these by *TIE, or by one RBE2 of all the nodes, which turn with the body"
+                "the stiffness matrix is singular: part of the body can move without resistance, as a hinge does, or all of it can on "
+                "springs that are next to none; look for such springs, for elements that share only an edge or a node, or for equations "
+                "between nodes that lie apart: replace these by *TIE, or by one RBE2 of all the nodes, which turn with the body"
             )
 
     def _dense(self, number: int) -> Eigenmodes:

@@ -191,7 +191,9 @@ def _material_of_layer(mesh: Mesh, recipe: Recipe, place: tuple[float, float], t
     """
     found = materials_around(mesh, _material(recipe), place, _RADIUS * thickness)
     if len(found) > 1:
-        kinds = ", ".join(f"{one.density:.4g} kg/m3, {one.youngs_modulus:.3g} Pa" for one in found[:3])
+        kinds = "; ".join(f"{one.density:.4g} kg/m3, {one.youngs_modulus:.3g} Pa" for one in found[:3]) + (
+            "; ..." if len(found) > 3 else ""
+        )
         raise InputError(
             f"around ({place[0]:g}, {place[1]:g}) m the body is of {len(found)} materials ({kinds}), and its static compliance under a "
             'contact is known where it is of one; give contact.local_compliance = "superposed", which takes the modes as they are'

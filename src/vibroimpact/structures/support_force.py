@@ -97,9 +97,10 @@ def support_force_key(recipe: Recipe, place: tuple[float, float], side: Side, sp
 def computed_support_forces(recipe: Recipe, place: tuple[float, float], side: Side, spots: Sequence[Spot]) -> SupportForces:
     """Return the forces of supports, computed anew; parameters and errors are those of `support_forces`."""
     structure, _, displacements = responses_to_spread_forces(recipe, [place], side, lambda _, thickness: spread_at_face(recipe, thickness))
-    _refuse_joints(structure, recipe.supports)
+    watched = [support_at(structure, recipe.supports, spot) for spot in spots]
+    _refuse_joints(structure, [recipe.supports[number] for number in watched])
     shares = _shares(structure, recipe.supports)
-    rows = [shares[support_at(structure, recipe.supports, spot)] for spot in spots]
+    rows = [shares[number] for number in watched]
     stiffness, mass = (np.array([(row @ matrix).toarray() for row in rows]) for matrix in (structure.stiffness, structure.mass))
     return SupportForces(stiffness, mass, stiffness @ displacements[:, 0])
 
@@ -137,7 +138,7 @@ def _nodes(structure: Structure, support: Support) -> Integers:
 
 
 def _refuse_joints(structure: Structure, supports: Sequence[Support]) -> None:
-    """Raise if a support holds a node that is joined to others.
+    """Raise if a support whose force is asked for holds a node that is joined to others.
 
     Raises
     ------

@@ -25,7 +25,7 @@ def _forces(delta: Array, delta_dot: Array, approach_speed: Array, coefficients:
 class AdamsPoisson(TwoPhaseLaw):
     r"""Penalty spring with Poisson's hypothesis: the impulse of restitution is e times that of compression.
 
-    .. math:: F = p\, \delta \ \text{on approach},\qquad F = e^2 p\, \delta \ \text{on the way out}
+    .. math:: F = p\, \delta \ \text{up to the first turn},\qquad F = e^2 p\, \delta \ \text{after it}
 
     Notes
     -----
@@ -45,11 +45,11 @@ class AdamsPoisson(TwoPhaseLaw):
     """
 
     name = "adams-poisson"
-    equation = "F = p delta on approach, e^2 p delta on the way out"
+    equation = "F = p delta until the indentation first turns, e^2 p delta from then on"
     source = "MSC Adams/Solver guide, statement CONTACT (parameters)"
     departure = (
         "The course of the force is this software's: what happens within the contact (force, penetration, duration) is that of a linear "
-        "spring and is no prediction of Adams."
+        "spring, softer once the indentation has turned, and is no prediction of Adams."
     )
     contact_end = "zero-indentation"
     tension = "none"

@@ -21,11 +21,11 @@ class Jankowski(RestitutionForMassLaw, SphereLaw, TwoPhaseLaw):
     .. math:: F = K \delta^{3/2} + 2 \xi \sqrt{m K \sqrt\delta}\, \dot\delta,\qquad
               \xi = \frac{9 \sqrt5}{2}\, \frac{1 - e^2}{e\, [e\, (9\pi - 16) + 16]}
 
-    on approach, and :math:`F = K \delta^{3/2}` on the way out.
+    The dashpot acts until the indentation first turns; from then on :math:`F = K \delta^{3/2}`.
 
     Notes
     -----
-    The damping ratio is approximate: 0.5 gives 0.495, 0.3 gives 0.292. On the way out nothing is lost.
+    The damping ratio is approximate: 0.5 gives 0.495, 0.3 gives 0.292. Once the indentation has turned, nothing is lost.
 
     References
     ----------
@@ -44,7 +44,10 @@ class Jankowski(RestitutionForMassLaw, SphereLaw, TwoPhaseLaw):
     """
 
     name = "jankowski"
-    equation = "F = K delta^1.5 + 2 xi sqrt(m K sqrt(delta)) delta_dot on approach, xi = 9 sqrt(5)/2 (1 - e^2) / (e [e (9 pi - 16) + 16])"
+    equation = (
+        "F = K delta^1.5 + 2 xi sqrt(m K sqrt(delta)) delta_dot until the indentation first turns, K delta^1.5 from then on, "
+        "xi = 9 sqrt(5)/2 (1 - e^2) / (e [e (9 pi - 16) + 16])"
+    )
     source = "Jankowski 2006, Earthquake Eng. Struct. Dyn. 35:517"
     contact_end = "zero-indentation"
     tension = "none"

@@ -70,15 +70,20 @@ class Oblique:
             if not all(_are_numbers(value) for value in values):
                 raise InputError(f"{name} of an oblique drop must be finite numbers in SI, not {values!r}")
         if self.friction is not None and not isinstance(self.friction, FrictionLaw):
-            raise InputError(f"friction must be a friction law, as vi.find_friction_law(...) gives it, not {self.friction!r}")
+            raise InputError(
+                'friction must be a friction law with its parameters, such as vi.find_friction_law("coulomb")(coefficient=0.3), '
+                f"not {self.friction!r}"
+            )
         if not (_are_numbers(self.inertia_ratio) and np.all(np.asarray(self.inertia_ratio) > 0.0)):
             raise InputError(f"inertia_ratio must be greater than 0 and finite, not {self.inertia_ratio!r}")
         if self.size is not None:
-            pair = isinstance(self.size, (tuple, list)) and len(self.size) == 2
+            pair = isinstance(self.size, (tuple, list, np.ndarray)) and len(self.size) == 2
             if not (pair and all(np.ndim(side) == 0 and _are_numbers(side) and side > 0.0 for side in self.size)):
                 raise InputError(f"size is the length and the width of the plate, greater than 0 m and finite, not {self.size!r}")
             if any(np.any(np.abs(at) > 0.5 * side) for at, side in zip(self.position, self.size, strict=True)):
-                raise InputError("position lies outside the plate, whose size reaches from its centre to both sides")
+                raise InputError(
+                    "position lies outside the plate: from its centre the plate reaches half its length along x and half its width along y"
+                )
 
     @property
     def values(self) -> list[Array]:

@@ -151,14 +151,16 @@ def responses_at(problem: Problem, sensors: Sequence[Sensor], duration: float, s
 
 def _check(sensors: Sequence[Sensor]) -> None:
     """Raise InputError unless sensors have one rate, and hear the plate where they are through a filter."""
-    if len({sensor.rate for sensor in sensors}) != 1:
+    if not sensors:
+        raise InputError("there is no sensor; give one or more", "sensors")
+    if len({sensor.rate for sensor in sensors}) > 1:
         raise InputError("the sensors have different rates; take sensors of one rate", "sensors")
     for sensor in sensors:
         if isinstance(sensor.instrument, Microphone):
             raise InputError(f'sensor "{sensor.name}": a microphone measures the sound of the whole plate; use sensors on it', "sensors")
         if sensor.filter == "none":
             words = "without an anti-alias filter frequencies above half the rate are aliased into the band"
-            raise InputError(f'sensor "{sensor.name}": {words}; state its filter', "sensors")
+            raise InputError(f'sensor "{sensor.name}": {words}; give it the filter "sigma-delta" or "butterworth"', "sensors")
 
 
 def _responses(problem: Problem, sensor: Sensor, duration: float, ports: Floats, shapes: Floats) -> Floats:

@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from vibroimpact.structures.modal_model import ModalBasis  # which loads sparse matrices
 
 MOST_SAMPLES = 100_000_000
-"""Largest number of samples of one sensor; more do not fit into memory."""
+"""Largest number of samples of all sensors, or by which the clipping of one is followed; more do not fit into memory."""
 _NONE = np.zeros(3)
 _WIDER = 8
 """Multiple of the rate: samples without a filter are taken to contain frequencies up to half of it."""
@@ -91,7 +91,7 @@ def _check(problem: Problem, sensors: Sequence[Sensor], end: float) -> None:
     """Raise InputError if the plate is rigid and at rest, lacks a point, or there would be too many samples."""
     modes = problem.plate.modes
     if modes is None and problem.motion is None:
-        raise InputError("the plate is rigid, so that its points do not move; give it modes", "sensors")
+        raise InputError("the plate has neither modes nor supports that move: its sensors record nothing; give it modes", "sensors")
     for sensor in sensors:
         if isinstance(sensor.instrument, (ForceSensor, Microphone)) and problem.motion is not None:
             words = "microphones and force sensors are for plates whose supports are at rest; leave out the sensor, or the motion"
@@ -99,7 +99,7 @@ def _check(problem: Problem, sensors: Sequence[Sensor], end: float) -> None:
         _check_place(modes, sensor)
         meter = _limited(sensor)
         rate = sensor.rate if meter is None else finer_rate(sensor.rate, meter.resonance)
-        count = sample_count(end, rate) * (len(sensors) if rate == sensor.rate else 1)
+        count = sum(sample_count(end, one.rate) for one in sensors) if rate == sensor.rate else sample_count(end, rate)
         if count > MOST_SAMPLES:
             whose, remedy = "of all sensors", "ask for a lower rate or a shorter run"
             if rate != sensor.rate:

@@ -78,7 +78,8 @@ class Sensor:
         if isinstance(self.instrument, Microphone) and self.filter != "sigma-delta":
             raise InputError('a microphone has the filter "sigma-delta"; leave out the filter', "filter")
         if self.corner is not None and self.filter != "butterworth":
-            raise InputError(f'the filter "{self.filter}" takes no corner; leave it out, or take "butterworth"', "corner")
+            other = "" if isinstance(self.instrument, Microphone) else ', or take "butterworth"'  # a microphone has no other filter
+            raise InputError(f'the filter "{self.filter}" takes no corner; leave it out{other}', "corner")
         if self.corner is not None and self.corner >= 0.5 * self.rate:
             words = (
                 f"{self.corner:g} Hz is not allowed; it must be below half of the {self.rate:g} samples per second, since what is faster"

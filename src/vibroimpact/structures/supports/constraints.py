@@ -155,8 +155,9 @@ class Constraints:
         """Add distributed springs between the lower face of plate elements and the ground, or a body."""
         mesh = self.structure.mesh
         elements = elements_within(mesh, nodes)
-        if body is not None and np.isin(elements, self._bedded).any():
-            self._refuse(int(nodes[0]))
+        shared = elements[np.isin(elements, self._bedded)]
+        if body is not None and len(shared):
+            self._refuse(int(mesh.blocks[0].connectivity[shared[0]].flat[0]))
         elements = np.setdiff1d(elements, self._bedded)  # one bed where patches overlap
         self._bedded = np.concatenate([self._bedded, elements])
         stiffness = kron(area_products(mesh, elements), diags_array([bed[0], bed[0], bed[1]]), format="csr")
