@@ -271,7 +271,7 @@ FILES = [
     ("angle [deg],tangential_restitution\n30,0.7\n", "the columns angle, tangential_restitution do not give the approach of the sphere"),
     ("angle [deg],speed [m/s]\n30,3\n", "what was measured after the impacts is missing; give one of tangential_restitution"),
     ("angle [deg],speed [m/s],tangential_restitution\n95,3,0.7\n", "line 2: angle is 95 deg"),
-    ("angle [deg],speed [m/s],tangential_restitution\n30,-3,0.7\n", "line 2: speed is -3; it must be greater than 0"),
+    ("angle [deg],speed [m/s],tangential_restitution\n30,-3,0.7\n", "line 2: speed is -3 m/s; it must be greater than 0"),
     ("angle [deg],speed [m/s],tangential_restitution\n30,3,0.7\n0,3,0.7\n", "line 3: a sphere that does not move along the plate has no"),
     ("angle [m],speed [m/s],tangential_restitution\n30,3,0.7\n", 'column "angle [m]"'),
     ("angle,speed [m/s],tangential_restitution\n30,3,0.7\n", 'column "angle": the unit is missing'),

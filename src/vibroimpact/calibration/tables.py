@@ -108,7 +108,7 @@ def fit_sentences(found: Calibration) -> list[str]:
         way = f"by bootstrap with {found.bootstrap} draws" if found.bootstrap else "to first order"
         if found.intervals is not None:
             told.append(f"Intervals are {way}, from {seen.noise_from if seen.deviations_known else 'the scatter of the measurement'}.")
-        if seen.effects is not None:
+        if seen.effects is not None and (found.intervals is not None or np.isfinite(half).all()):
             told.append(inputs_sentence(seen.effects.inputs))
         if seen.deviations_known and np.isfinite(fit.scatter):
             told.append(f"Residuals are {digits(fit.scatter, 3)} times as large as their standard deviations.")
