@@ -15,6 +15,7 @@ from scipy.stats import t as students_t
 import vibroimpact as vi
 from support import one_in
 from vibroimpact.calibration.charts import calibration_charts
+from vibroimpact.calibration.friction.tables import friction_sentences
 from vibroimpact.charts.marks import Line, Points
 from vibroimpact.exporting.load_drop import load_drop
 
@@ -110,6 +111,17 @@ def test_what_has_no_influence_stays_as_given(tmp_path: Path) -> None:
     assert found.values == pytest.approx([0.1, 0.3], rel=1e-6)
     assert found.intervals[1, 1] == 1.0
     assert any("friction.slip_restitution" in doubt and "at smaller angles" in doubt for doubt in found.doubts), found.doubts
+
+
+def test_impacts_that_slip_need_no_larger_angles(tmp_path: Path) -> None:
+    """They leave the coefficient open because they contradict each other."""
+    measured = 1.0 - np.array([0.05, 0.3]) * (1.0 + RESTITUTION) / np.tan(np.radians(STEEP[-2:]))
+    file = table(tmp_path, STEEP[-2:], tangential_restitution=measured, tangential_restitution_standard_deviation=0.001)
+    found = calibrated(file, {"law": "coulomb"})
+    assert found.slips.all()
+    assert not any("at larger angles" in doubt for doubt in found.doubts), found.doubts
+    assert any("is left at its first value, 0.3" in doubt for doubt in found.doubts), found.doubts
+    assert any("the given standard deviations and the scatter beyond them" in sentence for sentence in friction_sentences(found))
 
 
 @pytest.mark.parametrize("law", ["mdr", "mindlin", "coulomb", "rigid"])
