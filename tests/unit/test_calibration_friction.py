@@ -320,7 +320,7 @@ def test_faults_of_the_case(tmp_path: Path) -> None:
         calibrated(section["target"], {"law": "mdr"}, contact=contact)
     force = {"law": "hunt-crossley", "restitution": 0.7}
     shaken = {**case({})["plate"], "motion": {"amplitude": "1 mm", "frequency": "25 Hz"}}
-    with pytest.raises(vi.InputError, match="only the rebound from a plate at rest can be matched"):
+    with pytest.raises(vi.InputError, match="only impacts on a plate at rest can be matched"):
         calibrated(section["target"], {"law": "mdr"}, plate=shaken, drop={"speed": SPEED, "angle": 0.5}, contact=force)
     file = table(tmp_path, STEEP, tangential_restitution=0.8, restitution=0.8)
     with pytest.raises(vi.InputError, match="hertz has no parameter to meet it with"):

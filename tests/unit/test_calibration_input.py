@@ -99,7 +99,7 @@ FAULTS = [
     ({"target": RESTITUTION, "speeds": {"from": 3, "to": 1}}, "calibrate.speeds.to: 1 m/s is not more than the first speed, 3 m/s"),
     ({"target": RESTITUTION, "speeds": {"from": 0, "to": 1}}, "calibrate.speeds.from: 0 is not allowed"),
     ({"target": RESTITUTION, "speeds": {"from": 1, "to": 3, "number": 1}}, "calibrate.speeds.number: 1 is not allowed"),
-    ({"target": SEVERAL, "speeds": {"from": 1, "to": 3}}, "calibrate.speeds: what was measured is known at its own speeds alone"),
+    ({"target": SEVERAL, "speeds": {"from": 1, "to": 3}}, "calibrate.speeds: this target is matched at its own speeds alone"),
     (
         {"target": RESTITUTION, "model": {"law": "hertz"}},
         "calibrate.parameter: hertz has no loss parameter; name another law, or, to match something other than the rebound, one",

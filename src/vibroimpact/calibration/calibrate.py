@@ -105,7 +105,7 @@ def calibrate(
     tuned = law_parameter(stated) if tunable is None else tunable
     if isinstance(target, Observations):
         if speeds is not None:
-            raise InputError("what was measured is known at its own speeds alone; leave the speeds out", "speeds")
+            raise InputError("this target is matched at its own speeds alone; leave the speeds out", "speeds")
         found = match_measurement(tuned, stated, target, weights, degree, confidence, bootstrap, seed, tell, moved)
     else:
         found = match_drop(tuned, stated, target.to_problem(), weights, degree, speeds, tell)

@@ -145,9 +145,9 @@ def calibrate_case(
     case = what.case
     section = case.calibrate
     if section is None or section.target is None:
-        raise InputError("it is missing; it specifies the rebound to match, such as { restitution = 0.7 }", "calibrate.target")
+        raise InputError("it is missing; it specifies what is matched, such as { restitution = 0.7 }", "calibrate.target")
     if case.plate.motion is not None:
-        raise InputError("only the rebound from a plate at rest can be matched; leave the motion out", "plate.motion")
+        raise InputError("only impacts on a plate at rest can be matched; leave the motion out", "plate.motion")
     problem = problem_of(case, progress, tell)
     names = friction_names(section.parameter)
     if not names and problem.by_speed:
