@@ -105,6 +105,11 @@ FAULTS = [
         "calibrate.parameter: hertz has no loss parameter; name another law, or, to match something other than the rebound, one",
     ),
     ({"target": RESTITUTION, "model": {"law": "adams-impcat"}}, 'Did you mean "adams-impact"?'),
+    ({"target": RESTITUTION, "match": "spin_y_after"}, "calibrate.match: spin_y_after follows from friction"),
+    (
+        {"target": RESTITUTION, "model": {"law": "hunt-crossley", "restitution": 0.8}, "parameter": "dissipation"},
+        "the case gives no dissipation of hunt-crossley, in whose place it gives another parameter; give dissipation alone, or tune one",
+    ),
     ({"target": {"restitution": []}}, "calibrate.target.restitution: the list is empty"),
     ({"target": {"restitution": [], "approach_speed": []}}, "calibrate.target.restitution: the list is empty"),
     (
