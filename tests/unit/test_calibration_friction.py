@@ -15,8 +15,10 @@ from scipy.stats import t as students_t
 import vibroimpact as vi
 from support import one_in
 from vibroimpact.calibration.charts import calibration_charts
+from vibroimpact.calibration.friction.parameters import ImpactModel
 from vibroimpact.calibration.friction.tables import friction_sentences
 from vibroimpact.charts.marks import Line, Points
+from vibroimpact.errors import ComputationError
 from vibroimpact.exporting.load_drop import load_drop
 
 RADIUS, SPEED, RESTITUTION = 0.01, 3.0, 0.8
@@ -111,6 +113,19 @@ def test_what_has_no_influence_stays_as_given(tmp_path: Path) -> None:
     assert found.values == pytest.approx([0.1, 0.3], rel=1e-6)
     assert found.intervals[1, 1] == 1.0
     assert any("friction.slip_restitution" in doubt and "at smaller angles" in doubt for doubt in found.doubts), found.doubts
+
+
+def test_an_impact_that_could_not_be_computed_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """One is enough that none of the values has a sum of squares."""
+    computed = ImpactModel.__call__
+
+    def without_the_second(model: ImpactModel, values: np.ndarray) -> dict[str, np.ndarray]:
+        return {name: np.where(np.arange(column.shape[1]) == 1, np.nan, column) for name, column in computed(model, values).items()}
+
+    monkeypatch.setattr(ImpactModel, "__call__", without_the_second)
+    file = table(tmp_path, STEEP[:3], tangential_restitution=0.9)
+    with pytest.raises(ComputationError, match="1 of these 3 impacts could not be computed, the first line 3; look at"):
+        calibrated(file, {"law": "coulomb"})
 
 
 def test_impacts_that_slip_need_no_larger_angles(tmp_path: Path) -> None:

@@ -112,7 +112,8 @@ def acquired_of(sensors: Sequence[Sensor], records: Sequence[Record], force: Rec
     every = [without_baseline(replace(one, rate=rate)) for one in every]
     used = sensors_of([replace(sensor, rate=rate) for sensor in sensors], every[: len(records)])
     if force is not None and force.unit != "N":
-        raise InputError(f"the record {shown(force.name)} is in {force.unit}; the force of a hammer is in N")
+        unit = "has no unit" if force.unit in ("", "1") else f"is in {force.unit}"
+        raise InputError(f"the record {shown(force.name)} {unit}; the force of a hammer is in N")
     whole, start = on_common_time(every)
     if whole.shape[1] < 2 * LEAD:
         words = f"the records have {whole.shape[1]} sample{'' if whole.shape[1] == 1 else 's'} in common"

@@ -195,7 +195,7 @@ def calibrate_friction(
     found = minimize(measured, best, bounds)
     at = int(np.argmin(found.cost))
     if not np.isfinite(found.cost[at]):
-        raise ComputationError("none of these impacts could be computed; look at the measured speeds, and at the case")
+        raise ComputationError(_not_computed(seen, np.isnan(off(found.values[[at]], seen.wanted)[0]).reshape(len(sizes), -1).any(axis=0)))
     least = _as_given(measured, Minimum(found.values[[at]], found.cost[[at]]), parameters.given, bounds)
     tell(0.3)
     freedom = float(len(sizes) * len(seen.speeds) - len(names))
@@ -245,6 +245,16 @@ def calibrate_friction(
         bootstrap=bootstrap,
         doubts=(*rebound_doubts(impacts, outcomes["separation_speed"], stated.laws[0].name), *doubts),
     )
+
+
+def _not_computed(seen: Observations, failed: Bools) -> str:
+    """Return in words which impacts could not be computed; `failed`: whether each could not, (n,)."""
+    number, first = int(failed.sum()), int(np.argmax(failed))
+    which = seen.labels[first] if seen.labels else f"impact {first + 1}"
+    words = f"{number} of these {len(failed)} impacts could not be computed, the first {which}"
+    if len(failed) == 1:
+        words = f"{which} could not be computed"
+    return f"{words}; look at the measured speeds, and at the case"
 
 
 def _slips(parameters: FrictionParameters, values: Floats, impacts: ObliqueImpacts, outcomes: Mapping[str, Floats]) -> Bools:
