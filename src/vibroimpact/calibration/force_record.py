@@ -162,7 +162,7 @@ def _wrong(row: int, number: int, *, timed: bool) -> str:
     """Return what may be wrong with the speeds of an impact, by what they follow from; `timed`: that after it from a time of flight."""
     if timed:
         given = "the times, the drop or gravity" if row == 0 else "the times"
-        return f"{given} can't be right, or an impact is missing, or the plate moves"
+        return f"{given} can't be right, an impact is missing or is none, or the plate moves"
     return f"the force, the mass{', the drop or gravity' if number > 1 else ' or the drop'} can't be right"
 
 
