@@ -399,3 +399,8 @@ def test_the_same_measurement_in_the_case_and_in_a_file(tmp_path: Path) -> None:
         np.testing.assert_allclose(file.values, inside.values, rtol=1e-10)
         np.testing.assert_allclose(file.fit.function.coefficients, inside.fit.function.coefficients, rtol=1e-8)
     assert file.observations.labels == ("line 2", "line 3", "line 4")
+
+
+def test_a_restitution_just_beyond_noise_is_told_apart_from_it() -> None:
+    told = refused({"target": {"restitution": [1.01001], "approach_speed": [1]}})
+    assert "1.01001 is more than the 1.01 that is attributed to noise" in told

@@ -11,6 +11,7 @@ import vibroimpact as vi
 from support import plain_case
 from vibroimpact.calibration.calibrate_case import calibrate_case, read_calibration
 from vibroimpact.calibration.calibration import Calibration
+from vibroimpact.calibration.tables import match_words
 
 NEWTON = {"law": "newton", "restitution": 0.9}
 SPEEDS = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]
@@ -43,6 +44,7 @@ def test_1_003_is_noise(tmp_path: Path, contact: dict) -> None:
     assert file.values[0] == (1.0 if contact is NEWTON else 0.0)
     assert np.all(file.outcomes["separation_speed"] <= file.observations.speeds * (1.0 + 1e-12))
     assert any("line 2" in doubt and "though one does within the noise" in doubt and "is taken" in doubt for doubt in file.doubts)
+    assert match_words(file).endswith("matches the target, or comes nearest to it where noise puts it out of reach")
 
 
 def test_as_a_separation_speed(tmp_path: Path) -> None:

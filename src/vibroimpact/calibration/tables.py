@@ -152,7 +152,10 @@ def given_sentences(found: Calibration) -> list[str]:
 def match_words(found: Calibration) -> str:
     """Return in words what was matched."""
     if len(found.weights) == 1:
-        return f"the {MATCHABLE[next(iter(found.weights))].phrase} of each impact matches the target"
+        (name,) = found.weights
+        reached = np.abs(found.outcomes[name] / found.observations.wanted[name] - 1.0) <= _MET
+        where = "" if reached.all() else ", or comes nearest to it where noise puts it out of reach"
+        return f"the {MATCHABLE[name].phrase} of each impact matches the target{where}"
     every = " and ".join(f"the {MATCHABLE[name].phrase} (weight {weight:g})" for name, weight in found.weights.items())
     return f"{every} of each impact are fitted to the target by a weighted least-squares fit of one value"
 
