@@ -94,3 +94,11 @@ def test_damping_is_not_negative() -> None:
     target = {"restitution": [0.99, 0.985], "approach_speed": [3, 5], "standard_deviation": 0.02}
     found = calibrated(target, {"law": "adams-impact", "damping_max": 10.0}, degree=0, bootstrap=0)
     assert np.all(found.intervals[:, 0] == 0.0)
+
+
+def test_a_bootstrap_widens_a_polynomial_that_does_not_fit() -> None:
+    """By the scatter of the residuals, as to first order: its samples have the noise that is given."""
+    target = {"restitution": [0.7, 0.65, 0.75, 0.8, 0.7], "approach_speed": SPEEDS[:5], "standard_deviation": 0.001}
+    first, drawn = (calibrated(target, degree=1, bootstrap=draws) for draws in (0, 1000))
+    assert any("the intervals of the polynomial are widened accordingly" in doubt for doubt in drawn.doubts)
+    np.testing.assert_allclose(drawn.fit.half_widths(0.95), first.fit.half_widths(0.95), rtol=0.1)

@@ -162,6 +162,8 @@ def match_measurement(
         intervals, fit = bootstrap_intervals(
             tuned, sized, weights, fit, deviations, draws, confidence, seed, lambda done: tell(0.5 + 0.4 * done)
         )
+        if seen.deviations_known and np.isfinite(fit.freedom):  # the samples have the noise as given, and the residuals are larger
+            fit = replace(fit, covariance=fit.scatter**2 * fit.covariance)
     doubts += undetermined_doubts(tuned, values, intervals, seen, fit, confidence)
     within = None if intervals is None else tuned.allowed.bounded(intervals)
     return MatchedTarget(seen, values, fit, within, None, draws, doubts)
