@@ -154,7 +154,7 @@ def calibrate(
         confidence=confidence,
         bootstrap=found.draws,
         overlays=overlaid,
-        doubts=(*found.doubts, *other_drop_doubts(stated, seen), *fit_doubts(stated, tuned, seen, found.fit, found.curve, along)),
+        doubts=(*found.doubts, *other_drop_doubts(stated, tuned, seen), *fit_doubts(stated, tuned, seen, found.fit, found.curve, along)),
     )
 
 

@@ -153,14 +153,15 @@ def undetermined_doubts(
     return told
 
 
-def other_drop_doubts(problem: Problem, seen: Observations) -> list[str]:
+def other_drop_doubts(problem: Problem, tunable: Tunable, seen: Observations) -> list[str]:
     """Return a warning if successive impacts were measured of another drop than that of the case."""
     if not is_other_drop(problem, seen):
         return []
     own, in_place = first_approach_speed(problem), " in place of drop.height" if problem.height is not None else ""
+    has = "the value of the polynomial at its own first speed" if "." in tunable.name else "the values of the polynomial at its own speeds"
     return [
         f"the first impact that was measured is at {seen.speeds[0]:.4g} m/s, and that of the drop at {own:.4g} m/s: the calibrated case "
-        f"has the values of the polynomial at its own speeds; drop.speed = {seen.speeds[0]:.4g}{in_place} makes it the drop measured"
+        f"has {has}; drop.speed = {seen.speeds[0]:.4g}{in_place} makes it the drop measured"
     ]
 
 
