@@ -15,7 +15,10 @@ from scipy.stats import t as students_t
 import vibroimpact as vi
 from support import one_in
 from vibroimpact.calibration.charts import calibration_charts
+from vibroimpact.calibration.friction.parameters import ImpactModel
+from vibroimpact.calibration.friction.tables import friction_sentences
 from vibroimpact.charts.marks import Line, Points
+from vibroimpact.errors import ComputationError
 from vibroimpact.exporting.load_drop import load_drop
 
 RADIUS, SPEED, RESTITUTION = 0.01, 3.0, 0.8
@@ -110,6 +113,30 @@ def test_what_has_no_influence_stays_as_given(tmp_path: Path) -> None:
     assert found.values == pytest.approx([0.1, 0.3], rel=1e-6)
     assert found.intervals[1, 1] == 1.0
     assert any("friction.slip_restitution" in doubt and "at smaller angles" in doubt for doubt in found.doubts), found.doubts
+
+
+def test_an_impact_that_could_not_be_computed_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """One is enough that none of the values has a sum of squares."""
+    computed = ImpactModel.__call__
+
+    def without_the_second(model: ImpactModel, values: np.ndarray) -> dict[str, np.ndarray]:
+        return {name: np.where(np.arange(column.shape[1]) == 1, np.nan, column) for name, column in computed(model, values).items()}
+
+    monkeypatch.setattr(ImpactModel, "__call__", without_the_second)
+    file = table(tmp_path, STEEP[:3], tangential_restitution=0.9)
+    with pytest.raises(ComputationError, match="1 of these 3 impacts could not be computed, the first line 3; look at"):
+        calibrated(file, {"law": "coulomb"})
+
+
+def test_impacts_that_slip_need_no_larger_angles(tmp_path: Path) -> None:
+    """They leave the coefficient open because they contradict each other."""
+    measured = 1.0 - np.array([0.05, 0.3]) * (1.0 + RESTITUTION) / np.tan(np.radians(STEEP[-2:]))
+    file = table(tmp_path, STEEP[-2:], tangential_restitution=measured, tangential_restitution_standard_deviation=0.001)
+    found = calibrated(file, {"law": "coulomb"})
+    assert found.slips.all()
+    assert not any("at larger angles" in doubt for doubt in found.doubts), found.doubts
+    assert any("is left at its first value, 0.3" in doubt for doubt in found.doubts), found.doubts
+    assert any("the given standard deviations and the scatter beyond them" in sentence for sentence in friction_sentences(found))
 
 
 @pytest.mark.parametrize("law", ["mdr", "mindlin", "coulomb", "rigid"])
@@ -271,7 +298,7 @@ FILES = [
     ("angle [deg],tangential_restitution\n30,0.7\n", "the columns angle, tangential_restitution do not give the approach of the sphere"),
     ("angle [deg],speed [m/s]\n30,3\n", "what was measured after the impacts is missing; give one of tangential_restitution"),
     ("angle [deg],speed [m/s],tangential_restitution\n95,3,0.7\n", "line 2: angle is 95 deg"),
-    ("angle [deg],speed [m/s],tangential_restitution\n30,-3,0.7\n", "line 2: speed is -3; it must be greater than 0"),
+    ("angle [deg],speed [m/s],tangential_restitution\n30,-3,0.7\n", "line 2: speed is -3 m/s; it must be greater than 0"),
     ("angle [deg],speed [m/s],tangential_restitution\n30,3,0.7\n0,3,0.7\n", "line 3: a sphere that does not move along the plate has no"),
     ("angle [m],speed [m/s],tangential_restitution\n30,3,0.7\n", 'column "angle [m]"'),
     ("angle,speed [m/s],tangential_restitution\n30,3,0.7\n", 'column "angle": the unit is missing'),
@@ -308,7 +335,7 @@ def test_faults_of_the_case(tmp_path: Path) -> None:
         calibrated(section["target"], {"law": "mdr"}, contact=contact)
     force = {"law": "hunt-crossley", "restitution": 0.7}
     shaken = {**case({})["plate"], "motion": {"amplitude": "1 mm", "frequency": "25 Hz"}}
-    with pytest.raises(vi.InputError, match="only the rebound from a plate at rest can be matched"):
+    with pytest.raises(vi.InputError, match="only impacts on a plate at rest can be matched"):
         calibrated(section["target"], {"law": "mdr"}, plate=shaken, drop={"speed": SPEED, "angle": 0.5}, contact=force)
     file = table(tmp_path, STEEP, tangential_restitution=0.8, restitution=0.8)
     with pytest.raises(vi.InputError, match="hertz has no parameter to meet it with"):

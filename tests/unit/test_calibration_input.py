@@ -12,6 +12,7 @@ import vibroimpact as vi
 from support import plain_case
 from vibroimpact.calibration.calibrate_case import calibrate_case, read_calibration
 from vibroimpact.calibration.calibration import Calibration
+from vibroimpact.calibration.tables import fit_sentences
 from vibroimpact.cli import main
 from vibroimpact.measurements.table_file import read_table_file
 
@@ -39,13 +40,16 @@ FAULTS = [
     ({"target": {"law": "hertzz"}}, 'calibrate.target.law: there is no contact law "hertzz"'),
     ({"target": {"law": "newton"}}, "restitution: this key is missing"),
     ({"target": {"law": "newton", "restitution": 2}}, "restitution: 2 is not allowed"),
-    ({"target": {"law": "newton", "restitution": 0}}, "under the law of the target the sphere does not leave the plate"),
+    ({"target": {"law": "newton", "restitution": 0}}, "under the law of the target the sphere comes to rest in the first impact"),
     ({"target": {"restitution": 0}}, "calibrate.target.restitution: 0 is not allowed; it must be greater than 0 and at most 1"),
     ({"target": {"restitution": 1.1}}, "calibrate.target.restitution: 1.1 is not allowed"),
     ({"target": {"restitution": NAN}}, "calibrate.target.restitution: nan is not finite"),
     ({"target": {"restitution": "70 %"}}, "calibrate.target.restitution"),
     ({"target": {"restitution": [0.7, 0.6]}}, "2 restitutions need as many approach speeds, and no approach_speed is given"),
-    ({"target": {"restitution": [0.7], "approach_speed": [1, 2]}}, "1 restitutions need as many approach speeds, and there are 2"),
+    (
+        {"target": {"restitution": [0.7], "approach_speed": [1, 2]}},
+        "a list of one restitution needs as many approach speeds, and there are 2",
+    ),
     ({"target": {"restitution": 0.7, "approach_speed": [1]}}, "one restitution holds at any approach speed"),
     ({"target": {"restitution": 0.7, "standard_deviation": 0.1}}, "one restitution holds at any approach speed"),
     ({"target": {**SEVERAL, "standard_deviation": 0}}, "calibrate.target.standard_deviation: 0 is not allowed"),
@@ -95,12 +99,27 @@ FAULTS = [
     ({"target": RESTITUTION, "speeds": {"from": 3, "to": 1}}, "calibrate.speeds.to: 1 m/s is not more than the first speed, 3 m/s"),
     ({"target": RESTITUTION, "speeds": {"from": 0, "to": 1}}, "calibrate.speeds.from: 0 is not allowed"),
     ({"target": RESTITUTION, "speeds": {"from": 1, "to": 3, "number": 1}}, "calibrate.speeds.number: 1 is not allowed"),
-    ({"target": SEVERAL, "speeds": {"from": 1, "to": 3}}, "calibrate.speeds: what was measured is known at its own speeds alone"),
+    ({"target": SEVERAL, "speeds": {"from": 1, "to": 3}}, "calibrate.speeds: this target is matched at its own speeds alone"),
     (
         {"target": RESTITUTION, "model": {"law": "hertz"}},
-        "calibrate.parameter: hertz has no loss parameter; name another law, or one",
+        "calibrate.parameter: hertz has no loss parameter; name another law, or, to match something other than the rebound, one",
     ),
     ({"target": RESTITUTION, "model": {"law": "adams-impcat"}}, 'Did you mean "adams-impact"?'),
+    ({"target": RESTITUTION, "match": "spin_y_after"}, "calibrate.match: spin_y_after follows from friction"),
+    (
+        {"target": RESTITUTION, "model": {"law": "hunt-crossley", "restitution": 0.8}, "parameter": "dissipation"},
+        "the case gives no dissipation of hunt-crossley, in whose place it gives another parameter; give dissipation alone, or tune one",
+    ),
+    ({"target": {"restitution": []}}, "calibrate.target.restitution: the list is empty"),
+    ({"target": {"restitution": [], "approach_speed": []}}, "calibrate.target.restitution: the list is empty"),
+    (
+        {"target": {"restitution": [0.7, 0.7, 0.7], "approach_speed": [1, 1.001, 1.002]}, "degree": 1},
+        "a polynomial of degree 1 needs 2 speeds, and all that are there lie within 1 % of the largest",
+    ),
+    (
+        {"target": RESTITUTION, "model": {"law": "tsuji", "restitution": {"speed": [1, 3], "value": [0.8, 0.7]}}},
+        "calibrate.model.restitution: a calibration begins from numbers",
+    ),
     ({"target": "nowhere.csv"}, "nowhere.csv: there is no such file"),
     ("high", "calibrate: "),
 ]
@@ -147,7 +166,7 @@ FILES = [
     ("# a comment\n\ntime [m],force_N\n0,1\n", 'line 3, column "time [m]"'),
     ("time [],force_N\n0,1\n", 'line 1, column "time []": the unit is missing'),
     ("approach_speed_m_s,restitution [m]\n1,0.7\n", 'column "restitution [m]": it is a plain number, and must have no unit'),
-    ("time_s,force_N,force_kN\n0,0,1\n1,1,1\n", 'there are two columns "force"'),
+    ("time_s,force_N,force_kN\n0,0,1\n1,1,1\n", 'several columns are called "force"; state them all by columns = "time=s,-,force=kN"'),
     ("restitution,restitution\n1,1\n", 'line 1: there are two columns "restitution"'),
     ("approach_speed_m_s,restitution\n1,0.7\n\n# more\n2,high\n", 'line 5, column "restitution": "high" is not a number'),
     ("approach_speed_m_s,restitution\n1,0.7\n2,\n", 'line 3, column "restitution": the cell is empty'),
@@ -156,9 +175,9 @@ FILES = [
     ("approach_speed_m_s,restitution\n1,1e999\n", 'line 2, column "restitution": "1e999" is not finite'),
     ("approach_speed_m_s,restitution\n1,n/a\n", 'line 2, column "restitution": "n/a" is no number; fill it in'),
     ("approach_speed_m_s,restitution\n1,9.9e37\n", '"9.9e37" stands for a sample that is over the range (SCPI); fill it in'),
-    ("approach_speed_m_s,restitution\n1,0.7\n-2,0.6\n", "line 3: approach_speed is -2; it must be greater than 0"),
+    ("approach_speed_m_s,restitution\n1,0.7\n-2,0.6\n", "line 3: approach_speed is -2 m/s; it must be greater than 0"),
     ("approach_speed_m_s,restitution\n1,0.7\n2,0\n", "line 3: restitution is 0; it must be greater than 0"),
-    ("approach_speed_m_s,max_force_N\n1,100\n2,-5\n", "line 3: max_force is -5; it must be greater than 0"),
+    ("approach_speed_m_s,max_force_N\n1,100\n2,-5\n", "line 3: max_force is -5 N; it must be greater than 0"),
     ("approach_speed_m_s,restitution\n1,0.7\n2,1.5\n", "line 3: restitution is 1.5; it is 1 at most"),
     ("approach_speed_m_s\n1\n", "beside approach_speed a column is missing; give one of restitution, separation_speed, max_force"),
     ("restitution\n0.7\n", "the columns restitution do not describe impacts; a file has approach_speed with restitution"),
@@ -192,7 +211,45 @@ def test_faults_of_a_file(tmp_path: Path, text: str, words: str) -> None:
 def test_one_of_two_deviations(tmp_path: Path) -> None:
     text = "approach_speed_m_s,restitution,restitution_standard_deviation,max_force_N\n1,0.7,0.01,900\n2,0.6,0.01,2000\n"
     told = refused({"target": {"file": file_with(tmp_path, text)}, "match": {"separation_speed": 1, "max_force": 1}})
-    assert "separation_speed has a standard deviation and max_force has none; give max_force_standard_deviation" in told
+    assert "restitution has a standard deviation and max_force has none; give max_force_standard_deviation" in told
+
+
+def test_columns_have_the_names_of_the_file(tmp_path: Path) -> None:
+    text = "v [m/s],e,n\n1,0.7,2\n-2,0.6,3\n"
+    assert "line 3: v is -2 m/s; it must be greater than 0" in refused({"target": {"file": file_with(tmp_path, text)}})
+    text = "v [m/s],e,n\n1,0.7,2.5\n"
+    assert "line 2: n is 2.5; it must be a whole number" in refused({"target": {"file": file_with(tmp_path, text)}})
+    text = "v [m/s],e,max_force_N,max_force_standard_deviation_N\n1,0.7,900,10\n2,0.6,2000,10\n"
+    told = refused({"target": {"file": file_with(tmp_path, text)}, "match": {"separation_speed": 1, "max_force": 1}})
+    assert "max_force has a standard deviation and e has none; give e_standard_deviation" in told
+
+
+def test_a_force_out_of_reach_is_told_with_the_dampings_tried() -> None:
+    """The force rises with a large damping: its largest is not that without any."""
+    target = {"max_force": "10 MN"}
+    told = refused({"target": target}, contact={"law": "adams-impact", "damping_max": 100.0}, run={"impacts": 1})
+    assert "with damping_max from 0 to 6.55e+06 N s/m" in told
+
+
+def test_the_rest_as_given_includes_no_guess() -> None:
+    target = {"max_force": "1 kN"}
+    told = refused({"target": target}, contact={"law": "adams-impact", "damping_max": 100.0}, run={"impacts": 1})
+    assert "; with the rest as given it would take stiffness = " in told
+    told = refused({"target": target}, contact={"law": "adams-impact"}, run={"impacts": 1})
+    assert "; with damping_max = 150 N s/m and the rest as given it would take stiffness = " in told
+
+
+def test_without_gravity_there_is_no_rebound_height() -> None:
+    newton = {"law": "newton", "restitution": 0.7}
+    told = refused({"match": "rebound_height"}, contact=newton, drop={"speed": 1.0, "gravity": 0.0}, run={"impacts": 1})
+    assert "calibrate.match: without gravity a sphere rises for ever" in told
+
+
+def test_intervals_that_are_not_there_are_not_told() -> None:
+    drop = {"height": "0.5 m +- 1 cm"}
+    found = calibrated({"target": {"rebound_height": 0.3}}, drop=drop, run={"impacts": 1})
+    assert found.intervals is None
+    assert not any("The intervals include" in sentence for sentence in fit_sentences(found))
 
 
 def test_files_that_are_none(tmp_path: Path) -> None:
@@ -344,3 +401,8 @@ def test_the_same_measurement_in_the_case_and_in_a_file(tmp_path: Path) -> None:
         np.testing.assert_allclose(file.values, inside.values, rtol=1e-10)
         np.testing.assert_allclose(file.fit.function.coefficients, inside.fit.function.coefficients, rtol=1e-8)
     assert file.observations.labels == ("line 2", "line 3", "line 4")
+
+
+def test_a_restitution_just_beyond_noise_is_told_apart_from_it() -> None:
+    told = refused({"target": {"restitution": [1.01001], "approach_speed": [1]}})
+    assert "1.01001 is more than the 1.01 that is attributed to noise" in told

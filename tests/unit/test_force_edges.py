@@ -99,8 +99,19 @@ def test_a_clipped_record() -> None:
 def test_one_clipped_impact_is_refused() -> None:
     time = np.arange(0.0, 2e-3, 1e-5)
     pulse = np.minimum(np.where((time > 5e-4) & (time < 1e-3), 100.0 * np.sin(np.pi * (time - 5e-4) / 5e-4), 0.0), 80.0)
-    with pytest.raises(vi.InputError, match=r"the force is clipped at sample 5.*record again with a larger range"):
-        impacts_in_force(time, pulse, mass=0.01, gravity=0.0, first_speed=2.0)
+    with pytest.raises(vi.InputError, match=r"the force is clipped at sample 5.*record again with a larger range$"):
+        impacts_in_force(time, pulse, mass=0.01, gravity=0.0, first_speed=2.0)  # from which the sphere does not come back
+    with pytest.raises(vi.InputError, match=r"the force is clipped at sample 5.*, or up to the next impact, from whose time"):
+        impacts_in_force(time, pulse, mass=0.01, gravity=9.8, first_speed=2.0)
+
+
+def test_a_flight_too_long_is_none_of_the_force() -> None:
+    """Speeds that follow from the times of flight do not depend on force and mass."""
+    time = np.arange(0.0, 1.0, 1e-5)
+    pulse = sum(np.where((time > at) & (time < at + 5e-4), 100.0 * np.sin(np.pi * (time - at) / 5e-4), 0.0) for at in (0.1, 0.3, 0.8))
+    with pytest.raises(vi.InputError, match=r"impact at sample 300.*; the times can't be right, an impact is missing or is none") as told:
+        impacts_in_force(time, pulse, mass=0.01, gravity=9.8, first_speed=2.0)
+    assert "the mass" not in str(told.value)
 
 
 def test_a_coarse_converter_is_not_clipped() -> None:

@@ -13,6 +13,7 @@ import vibroimpact as vi
 from support import plain_case
 from vibroimpact.calibration.bounces.speed_laws import speed_laws
 from vibroimpact.calibration.calibrate_case import calibrate_case, read_calibration
+from vibroimpact.calibration.restitutions.text import noise_sentence
 from vibroimpact.cli import main
 
 SPEED = np.array([0.5, 1.0, 1.5, 2.0, 3.0, 4.0])
@@ -115,6 +116,15 @@ def test_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: py
     assert outcome(monkeypatch, capsys, str(tmp_path / "ev.csv"))[0] == 2  # the folder is there
 
 
+def test_what_the_intervals_are_from(tmp_path: Path) -> None:
+    """One restitution has no scatter, and of separation speeds it is these that are rounded."""
+    (tmp_path / "one.csv").write_text("v [m/s],e\n1,0.81\n", encoding="utf-8")
+    assert "follow from the step of 0.01 to which the values are rounded" in noise_sentence(vi.read_restitutions(tmp_path / "one.csv"))
+    (tmp_path / "speeds.csv").write_text("v [m/s],separation_speed [m/s]\n1,0.81\n2,1.5\n", encoding="utf-8")
+    told = noise_sentence(vi.read_restitutions(tmp_path / "speeds.csv"))
+    assert "the scatter about each fit, and from the step of 0.01 m/s to which the separation speeds are rounded" in told
+
+
 @pytest.mark.parametrize(
     ("text", "options", "words"),
     [
@@ -123,11 +133,14 @@ def test_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: py
             (),
             "line 2: the restitution is 82, more than 1.1, which is not taken for noise; if it is in per",
         ),
+        ("speed [m/s],e\n1,82\n2,80\n", (), "name its unit: e [%]"),
+        ("speed [m/s],e\n1,1.5\n2,0.8\n", (), "which is not taken for noise; look at the value"),
+        ("speed [m/s],rebound_speed [m/s]\n1,82\n2,80\n", (), "which is not taken for noise; look at the speeds and their units"),
         ("speed [m/s],restitution\n1,0.8\n2,-0.1\n", (), "line 3: restitution is -0.1; it must be greater than 0"),
-        ("speed [m/s],restitution\n0,0.8\n2,0.7\n", (), "line 2: approach_speed is 0; it must be greater than 0"),
+        ("speed [m/s],restitution\n0,0.8\n2,0.7\n", (), "line 2: speed is 0 m/s; it must be greater than 0"),
         ("speed,restitution\n1,0.8\n2,0.7\n", (), 'column "speed": the unit is missing'),
-        ("speed [m/s],e,count\n1,0.8,2.5\n", (), "line 2: count is 2.5; it must be the number of impacts"),
-        ("speed [m/s],v [m/s],e\n1,1,0.8\n", (), "the columns speed and v both mean approach_speed; leave one of them out"),
+        ("speed [m/s],e,count\n1,0.8,2.5\n", (), "line 2: count is 2.5; it must be a whole number, 1 or more"),
+        ("speed [m/s],v [m/s],e\n1,1,0.8\n", (), "the columns speed and v both mean approach_speed; keep one of them"),
         (
             "speed [m/s],separation_speed [m/s],restitution_standard_deviation\n1,0.8,0.01\n2,1.5,0.01\n",
             (),

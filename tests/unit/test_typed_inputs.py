@@ -158,7 +158,7 @@ def test_the_command_tells_what_it_takes(tmp_path: Path, monkeypatch, capsys) ->
         assert inputs["height"]["as_typed"] == height
         assert inputs["gravity"]["standard_deviation"] == 0.015
         out = " ".join(capsys.readouterr().out.split())
-        assert "The intervals include the standard deviations of what is typed: gravity 9.80665" in out
+        assert "The intervals include the standard deviations of these inputs: gravity 9.80665" in out
 
 
 def calibrated(target: object, sphere: dict | None = None, drop: dict | None = None, **more: object) -> Calibration:

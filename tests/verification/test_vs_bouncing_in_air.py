@@ -173,8 +173,11 @@ def test_flights(agrees: Agrees, radius: float, density: float, height: float) -
 
 def test_beyond_what_air_lets_rise() -> None:
     grain = FluidFlights(GRAVITY, 2e-5, 2500.0, 1.0)
-    with pytest.raises(vi.InputError, match="not possible in air"):
+    with pytest.raises(vi.InputError, match="higher than 1 m, far above what was measured, in air"):
         grain.speed_to_rise(np.array(3.0))
+    light = FluidFlights(GRAVITY, 2e-3, 1.0, 100.0)
+    with pytest.raises(vi.InputError, match="not possible in air"):
+        light.speed_to_rise(np.array(80.0))
 
 
 def test_air_where_nothing_flew() -> None:

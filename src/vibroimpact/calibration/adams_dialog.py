@@ -19,7 +19,19 @@ _FIELDS = {
 """Label and unit of each field of the dialog, by its name in JSON."""
 
 DIALOG_TITLE = "For the dialog of a contact in Adams View (Impact; newton, mm, s)"
-DIALOG_NOTE = "The dialog takes one damping. For one that follows the speed, vibroimpact export --to adams writes a model."
+
+
+def dialog_note(parameter: str) -> str:
+    """Return what is to be said of a dialog whose fields differ from impact to impact in a parameter.
+
+    Examples
+    --------
+    >>> dialog_note("stiffness")
+    'The dialog takes one stiffness for all impacts.'
+    """
+    if parameter == "damping_max":
+        return "The dialog takes one damping. For one that follows the speed, vibroimpact export --to adams writes a model."
+    return f"The dialog takes one {parameter} for all impacts."
 
 
 def dialog_rows(laws: Iterable[ContactLaw]) -> list[dict[str, Any]]:

@@ -10,7 +10,7 @@ from vibroimpact.arrays import Floats
 from vibroimpact.calibration.calibrated_drops import impact_count, impact_tables, is_other_drop, limited_to, values_by_function
 from vibroimpact.calibration.calibration import Calibration
 from vibroimpact.calibration.match_target import match_drop, match_measurement
-from vibroimpact.calibration.matchable import REBOUND, REBOUNDS, check_weights
+from vibroimpact.calibration.matchable import ALONG_PLATE, MATCHABLE, REBOUND, REBOUNDS, check_weights
 from vibroimpact.calibration.matching import Tunable
 from vibroimpact.calibration.observations import Observations
 from vibroimpact.calibration.overlay import overlays
@@ -101,11 +101,14 @@ def calibrate(
         # both describe the rebound; match the one that was measured
         weights = {name.replace("separation_speed", "rebound_height"): weight for name, weight in weights.items()}
     check_weights(weights)
+    if by_friction := [name for name in weights if name in ALONG_PLATE]:
+        words = f"{', '.join(by_friction)} follow{'s' if len(by_friction) == 1 else ''} from friction, and what is tuned is not of friction"
+        raise InputError(f"{words}; match {', '.join(MATCHABLE)}, or tune friction.coefficient", "match")
     _check(stated, confidence, bootstrap)
     tuned = law_parameter(stated) if tunable is None else tunable
     if isinstance(target, Observations):
         if speeds is not None:
-            raise InputError("what was measured is known at its own speeds alone; leave the speeds out", "speeds")
+            raise InputError("this target is matched at its own speeds alone; leave the speeds out", "speeds")
         found = match_measurement(tuned, stated, target, weights, degree, confidence, bootstrap, seed, tell, moved)
     else:
         found = match_drop(tuned, stated, target.to_problem(), weights, degree, speeds, tell)
@@ -151,7 +154,7 @@ def calibrate(
         confidence=confidence,
         bootstrap=found.draws,
         overlays=overlaid,
-        doubts=(*found.doubts, *other_drop_doubts(stated, seen), *fit_doubts(stated, tuned, seen, found.fit, found.curve, along)),
+        doubts=(*found.doubts, *other_drop_doubts(stated, tuned, seen), *fit_doubts(stated, tuned, seen, found.fit, found.curve, along)),
     )
 
 

@@ -45,10 +45,13 @@ _DAMPINGS = ("sphere.damping", "plate.damping")
 
 
 class ToCalibrate(NamedTuple):
-    """A case whose contact law is to be tuned, and whether the case gives the value of the parameter or it is only an initial guess."""
+    """A case whose contact law is to be tuned, whether the case gives the value of the parameter or it is only an initial guess, and the
+    key under which the law was given.
+    """
 
     case: Case
     given: bool
+    law_at: str = "contact"
 
 
 def load_calibration(source: str | PathLike[str], changes: Mapping[str, Any] | None = None) -> ToCalibrate:
@@ -94,7 +97,7 @@ def read_calibration(table: Mapping[str, Any]) -> ToCalibrate:
     if isinstance(section, dict) and isinstance(contact, dict) and set(section) <= set(CalibrateSection.model_fields):
         model = section.pop("model", None)
         model = {"law": model} if isinstance(model, str) else model
-        own = "target" in section
+        own, law_at = "target" in section, "contact" if model is None else "calibrate.model"
         if not own and (names := friction_names(section.get("parameter"))):
             raise InputError(f"it is missing; {names[0]} is fitted to {_ITS_TARGET}", "calibrate.target")
         if not own:
@@ -109,7 +112,7 @@ def read_calibration(table: Mapping[str, Any]) -> ToCalibrate:
         whole["contact"] = started = _with_start(contact, section.get("parameter"))
         whole["calibrate"] = section
         try:
-            return ToCalibrate(read_case(whole), started is contact)
+            return ToCalibrate(read_case(whole), started is contact, law_at)
         except InputError as error:
             raise InputError.of_several(_where(fault, own, model is not None) for fault in error.faults) from None
     return ToCalibrate(read_case(whole), True)
@@ -142,15 +145,15 @@ def calibrate_case(
     case = what.case
     section = case.calibrate
     if section is None or section.target is None:
-        raise InputError("it is missing; it specifies the rebound to match, such as { restitution = 0.7 }", "calibrate.target")
+        raise InputError("it is missing; it specifies what is matched, such as { restitution = 0.7 }", "calibrate.target")
     if case.plate.motion is not None:
-        raise InputError("only the rebound from a plate at rest can be matched; leave the motion out", "plate.motion")
+        raise InputError("only impacts on a plate at rest can be matched; leave the motion out", "plate.motion")
     problem = problem_of(case, progress, tell)
     names = friction_names(section.parameter)
     if not names and problem.by_speed:
         name = next(iter(problem.by_speed))
         words = "a calibration begins from numbers, and takes no function of the approach speed"
-        raise InputError(f"{words}; give a number in place of the function", f"contact.{name}")
+        raise InputError(f"{words}; give a number in place of the function", f"{what.law_at}.{name}")
     if not names and problem.same_spot and getattr(problem.laws[0], "lasting", False) and impact_count(problem) > 1:
         words = f"{case.contact.law} leaves a dent that the next impact falls into, and each impact is matched on fresh surfaces"
         raise InputError(f"{words}; set it to false, or run.impacts = 1", "drop.same_spot")
@@ -249,8 +252,10 @@ def _calibrated_friction(
         seed=section.seed,
         progress=progress,
     )
-    if unused := [one.name for one in typed_inputs(what.case) if one.value.stated]:
-        words = f"the standard deviation of {listed(unused)} is no part of these intervals"
+    unused = [one.name for one in typed_inputs(what.case) if one.value.stated]
+    if unused and found.intervals is not None:
+        which = "deviations of" if len(unused) > 1 else "deviation of"
+        words = f"the standard {which} {listed(unused)} {'are' if len(unused) > 1 else 'is'} no part of these intervals"
         found = replace(found, doubts=(*found.doubts, words))
     if what.given:
         return found

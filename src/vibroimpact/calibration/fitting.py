@@ -76,9 +76,11 @@ def check_degree(speeds: Floats, degree: int) -> None:
     """
     different = distinct(speeds)
     if degree >= different:
-        have = "one speed is" if different == 1 else f"{different} that differ by more than 1 % of the largest are"
+        have = f"{different} that differ by more than 1 % of the largest are there"
+        if different == 1:
+            have = "one speed is there" if len(speeds) == 1 else "all that are there lie within 1 % of the largest"
         needs = f"a polynomial of degree {degree} needs {degree + 1} speeds"
-        raise InputError(f"{needs}, and {have} there; take {different - 1} at most", "degree")
+        raise InputError(f"{needs}, and {have}; take {different - 1} at most", "degree")
 
 
 def distinct(speeds: Floats) -> int:
@@ -199,7 +201,8 @@ def _settled(
         before, at = at, tunable.allowed.clip(powers @ coefficients)
         if np.all(np.abs(at - before) <= _WITHIN * np.abs(at).max()):
             return coefficients, covariance, scatter, len(independent) - number
-    raise ComputationError(f"the fit of {tunable.name} does not settle; take a lower degree, or look at the measurements")
+    lower = "take a lower degree, or " if number > 1 else ""
+    raise ComputationError(f"the fit of {tunable.name} does not settle; {lower}look at the measurements")
 
 
 def _shared(observations: Observations, name: str, along: Floats) -> Floats:

@@ -13,7 +13,8 @@ from vibroimpact.calibration.joint_flights import JointFlights
 from vibroimpact.calibration.record_noise import ABOVE_NOISE
 from vibroimpact.errors import InputError
 
-_SMALL = 0.02  # fraction of the range of the record, the least prominence of an impact
+SMALL = 0.02
+"""Fraction of the range of the record, the least prominence of an impact."""
 
 _FEWEST = 5
 """Minimum number of samples of a fitted flight."""
@@ -35,7 +36,7 @@ def lowest_points(position: Floats, noise: float) -> Indices:
     from scipy.signal import find_peaks
 
     rise = float(position.max() - position.min())
-    found, _ = find_peaks(-position, prominence=max(_SMALL * rise, ABOVE_NOISE * noise), plateau_size=1)
+    found, _ = find_peaks(-position, prominence=max(SMALL * rise, ABOVE_NOISE * noise), plateau_size=1)
     return np.asarray(found)
 
 
@@ -102,9 +103,10 @@ def with_enough_samples(selected: Mapping[int, Indices], ends: Sequence[int], at
         if len(inside) >= _FEWEST:
             found[number] = inside
         elif 0 < number < len(ends) - 2:
+            few = {0: "no sample shows", 1: "only one sample shows"}.get(len(inside), f"only {len(inside)} samples show")
             raise InputError(
-                f"between the impacts at {at(ends[number])} and {at(ends[number + 1])} only {len(inside)} samples show the sphere above "
-                f"the plate, but {_FEWEST} are needed; sample faster, end the record before, or look at sign and unit of the position"
+                f"between the impacts at {at(ends[number])} and {at(ends[number + 1])} {few} the sphere above the plate, but {_FEWEST} are "
+                "needed; sample faster, end the record before, or look at sign and unit of the position"
             )
     if 1 not in found:
         raise InputError(

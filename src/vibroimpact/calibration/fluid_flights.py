@@ -18,6 +18,7 @@ _POINTS = 513  # of a table; cubic interpolation errs by 1e-9 for a fall of 4 m
 _BEGIN = 1e-6  # start of the integration, as a fraction of the range of the root of the height; drag is negligible below it
 _CLOSE = 1e-11
 _FASTEST = 1e4  # m/s, at which the integration stops
+_WHOLE = 0.999  # part of the largest rise asked for from which on the tables reach it
 
 
 @dataclass(frozen=True)
@@ -83,7 +84,7 @@ class FluidFlights:
         """Return the initial and final speeds of flights of given durations [s]."""
         tables = self._tables
         if np.any(time > tables.lasted.x[-1]):
-            raise self._too_far(f"a flight of {np.max(time):.4g} s")
+            raise self._too_far(f"a flight of {np.max(time):.4g} s", tables)
         root, by_time = tables.lasted(time), tables.lasted(time, 1)
         ends = [tables.up, tables.down]
         speeds, slopes = zip(*((np.asarray(end(root)), np.asarray(end(root, 1) * by_time)) for end in ends), strict=True)
@@ -93,7 +94,7 @@ class FluidFlights:
         """Return the flights with given initial speeds [m/s]."""
         tables = self._tables
         if np.any(speed > tables.risen.x[-1]):
-            raise self._too_far(f"a flight that begins with {np.max(speed):.4g} m/s")
+            raise self._too_far(f"a flight that begins with {np.max(speed):.4g} m/s", tables)
         root = tables.risen(speed)
         return ReturnFlight(
             np.asarray(root**2), np.asarray(tables.rise(root)), np.asarray(tables.time(root)), np.asarray(tables.down(root))
@@ -101,13 +102,18 @@ class FluidFlights:
 
     def _within(self, table: Any, height: Floats) -> Floats:
         if np.any(height > table.x[-1] ** 2):
-            raise self._too_far(f"a rise of {np.max(height):.4g} m")
+            raise self._too_far(f"a rise of {np.max(height):.4g} m", self._tables)
         return np.asarray(table(np.sqrt(height)))
 
-    def _too_far(self, what: str) -> InputError:
+    def _too_far(self, what: str, tables: _Tables | None = None) -> InputError:
+        """Return the error of a flight beyond the tables, which end where flights are not possible, or at the largest rise asked for."""
+        key = "drop.air and calibrate.air" if isinstance(self.fluid, Air) else "contact.liquid"
+        ends = "is not possible"
+        if tables is not None and tables.up.x[-1] ** 2 > _WHOLE * self.highest:
+            ends = f"is higher than {self.highest:.3g} m, far above what was measured,"
         return InputError(
-            f"{what} is not possible in {self.fluid.word}, for a sphere of {self.radius:g} m and {self.density:g} kg/m^3; look at units, "
-            f"radius and density, or leave out {self.fluid.word}"
+            f"{what} {ends} in {self.fluid.word}, for a sphere of {self.radius:g} m and {self.density:g} kg/m^3; look at units, "
+            f"radius and density, or leave out {key}"
         )
 
     @cached_property

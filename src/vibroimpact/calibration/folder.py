@@ -10,7 +10,7 @@ from pathlib import Path
 import tomli_w
 
 from vibroimpact._version import __version__
-from vibroimpact.calibration.adams_dialog import DIALOG_NOTE, DIALOG_TITLE
+from vibroimpact.calibration.adams_dialog import DIALOG_TITLE, dialog_note
 from vibroimpact.calibration.calibration import Calibration
 from vibroimpact.calibration.file_contents import CALIBRATION, columns_of
 from vibroimpact.calibration.friction.calibrate import FrictionCalibration
@@ -93,7 +93,7 @@ def save_calibration(
             values=told.values,
             dialog=told.dialog,
             dialog_title=DIALOG_TITLE,
-            dialog_note=DIALOG_NOTE,
+            dialog_note=dialog_note(told.parameter),
             differences=told.differences,
             ways=told.ways,
             doubts=told.doubts,

@@ -103,7 +103,8 @@ def find_pulses(time: Floats, force: Floats) -> DetectedPulses:
             margin = _margin(begin, end, threshold / float(above[begin:end].max()))
             quiet[max(begin - margin, 0) : end + margin] = False
         if np.count_nonzero(quiet) < _FEWEST:
-            raise InputError("the record contains only the impact; some time before or after it is needed to determine the force at rest")
+            words = f"fewer than {_FEWEST} samples of the record lie outside impacts, and they determine the force at rest"
+            raise InputError(f"{words}; record some time before or after the impacts")
         if number < _PASSES - 1:
             rest = record_baseline(time, force, quiet)
     return DetectedPulses(force, noise, above, threshold, quiet, runs)

@@ -92,9 +92,8 @@ def impacts_in_force(
         if begin == 0 or end == len(force):
             raise InputError(f"the record {'begins' if begin == 0 else 'ends'} in the middle of an impact, at {at(begin)}")
         if end - begin < _FEWEST:
-            raise InputError(
-                f"the impact at {at(begin)} has only {end - begin} samples, but {_FEWEST} are needed; sample faster, or smooth less"
-            )
+            few = f"{end - begin} sample{'s' if end - begin > 1 else ''}"
+            raise InputError(f"the impact at {at(begin)} has only {few}, but {_FEWEST} are needed; sample faster")
     pulses = evaluate_pulses(time, seen, runs)
     begins = np.array([pulse.begin for pulse in pulses])
     unsure = np.array([pulse.begin_deviation for pulse in pulses])
@@ -105,9 +104,10 @@ def impacts_in_force(
     if clipped and len(pulses) == len(begins):  # the impulse of the last one is not known; its start still ends a flight
         del pulses[-1], runs[-1]
     if clipped and not pulses:
+        up_to = ", or up to the next impact, from whose time the rebound follows" if gravity > 0.0 else ""
         raise InputError(
             f"the force is clipped at {clipped[0]}: its largest value is held, so that neither it nor the impulse is known; "
-            "record again with a larger range, or up to the next impact, from whose time the rebound follows"
+            f"record again with a larger range{up_to}"
         )
     gaps = begins[1:] - np.array([pulse.begin + pulse.duration for pulse in pulses])[: len(begins) - 1]
     if gravity == 0.0 and len(gaps):
@@ -125,8 +125,8 @@ def impacts_in_force(
     for row, (before, after) in enumerate(zip(speeds, separation, strict=True)):
         if not 0.0 < after <= _MOST * before:
             raise InputError(
-                f"the impact at {at(runs[row][0])}: from {before:.4g} m/s the sphere would leave at {after:.4g} m/s; the force, "
-                "the mass or the drop can't be right"
+                f"the impact at {at(runs[row][0])}: from {before:.4g} m/s the sphere would leave at {after:.4g} m/s; "
+                f"{_wrong(row, number, timed=row < len(flown.start))}"
             )
     if clipped:
         doubts += (
@@ -158,6 +158,14 @@ def impacts_in_force(
     return replace(found, flights=flights, record=record)
 
 
+def _wrong(row: int, number: int, *, timed: bool) -> str:
+    """Return what may be wrong with the speeds of an impact, by what they follow from; `timed`: that after it from a time of flight."""
+    if timed:
+        given = "the times, the drop or gravity" if row == 0 else "the times"
+        return f"{given} can't be right, an impact is missing or is none, or the plate moves"
+    return f"the force, the mass{', the drop or gravity' if number > 1 else ' or the drop'} can't be right"
+
+
 class Edges(NamedTuple):
     """Standard deviations of the ends of contacts, and of the begins, of which there may be one more [s]."""
 
@@ -183,7 +191,8 @@ def _separations(
         if abs(scale - 1.0) > _GAIN:
             words = f"the impulses are {100.0 * (1.0 / scale - 1.0):+.1f} % off from those computed from the times of flight"
             more = "" if timed == number else " (the rebound of the last impact is corrected)"
-            doubts.append(f"{words}: the scale of the force, the mass, the drop or gravity can't be right{more}")
+            causes = "the scale of the force, the mass, the drop, gravity or the drag in flight can't be right"
+            doubts.append(f"{words}: {causes}{more}")
     else:
         per_cent = 0.01 * pulses[-1].impulse / mass
         doubts.append(
@@ -200,8 +209,8 @@ def _separations(
     if last.excess_scatter:
         part = 100.0 * last.excess_scatter / last.largest
         doubts.append(
-            f"the force at rest wanders by {part:.2g} % of the largest force beside the last impact, more than by its noise, which "
-            f"contributes {last.impulse_deviation / mass:.2g} m/s to the standard deviation of its separation speed"
+            f"the force at rest wanders by {part:.2g} % of the largest force beside the last impact, more than by its noise; "
+            f"its impulse contributes {last.impulse_deviation / mass:.2g} m/s to the standard deviation of its separation speed"
         )
     return np.append(flown.start, after), np.append(deviation, np.hypot(of_last, gravity * ends[-1])), tuple(doubts)
 

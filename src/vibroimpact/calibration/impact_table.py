@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, field
 from os import PathLike
 
 import numpy as np
 
+from vibroimpact.calibration.matchable import ALONG_PLATE, MATCHABLE
 from vibroimpact.errors import InputError
 from vibroimpact.measurements.header_cells import name_and_unit
 from vibroimpact.measurements.table_file import TableFile, header_of, read_table_file
@@ -33,6 +34,26 @@ _RESTITUTIONS = {
 }
 
 
+_UNITS = {
+    "approach_speed": "m/s",
+    "speed": "m/s",
+    **{name: quantity.unit for name, quantity in {**MATCHABLE, **ALONG_PLATE}.items()},
+}
+"""SI units of columns that are not plain numbers."""
+
+
+@dataclass(frozen=True)
+class ImpactTable(TableFile):
+    """A table whose columns have standard names, and the name in the file of each that has another one there."""
+
+    written: Mapping[str, str] = field(default_factory=dict)
+
+
+def name_in_file(table: TableFile, column: str) -> str:
+    """Return the name that a column has in its file, for messages."""
+    return table.written.get(column, column) if isinstance(table, ImpactTable) else column
+
+
 def is_impact_table(names: Collection[str]) -> bool:
     """Return whether columns are those of restitutions over the approach speed.
 
@@ -53,7 +74,7 @@ def holds_restitutions(path: str | PathLike[str], columns: str | None = None) ->
         return False
 
 
-def read_impact_table(path: str | PathLike[str], units: Mapping[str, str] = _RESTITUTIONS, columns: str | None = None) -> TableFile:
+def read_impact_table(path: str | PathLike[str], units: Mapping[str, str] = _RESTITUTIONS, columns: str | None = None) -> ImpactTable:
     """Read the known columns of a table, some of which may have another usual name, such as `speed`, `e` or `n`.
 
     Parameters
@@ -78,9 +99,13 @@ def read_impact_table(path: str | PathLike[str], units: Mapping[str, str] = _RES
     for other in set(standard.values()):
         several = [name for name in names if standard.get(name, name) == other]
         if len(several) > 1:
-            raise InputError(f"{path}: the columns {' and '.join(several)} both mean {other}; leave one of them out")
+            raise InputError(
+                f"{path}: the columns {' and '.join(several)} {'all' if len(several) > 2 else 'both'} mean {other}; keep one of them"
+            )
     table = read_table_file(path, {**units, **{name: units[other] for name, other in standard.items()}}, [], columns)
-    return replace(table, columns={standard.get(name, name): values for name, values in table.columns.items()})
+    renamed = {standard.get(name, name): values for name, values in table.columns.items()}
+    written = {other: name for name, other in standard.items()}
+    return ImpactTable(table.path, renamed, table.lines, table.empty, table.doubts, written)
 
 
 def _standard(names: Collection[str]) -> dict[str, str]:
@@ -104,8 +129,9 @@ def check_positive(table: TableFile, column: str) -> None:
     """
     wrong = np.flatnonzero(~(table.columns[column] > 0.0))
     if wrong.size:
-        value = table.columns[column][wrong[0]]
-        raise InputError(f"{table.path}, line {table.lines[wrong[0]]}: {column} is {value:g}; it must be greater than 0", "target")
+        value = f"{table.columns[column][wrong[0]]:g} {_UNITS.get(column.removesuffix(DEVIATION), '')}".rstrip()
+        words = f"{name_in_file(table, column)} is {value}; it must be greater than 0"
+        raise InputError(f"{table.path}, line {table.lines[wrong[0]]}: {words}", "target")
 
 
 def check_counts(table: TableFile) -> None:
@@ -119,5 +145,5 @@ def check_counts(table: TableFile) -> None:
     count = table.columns.get("count")
     wrong = np.flatnonzero((count < 1.0) | (count != np.round(count))) if count is not None else np.zeros(0)
     if count is not None and wrong.size:
-        words = f"count is {count[wrong[0]]:g}; it must be the number of impacts of which the row is the mean, 1 or more"
+        words = f"{name_in_file(table, 'count')} is {count[wrong[0]]:g}; it must be a whole number, 1 or more: of the impacts in this mean"
         raise InputError(f"{table.path}, line {table.lines[wrong[0]]}: {words}", "target")

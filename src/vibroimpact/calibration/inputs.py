@@ -49,11 +49,11 @@ def inputs_sentence(inputs: Sequence[Input]) -> str:
     Examples
     --------
     >>> inputs_sentence([as_input("height", "0.6 m +- 5 mm", "m")]).replace("\u00a0", " ")
-    'The intervals include the standard deviations of what is typed: height 0.6 m, 5 mm.'
+    'The intervals include the standard deviations of these inputs: height 0.6 m, 5 mm.'
     >>> inputs_sentence([as_input("height", "0.6 m", "m")]).replace("\u00a0", " ")
-    'The intervals include the standard deviations of what is typed: height 0.6 m, 29 mm (since its last digit leaves open \u00b1 50 mm).'
+    'The intervals include the standard deviations of these inputs: height 0.6 m, 29 mm (since its last digit leaves open \u00b1 50 mm).'
     """
-    words = "The intervals include the standard deviations of what is typed"
+    words = "The intervals include the standard deviations of these inputs"
     return f"{words}: {'; '.join(_words(one) for one in inputs)}." if inputs else ""
 
 

@@ -257,7 +257,8 @@ def _solved(
         if meetings is not None:
             if np.any(at.tops <= meetings.radius):
                 raise InputError(
-                    "in a flight the sphere does not rise above its radius; position must be the height of its centre above the plate"
+                    "in a flight the centre of the sphere does not rise above its place in touch, at the radius; position must be the "
+                    "height of the centre above the plate; look at its unit and at the radius"
                 )
             rows.append(_meeting_rows(at, flying, meetings))
         if _CONTACT in shared and meetings is not None:

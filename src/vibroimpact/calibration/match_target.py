@@ -60,11 +60,13 @@ def match_drop(
     least = float(simulate(limited_to(problem, 1)).rest.speed[0])  # below this separation speed the sphere is at rest
     at = table["approach_speed_m_s"][table["separation_speed_m_s"] > least]
     if not len(at):
-        raise InputError("under the law of the target the sphere does not leave the plate; there is no rebound to match", "target")
+        raise InputError("under the law of the target the sphere comes to rest in the first impact; there is no rebound to match", "target")
 
     for name in weights:
         column = MATCHABLE[name].column
         if not np.all(table[column][: len(at)] > 0.0):
+            if name == "rebound_height" and target.gravity == 0.0:
+                raise InputError("without gravity a sphere rises for ever; there is no rebound height to match", "match")
             raise InputError(f"{name} does not follow from the target, {target.laws[0].name}; match something else", "match")
 
     def wanted_at(fast: Floats) -> tuple[Observations, Floats]:
@@ -133,7 +135,8 @@ def match_measurement(
     """Return the values with which the impacts match a measurement, with confidence intervals."""
     missing = [name for name in weights if name not in seen.wanted]
     if missing:
-        raise InputError(f"{', '.join(missing)} was not measured; there is {', '.join(seen.wanted)}", "match")
+        were = "was" if len(missing) == 1 else "were"
+        raise InputError(f"{', '.join(missing)} {were} not measured; there is {', '.join(seen.wanted)}", "match")
     found = match(tuned, seen.speeds, seen.wanted, weights, seen.which)
     alone = check_reached(tuned, problem, seen, weights, found)
     tell(0.3)
@@ -142,7 +145,8 @@ def match_measurement(
     fit = fit_observations(tuned, seen, weights, _degree(seen.speeds, degree), alone)
     tell(0.5)
     doubts = list(seen.doubts) + [
-        f"{label}: no {tuned.name} meets it exactly, though within the noise; the nearest that is allowed, {nearest:.5g}, is taken"
+        f"{label}: no {tuned.name} meets it exactly, though one does within the noise; the nearest that is allowed, "
+        f"{f'{nearest:.5g} {tuned.unit}'.rstrip()}, is taken"
         for label, value, nearest in zip(seen.labels, alone, values, strict=True)
         if np.isnan(value)
     ]
@@ -158,6 +162,8 @@ def match_measurement(
         intervals, fit = bootstrap_intervals(
             tuned, sized, weights, fit, deviations, draws, confidence, seed, lambda done: tell(0.5 + 0.4 * done)
         )
+        if seen.deviations_known and np.isfinite(fit.freedom):  # the samples have the noise as given, and the residuals are larger
+            fit = replace(fit, covariance=fit.scatter**2 * fit.covariance)
     doubts += undetermined_doubts(tuned, values, intervals, seen, fit, confidence)
     within = None if intervals is None else tuned.allowed.bounded(intervals)
     return MatchedTarget(seen, values, fit, within, None, draws, doubts)

@@ -17,7 +17,7 @@ _STEP = 1e-4
 """Relative step of central differences: with impacts accurate to 1e-12, truncation and rounding errors are both about 1e-8."""
 
 _CLOSE = 1e-11
-_GRID = np.append(0.0, 4.0 ** np.arange(-8.0, 9.0))
+GRID = np.append(0.0, 4.0 ** np.arange(-8.0, 9.0))
 """Multiples of the initial guess that are scanned before a root is refined."""
 
 
@@ -99,7 +99,7 @@ def match(
         (name,) = weights
         falls = tunable.damps and name in REBOUNDS
         if tunable.damps and not falls:  # force over damping has a minimum: take the smallest solution
-            grid = [tunable.allowed.clip(factor * start) for factor in _GRID]
+            grid = [tunable.allowed.clip(factor * start) for factor in GRID]
             seen = np.array([misses(values)[name] for values in grid])
             least, most = (bound * scales[name] + wanted[name] for bound in (np.nanmin(seen, axis=0), np.nanmax(seen, axis=0)))
             return Match(_smallest_root(lambda values: misses(values)[name], start, grid, seen), least, most)
@@ -131,7 +131,7 @@ def _least_squares_value(
     def cost(values: Floats) -> Floats:
         return np.asarray(sum(weight * misses(values)[name] ** 2 for name, weight in weights.items()))
 
-    inside = [allowed.clip(factor * start) for factor in _GRID]
+    inside = [allowed.clip(factor * start) for factor in GRID]
     costs = np.array([cost(values) for values in inside])
     best = np.nanargmin(np.where(np.isnan(costs), np.inf, costs), axis=0)
     ends = [np.stack(inside)[np.clip(best + side, 0, len(inside) - 1), np.arange(len(start))] for side in (-1, 1)]

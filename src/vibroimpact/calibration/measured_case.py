@@ -41,7 +41,7 @@ def heights_measurement(case: Case, heights: Floats, deviation: Floats | None, l
             fallen = heights[at - 1] if at else start
             higher_than = "higher than" if heights[at] > fallen else "too high for"
             what = f"{heights[at]:g} m is {higher_than} the {fallen:g} m from which the sphere fell"
-            words = f"{what}, and a restitution of {values[at]:.4g} is {_beyond_noise(limit.most[at], limit.why)}"
+            words = f"{what}, and a restitution of {_beyond_noise(values[at], limit.most[at], limit.why)}"
             raise InputError(f"{labels[at]}: {words}", "target")
         return seen
 
@@ -97,7 +97,7 @@ def check_restitutions(seen: Observations, case: Case) -> None:
     over = np.flatnonzero(values > limit.most)
     if over.size:
         at = int(over[0])
-        words = f"restitution is {values[at]:.5g}; it is 1 at most, and {values[at]:.4g} is {_beyond_noise(limit.most[at], limit.why)}"
+        words = f"restitution is {values[at]:.5g}; it is 1 at most, and {_beyond_noise(values[at], limit.most[at], limit.why)}"
         raise InputError(f"{seen.labels[at]}: {words}", "target")
 
 
@@ -113,8 +113,12 @@ def _limit(seen: Observations, case: Case) -> RestitutionLimit:
     return restitution_limit(seen.speeds, values, deviations)
 
 
-def _beyond_noise(most: float, why: str) -> str:
-    return f"more than the {most:.4g} that is attributed to noise ({why}); check speeds, heights and their units"
+def _beyond_noise(value: float, most: float, why: str) -> str:
+    """Return that a restitution is more than the most that is attributed to noise, in as many digits as tell them apart."""
+    digits = next((number for number in range(4, 17) if f"{value:.{number}g}" != f"{most:.{number}g}"), 17)
+    return (
+        f"{value:.{digits}g} is more than the {most:.{digits}g} that is attributed to noise ({why}); check speeds, heights and their units"
+    )
 
 
 def _check_above(case: Case, heights: Floats, labels: tuple[str, ...]) -> None:

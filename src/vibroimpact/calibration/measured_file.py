@@ -14,7 +14,7 @@ from vibroimpact.calibration.bounce_record import impacts_in_bounces
 from vibroimpact.calibration.evaluate_measurement import Measurement, speed_at_touch
 from vibroimpact.calibration.flights import Flights, VacuumFlights, vacuum_height
 from vibroimpact.calibration.force_record import impacts_in_force
-from vibroimpact.calibration.impact_table import DEVIATION, check_counts, check_positive, read_impact_table
+from vibroimpact.calibration.impact_table import DEVIATION, ImpactTable, check_counts, check_positive, name_in_file, read_impact_table
 from vibroimpact.calibration.matchable import MATCHABLE
 from vibroimpact.calibration.measured_case import check_restitutions, heights_measurement
 from vibroimpact.calibration.noise import scaled
@@ -29,7 +29,7 @@ from vibroimpact.errors import InputError
 from vibroimpact.measurements.header_cells import name_and_unit
 from vibroimpact.measurements.record_file import SPHERE_ACCELERATION, is_universal, read_universal_record
 from vibroimpact.measurements.recorded_table import RecordedChannel, recorded_channels, rising
-from vibroimpact.measurements.table_file import TableFile, factor_to_si, header_of
+from vibroimpact.measurements.table_file import factor_to_si, header_of
 from vibroimpact.measurements.table_layout import Layout
 from vibroimpact.signals.bounces.find import find_bounces
 from vibroimpact.signals.one_record import one_record
@@ -141,7 +141,8 @@ def _table_record_measurement(case: Case, target: FileTarget, by_rebound: bool) 
     for channel in channels:
         name = name_and_unit(channel.cell)[0]
         if name in found:
-            words = f'there are two columns "{name}"; leave one out by columns = "time=s,-,{name}={channel.unit}", with - for it'
+            unit = name_and_unit(channel.cell)[1] or channel.unit
+            words = f'several columns are called "{name}"; state them all by columns = "time=s,-,{name}={unit}", with - for one left out'
             raise in_file(target.file, InputError(words))
         found[name] = channel
     channel = found[_evaluated(found, by_rebound)]
@@ -229,7 +230,7 @@ def _record_measurement(case: Case, record: Recorded, by_rebound: bool) -> Measu
     return Measurement(in_force, case.drop.gravity * float(time[-1] - time[0]) ** 2 / 8.0)
 
 
-def _rows_measurement(case: Case, table: TableFile) -> Measurement:
+def _rows_measurement(case: Case, table: ImpactTable) -> Measurement:
     """Return the measurement of a file with one impact per row."""
     columns, speeds = dict(table.columns), table.columns["approach_speed"]
     if "restitution_achieved" in columns:  # name of the column in the impact table of a result
@@ -247,7 +248,8 @@ def _rows_measurement(case: Case, table: TableFile) -> Measurement:
         )
     for name in wanted:
         check_positive(table, next(column for column in (name, "restitution", "restitution_achieved") if column in table.columns))
-    deviations = known_deviations(table.path, columns, wanted)
+    by_restitution = {} if "separation_speed" in table.columns else {"separation_speed": name_in_file(table, "restitution")}
+    deviations = known_deviations(table.path, columns, wanted, {**by_restitution, **table.written})
     # of unknown magnitude: the same relative noise for all; less for the mean of several
     sizes = {
         name: size / np.sqrt(columns.get("count", 1.0)) for name, size in (deviations or {k: np.abs(v) for k, v in wanted.items()}).items()
@@ -267,8 +269,12 @@ def _rows_measurement(case: Case, table: TableFile) -> Measurement:
     return Measurement(evaluated, float(np.max(wanted.get("rebound_height", radius))) - radius)
 
 
-def known_deviations(path: Path, columns: Mapping[str, Floats], wanted: Iterable[str]) -> dict[str, Floats] | None:
+def known_deviations(
+    path: Path, columns: Mapping[str, Floats], wanted: Iterable[str], written: Mapping[str, str] | None = None
+) -> dict[str, Floats] | None:
     """Return the standard deviations of quantities, which all have a column of them or none; None without.
+
+    `written`: the names that quantities have in the file, where they have others.
 
     Raises
     ------
@@ -281,11 +287,12 @@ def known_deviations(path: Path, columns: Mapping[str, Floats], wanted: Iterable
     for name, has in known.items():
         if not has:
             one = next(other for other, there in known.items() if there)
-            raise InputError(f"{path}: {one} has a standard deviation and {name} has none; give {name}{DEVIATION}", "target")
+            has_one, has_none = ((written or {}).get(quantity, quantity) for quantity in (one, name))
+            raise InputError(f"{path}: {has_one} has a standard deviation and {has_none} has none; give {has_none}{DEVIATION}", "target")
     return {name: columns[f"{name}{DEVIATION}"] for name in known}
 
 
-def _table(target: FileTarget) -> TableFile:
+def _table(target: FileTarget) -> ImpactTable:
     try:
         return read_impact_table(target.file, _COLUMNS, target.columns)
     except InputError as error:

@@ -9,7 +9,14 @@ from dataclasses import replace
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.calibration.flight_samples import lowest_points, release, samples_above_impacts, samples_of_flights, with_enough_samples
+from vibroimpact.calibration.flight_samples import (
+    SMALL,
+    lowest_points,
+    release,
+    samples_above_impacts,
+    samples_of_flights,
+    with_enough_samples,
+)
 from vibroimpact.calibration.flights import Flights, VacuumFlights, vacuum_height
 from vibroimpact.calibration.joint_flights import JointFlights, meeting_flights, separate_flights
 from vibroimpact.calibration.noise import as_noise, of_the_impact_before, scaled
@@ -96,7 +103,8 @@ def impacts_in_position(
     noise, at, flying = record_noise(position), sample_label(lines), flights or VacuumFlights(gravity)
     lows = lowest_points(position, noise)
     if not len(lows):
-        raise InputError("the record does not show an impact: nowhere does the sphere stop falling and rise again")
+        rises = f"out of its noise and by {100.0 * SMALL:g} % of its range"
+        raise InputError(f"the record does not show an impact: nowhere does the sphere stop falling and rise again, {rises}")
     ends = [release(time, position, int(lows[0]), noise), *(int(low) for low in lows), len(time) - 1]
     selected, start = samples_above_impacts(position, ends, noise), None
     least, middle = _LEAST * float(np.ptp(position)), float(time.mean())

@@ -68,8 +68,8 @@ def _position_chart(one: Overlay) -> Chart:
     lower = (Line(*_drawn(one.measured[0][known], apart[known]), "measured less simulated", "matched"),)
     panels = (Panel(time, Axis("Height", "m"), upper),), (Panel(time, Axis("Difference", "m"), lower),)
     caption = (
-        "The height of the sphere's centre as measured, with its zero and clock corrected, and simulated with the calibrated values, from "
-        "the first impact on: each rebound begins when it does in the record."
+        "The height of the sphere's centre as measured, corrected by what the record itself determines, and simulated with the calibrated "
+        "values, from the first impact on: each rebound begins when it does in the record."
     )
     return Chart("record", "Measured and simulated height", panels, caption, height=2.3)
 

@@ -45,9 +45,12 @@ class RestitutionTarget(Section):
     @model_validator(mode="after")
     def _paired(self) -> RestitutionTarget:
         several, speeds = self.restitution, self.approach_speed
+        if several == ():
+            raise InputError("the list is empty; give the restitutions, or the number that holds for every impact", "restitution")
         if isinstance(several, tuple) and (speeds is None or len(speeds) != len(several)):
-            have = "no approach_speed is given" if speeds is None else f"there are {len(speeds)} approach speeds"
-            raise InputError(f"{len(several)} restitutions need as many approach speeds, and {have}", "approach_speed")
+            have = "no approach_speed is given" if speeds is None else f"there are {len(speeds)}"
+            need = f"{len(several)} restitutions need" if len(several) > 1 else "a list of one restitution needs"
+            raise InputError(f"{need} as many approach speeds, and {have}", "approach_speed")
         if not isinstance(several, tuple) and (speeds or self.standard_deviation):
             key = "approach_speed" if speeds else "standard_deviation"
             raise InputError("one restitution holds at any approach speed, and exactly; leave this out", key)

@@ -108,7 +108,7 @@ def fit_sentences(found: Calibration) -> list[str]:
         way = f"by bootstrap with {found.bootstrap} draws" if found.bootstrap else "to first order"
         if found.intervals is not None:
             told.append(f"Intervals are {way}, from {seen.noise_from if seen.deviations_known else 'the scatter of the measurement'}.")
-        if seen.effects is not None:
+        if seen.effects is not None and (found.intervals is not None or np.isfinite(half).all()):
             told.append(inputs_sentence(seen.effects.inputs))
         if seen.deviations_known and np.isfinite(fit.scatter):
             told.append(f"Residuals are {digits(fit.scatter, 3)} times as large as their standard deviations.")
@@ -152,7 +152,10 @@ def given_sentences(found: Calibration) -> list[str]:
 def match_words(found: Calibration) -> str:
     """Return in words what was matched."""
     if len(found.weights) == 1:
-        return f"the {MATCHABLE[next(iter(found.weights))].phrase} of each impact matches the target"
+        (name,) = found.weights
+        reached = np.abs(found.outcomes[name] / found.observations.wanted[name] - 1.0) <= _MET
+        where = "" if reached.all() else ", or comes nearest to it where noise puts it out of reach"
+        return f"the {MATCHABLE[name].phrase} of each impact matches the target{where}"
     every = " and ".join(f"the {MATCHABLE[name].phrase} (weight {weight:g})" for name, weight in found.weights.items())
     return f"{every} of each impact are fitted to the target by a weighted least-squares fit of one value"
 

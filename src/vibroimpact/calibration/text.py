@@ -6,7 +6,7 @@ from rich.columns import Columns
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from vibroimpact.calibration.adams_dialog import DIALOG_NOTE, DIALOG_TITLE
+from vibroimpact.calibration.adams_dialog import DIALOG_TITLE, dialog_note
 from vibroimpact.calibration.report import CalibrationReport, Cells
 from vibroimpact.cases.case import Case
 from vibroimpact.report.terminal_table import TerminalColumn, TerminalTable, numbers
@@ -26,7 +26,7 @@ def calibration_summary(case: Case, told: CalibrationReport) -> RenderableType:
     ]
     if told.dialog:
         parts += [Text(), Text(DIALOG_TITLE, style="bold"), cells_table(told.dialog)]
-        parts += [Text(f" {DIALOG_NOTE}", style="dim")] if len(told.dialog[1]) > 1 else []
+        parts += [Text(f" {dialog_note(told.parameter)}", style="dim")] if len(told.dialog[1]) > 1 else []
     if told.given:
         parts += [Text(), *(Text(sentence) for sentence in told.given)]
     if told.differences:

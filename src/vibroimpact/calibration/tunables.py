@@ -46,8 +46,12 @@ def law_parameter(problem: Problem, name: str | None = None) -> Tunable:
     laws, first = problem.laws, problem.laws[0]
     known = {item.name: item for item in fields(first) if not item.metadata["memory"] and getattr(first, item.name) is not None}
     if name is None and first.free_parameter is None:
-        raise InputError(f"{first.name} has no loss parameter; name another law, or one of {', '.join(known)}", "parameter")
+        other = f"or, to match something other than the rebound, one of {', '.join(known)}"
+        raise InputError(f"{first.name} has no loss parameter; name another law, {other}", "parameter")
     chosen = name or str(first.free_parameter)
+    if chosen in {item.name for item in fields(first) if not item.metadata["memory"]} - set(known):
+        words = f"the case gives no {chosen} of {first.name}, in whose place it gives another parameter"
+        raise InputError(f"{words}; give {chosen} alone, or tune one of {', '.join(known)}", "parameter")
     if chosen not in known:
         raise InputError(f'{first.name} has no parameter "{chosen}"; it has {choices(known, chosen)}', "parameter")
     # what is sought takes the place of a function of the approach speed

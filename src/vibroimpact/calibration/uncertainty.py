@@ -15,6 +15,7 @@ from vibroimpact.calibration.matching import Tunable, match
 from vibroimpact.calibration.observations import Observations
 from vibroimpact.calibration.single_impacts import first_approach_speed
 from vibroimpact.dynamics.problem import Problem
+from vibroimpact.units.display import known_text
 
 _DRAWN_VALUES = 2000  # values computed by the default bootstrap, so that it takes seconds
 _FEWEST_DRAWS, _MOST_DRAWS = 100, 400
@@ -137,9 +138,11 @@ def undetermined_doubts(
         return told
     wide = np.flatnonzero(intervals[:, 1] - intervals[:, 0] > _DETERMINED * np.abs(values))
     for row in wide[:_MOST_TOLD]:
-        low, high = tunable.allowed.bounded(intervals[row])
-        value = f"{values[row]:.4g} {tunable.unit}".rstrip()
-        told.append(f"{observations.labels[row]} does not determine {tunable.name}: {value}, but {low:.4g} to {high:.4g} at {percent}")
+        half = 0.5 * float(np.ptp(intervals[row]))
+        low, high = (known_text(float(end), half, 4) for end in tunable.allowed.bounded(intervals[row]))
+        value = f"{known_text(float(values[row]), half, 4)} {tunable.unit}".rstrip()
+        ends = f"{low} to {high} {tunable.unit}".rstrip()
+        told.append(f"{observations.labels[row]} does not determine {tunable.name}: {value}, but {ends} at {percent}")
     if len(wide) > _MOST_TOLD:
         more = len(wide) - _MOST_TOLD
         told.append(f"the same holds for {more} more impact{'s' if more > 1 else ''}")
@@ -150,14 +153,15 @@ def undetermined_doubts(
     return told
 
 
-def other_drop_doubts(problem: Problem, seen: Observations) -> list[str]:
+def other_drop_doubts(problem: Problem, tunable: Tunable, seen: Observations) -> list[str]:
     """Return a warning if successive impacts were measured of another drop than that of the case."""
     if not is_other_drop(problem, seen):
         return []
     own, in_place = first_approach_speed(problem), " in place of drop.height" if problem.height is not None else ""
+    has = "the value of the polynomial at its own first speed" if "." in tunable.name else "the values of the polynomial at its own speeds"
     return [
         f"the first impact that was measured is at {seen.speeds[0]:.4g} m/s, and that of the drop at {own:.4g} m/s: the calibrated case "
-        f"has the values of the polynomial at its own speeds; drop.speed = {seen.speeds[0]:.4g}{in_place} makes it the drop measured"
+        f"has {has}; drop.speed = {seen.speeds[0]:.4g}{in_place} makes it the drop measured"
     ]
 
 
@@ -172,23 +176,30 @@ def fit_doubts(
     if np.isfinite(fit.freedom) and seen.deviations_known and fit.freedom > 0:
         told.append(
             f"residuals are {fit.scatter:.3g} times as large as their standard deviations: a polynomial of degree {function.degree} does "
-            "not fit the measurement, or its noise is larger; the intervals of the polynomial are widened by that factor"
+            "not fit the measurement, or its noise is larger; the intervals of the polynomial are widened accordingly"
         )
     if curve is not None:
         off, size = function.misfit(*curve), np.nanmax(np.abs(curve[1]), initial=0.0)
         if off > _FOLLOWS * size:
             told.append(
                 f"the polynomial of degree {function.degree} deviates by up to {off:.3g} from values of up to "
-                f"{f'{size:.3g} {tunable.unit}'.rstrip()}; use a higher degree, or a narrower range of speeds"
+                f"{f'{size:.3g} {tunable.unit}'.rstrip()}; use a higher degree, which takes calibrate.speeds where the impacts are too "
+                "few, or a narrower range of speeds"
             )
     beyond = function.beyond(speeds)
     if beyond.size and function.degree:
-        last = f" to {beyond.max():.4g}" if beyond.size > 1 else ""
+        outside = (beyond[beyond < function.slowest], beyond[beyond > function.fastest])
+        where = " and ".join(_range_words(some) for some in outside if some.size)
         told.append(
-            f"the drop has impacts at {beyond.min():.4g}{last} m/s, and the polynomial was fitted over "
+            f"the drop has {'impacts' if beyond.size > 1 else 'an impact'} at {where} m/s, and the polynomial was fitted over "
             f"{function.slowest:.4g} to {function.fastest:.4g} m/s: there it is an extrapolation"
         )
     rings = problem.sphere.modes is not None or problem.plate.modes is not None or problem.local_element is not None
     if rings and impact_count(problem) > 1:
-        told.append(f"{tunable.name} is matched on bodies at rest; at later impacts they still vibrate, and the rebound differs")
+        told.append(f"{tunable.name} is matched on bodies at rest; at later impacts they may still vibrate, and the rebound then differs")
     return told
+
+
+def _range_words(speeds: Floats) -> str:
+    first, last = (f"{end:.4g}" for end in (speeds.min(), speeds.max()))
+    return first if first == last else f"{first} to {last}"

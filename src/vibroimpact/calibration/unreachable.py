@@ -9,7 +9,7 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.calibration.matchable import MATCHABLE, REBOUNDS
-from vibroimpact.calibration.matching import Match, Tunable, derivatives, match
+from vibroimpact.calibration.matching import GRID, Match, Tunable, derivatives, match
 from vibroimpact.calibration.noise import standard_deviations
 from vibroimpact.calibration.observations import Observations
 from vibroimpact.calibration.restitution_limit import measured_restitutions, restitution_limit
@@ -35,7 +35,8 @@ def check_reached(tunable: Tunable, problem: Problem, seen: Observations, weight
     missed = np.flatnonzero(np.isnan(found.values))
     if len(weights) > 1:
         if missed.size:
-            raise InputError(f"{seen.labels[missed[0]]}: no value of {tunable.name} is better than all others", "target")
+            words = f"no {tunable.name} was found with which the matched quantities together deviate least"
+            raise InputError(f"{seen.labels[missed[0]]}: {words}; match one of them alone", "target")
         return found.values
     (name,) = weights
     wanted, (_, unit, words) = seen.wanted[name], MATCHABLE[name]
@@ -44,15 +45,27 @@ def check_reached(tunable: Tunable, problem: Problem, seen: Observations, weight
         if 0.0 < beyond <= max(_BEYOND_NOISE * _noise_of(tunable, seen, name, int(row)), _above_one(problem, seen, name, int(row))):
             continue
         others = other_parameters(problem, tunable, seen, weights, row=int(row))
-        hint = "; with the rest as given it would take " + " or ".join(_value(problem, *item) for item in others.items()) if others else ""
+        # where the case gives no value of this one, it is the initial guess
+        guess = "" if np.isfinite(tunable.given).all() else f"{_value(problem, tunable.name, tunable.start)} and "
+        would = f"; with {guess}the rest as given it would take {' or '.join(_value(problem, *item) for item in others.items())}"
+        hint = would if others else ""
         asked = f"{seen.labels[row]}: at an approach speed of {seen.speeds[row]:.5g} m/s a {words} of {wanted[row]:.5g} {unit} is wanted"
-        reach = f"{found.least[row]:.5g} to {found.most[row]:.5g} {unit}, whatever {tunable.name} is"
+        ends = list(dict.fromkeys(f"{end:.5g}" for end in (found.least[row], found.most[row])))
+        reach = f"{' to '.join(ends)} {unit}, {_tried(tunable, name)}"
         if beyond <= 0.0:
             reach = f"{reach}, but jumps over this one"
-        elif tunable.damps and wanted[row] > found.most[row]:
+        elif tunable.damps and name in REBOUNDS and wanted[row] > found.most[row]:
             reach = f"at most {found.most[row]:.5g} {unit}, without any {tunable.name}"
         raise InputError(f"{asked}, and {problem.laws[0].name} gives {reach}{hint}", "target")
     return found.values
+
+
+def _tried(tunable: Tunable, name: str) -> str:
+    """Return in words for which values of the parameter a quantity was computed."""
+    if not tunable.damps or name in REBOUNDS:
+        return f"whatever {tunable.name} is"
+    low, high = tunable.allowed.clip(tunable.start * GRID[[0, -1]])
+    return f"with {tunable.name} from {low:.3g} to {f'{high:.3g} {tunable.unit}'.rstrip()}"
 
 
 def _above_one(problem: Problem, seen: Observations, name: str, row: int) -> float:

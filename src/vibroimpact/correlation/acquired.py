@@ -112,15 +112,19 @@ def acquired_of(sensors: Sequence[Sensor], records: Sequence[Record], force: Rec
     every = [without_baseline(replace(one, rate=rate)) for one in every]
     used = sensors_of([replace(sensor, rate=rate) for sensor in sensors], every[: len(records)])
     if force is not None and force.unit != "N":
-        raise InputError(f"the record {shown(force.name)} is in {force.unit}; the force of a hammer is in N")
+        unit = "has no unit" if force.unit in ("", "1") else f"is in {force.unit}"
+        raise InputError(f"the record {shown(force.name)} {unit}; the force of a hammer is in N")
     whole, start = on_common_time(every)
     if whole.shape[1] < 2 * LEAD:
-        raise InputError(
-            f"the records have {whole.shape[1]} samples in common, and {2 * LEAD} are needed; give longer records that overlap in time"
-        )
+        words = f"the records have {whole.shape[1]} sample{'' if whole.shape[1] == 1 else 's'} in common"
+        remedy = "give longer records that overlap in time"
+        if len(every) == 1:
+            words, remedy = f"the record {shown(every[0].name)} has {whole.shape[1]} samples", "give a longer one"
+        raise InputError(f"{words}, and {2 * LEAD} are needed; {remedy}")
     for one, value in zip(every, whole, strict=True):
         if np.ptp(value) == 0.0:
-            raise InputError(f"the record {shown(one.name)} is constant where it overlaps with the others; it has no onset")
+            where = " where it overlaps with the others" if len(every) > 1 else ""
+            raise InputError(f"the record {shown(one.name)} is constant{where}; it has no onset")
     recorded, _ = on_common_time([one if one.recorded is None else replace(one, value=one.recorded) for one in every])
     removed = tuple(one.removed or Removed(0.0, 0.0) for one in every)
     value = whole[: len(records)]

@@ -10,15 +10,28 @@ from vibroimpact.correlation.acquired import LEAD, Acquired
 from vibroimpact.signals.delay import Delay, band_limited, delay_between
 
 ALIGNED = 5e-3
-"""Time from the first touch on by which records are aligned [s]: later, small errors of frequencies have added up."""
+"""Time from the first touch on by which records are aligned, if it has samples enough [s]: later, small errors of frequencies have added
+up.
+"""
 LEAST = 64
-"""Least number of samples from the first touch on."""
+"""Least number of samples from the first touch on, also of those by which records are aligned."""
 _TOGETHER = 0.5
 """Distance of the delays of two records that is none, in samples."""
 _SURE, _BETTER = 0.85, 0.05
 """Correlation coefficient from which on a record has a delay of its own, and by how much it is larger than with the common one."""
 _NEAR = 2.0
 """Samples about the lag that is found, within which it is found to a part of one."""
+
+
+def aligned_time(rate: float, length: float) -> float:
+    """Return the time from the first touch on by which records of a rate and a length are aligned [s].
+
+    Examples
+    --------
+    >>> aligned_time(51200.0, 0.1), aligned_time(6400.0, 0.1), aligned_time(51200.0, 0.002)
+    (0.005, 0.01, 0.002)
+    """
+    return max(LEAST / rate, min(ALIGNED, length))
 
 
 def delay_of(acquired: Acquired, simulated: Floats, band: tuple[float, float], length: float) -> tuple[Delay, Floats]:
@@ -28,7 +41,7 @@ def delay_of(acquired: Acquired, simulated: Floats, band: tuple[float, float], l
     as far as a force tells that, and otherwise of that which is most like its simulation.
     """
     rate = acquired.rate
-    reach = max(LEAST, round(min(ALIGNED, length) * rate))
+    reach = round(aligned_time(rate, length) * rate)
     first = max(0, acquired.onsets[0] - LEAD - reach)
     last = acquired.onsets[0] + reach
     fade = np.ones(last - first)

@@ -12,7 +12,6 @@ from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.made import made_charts
 from vibroimpact.charts.marks import Bars, Line, Mark, Points, Rug
-from vibroimpact.correlation.alignment import ALIGNED
 from vibroimpact.correlation.correlate import Correlation
 from vibroimpact.correlation.criteria import Criteria
 from vibroimpact.correlation.document import what_frac_is_of
@@ -79,7 +78,7 @@ def _overlay(found: Correlation) -> Chart:
             panels.append(Panel(axis, level, tuple(lines), f"{_name(found, number)}: {words}"))
         rows.append(tuple(panels))
     caption = (
-        f"Records, aligned in time by their first {1e3 * ALIGNED:g} ms, the simulation, and the difference, within the band from "
+        f"Records, aligned in time by their first {1e3 * found.aligned:.3g} ms, the simulation, and the difference, within the band from "
         f"{found.band[0]:.4g} to {found.band[1]:.4g} Hz.{those_drawn(len(found.sensors))}"
     )
     return Chart("overlay", "Records and simulation", tuple(rows), caption, _HEIGHT)

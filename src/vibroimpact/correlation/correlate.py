@@ -13,7 +13,7 @@ from scipy import fft
 from vibroimpact.arrays import Complex, Floats
 from vibroimpact.cases.schema import CaseTable
 from vibroimpact.correlation.acquired import LEAD, Acquired, acquired_of
-from vibroimpact.correlation.alignment import LEAST, delay_of
+from vibroimpact.correlation.alignment import LEAST, aligned_time, delay_of
 from vibroimpact.correlation.doubts import doubts_about
 from vibroimpact.correlation.excitation import Excited, force_ends, is_excited
 from vibroimpact.correlation.mode_pairs import ModePair, pairs_of
@@ -50,7 +50,7 @@ class Correlation:
         How much later the records are than the simulation [s], whose time begins with its first touch; under a measured force with the
         records, so that there is none if all were sampled together.
     polarity, coefficient : array, shape (S,)
-        1, or -1 where a record is upside down; and the correlation coefficient of the first 5 ms.
+        1, or -1 where a record is upside down; and the correlation coefficient of the time by which records are aligned.
     time : array, shape (samples,)
         Times since first touch [s].
     measured, simulated : array, shape (S, samples)
@@ -79,6 +79,9 @@ class Correlation:
         How much later each record is than the others and its own simulation, as channels that were not sampled together are [s].
     doubts : tuple of str
         What is not sure, and why.
+    aligned : float
+        Time from the first touch on by which records and simulation are aligned [s]: 5 ms, or the window if it is shorter, but 64 samples
+        at least.
 
     Examples
     --------
@@ -118,6 +121,7 @@ class Correlation:
     removed: Mapping[str, Removed]
     skew: Floats
     doubts: tuple[str, ...]
+    aligned: float
 
     @property
     def residual(self) -> Floats:
@@ -171,9 +175,9 @@ def correlate(
     Notes
     -----
     The case is simulated at the rate of the records. Without a measured force its own impact is; with one, its plate answers to that force.
-    Both are brought to one time by the cross-correlation of the first 5 ms within the band. Frequency responses are those of the estimator
-    :math:`H_1 = S_{aF} / S_{FF}` (Bendat and Piersol, Random Data), of the same window for both, so that they leak alike. Modes are those
-    of `modes_in_decay`, from the end of the force on.
+    Both are brought to one time by the cross-correlation of the first 5 ms, or 64 samples, within the band. Frequency responses are those
+    of the estimator :math:`H_1 = S_{aF} / S_{FF}` (Bendat and Piersol, Random Data), of the same window for both, so that they leak alike.
+    Modes are those of `modes_in_decay`, from the end of the force on.
 
     Examples
     --------
@@ -219,7 +223,8 @@ def correlate(
     octaves = octaves_of(used)
     whole = [*records, *([] if force is None else [force])]
     of_files = dict.fromkeys(doubt for record in whole for doubt in record.named_doubts)
-    of_test = doubts_about(problem, acquired, delay, damped.delay, heard.skew, Excited(used, sought, ends))
+    aligned = aligned_time(rate, acting.length)
+    of_test = doubts_about(problem, acquired, delay, damped.delay, heard.skew, Excited(used, sought, ends), aligned)
     return Correlation(
         case=case,
         sensors=acquired.sensors,
@@ -245,6 +250,7 @@ def correlate(
         removed={one.name: part for one, part in zip(whole, acquired.removed, strict=True)},
         skew=heard.skew,
         doubts=(*of_files, *doubts_of_differences(differences, plain_frac, scaled_frac, damped_frac), *of_test),
+        aligned=aligned,
     )
 
 
@@ -310,7 +316,9 @@ def _acting(problem: Problem, acquired: Acquired, hears: Listening, window: floa
         over = max(end - onset for end, onset in zip(acquired.ends, acquired.onsets, strict=True)) / rate
         acting = _Acting(Pushes(time, acquired.force / rate, acquired.pulse_times), 0.0, length, over)
     if length * rate < LEAST:
-        until, remedy = "to the next one, or to the end of the records", "give longer records, and of hits that are further apart"
+        until, remedy = "to the next one, or to the end of the records", "give longer records"
+        if len(acquired.onsets) > 1:
+            remedy += ", or of hits that are further apart"
         if window is not None and length == window:
             until, remedy = f"within the window of {window:g} s", "give a longer one"
         elif acquired.force is None:

@@ -8,7 +8,6 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.correlation.acquired import LEAD, Acquired
-from vibroimpact.correlation.alignment import ALIGNED
 from vibroimpact.correlation.excitation import Excited, is_excited
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.shown import shown
@@ -30,6 +29,7 @@ def doubts_about(
     corrected: Delay,
     skew: Floats,
     excited: Excited,
+    aligned: float,
 ) -> Iterator[str]:
     """Yield the doubts about a correlation, one sentence each without its full stop.
 
@@ -47,7 +47,10 @@ def doubts_about(
         How much later each record is than the others [s].
     excited : Excited
         The bands of frequencies, and where the force ends.
+    aligned : float
+        Time from the first touch on by which they were aligned [s].
     """
+    early = f"in the first {1e3 * aligned:.3g} ms"
     rates = {sensor.rate for sensor in problem.sensors if sensor.name in {one.name for one in acquired.sensors}} - {acquired.rate}
     if rates:
         others = ", ".join(f"{rate:g}" for rate in sorted(rates))
@@ -60,22 +63,23 @@ def doubts_about(
         if sign < 0.0:
             yield f"the record {name} has inverted polarity; its sign is changed"
         if alike < _ALIKE:
-            words = f"the first {1e3 * ALIGNED:g} ms of {name} and of its simulation differ (correlation {alike:.2f})"
+            words = f"the first {1e3 * aligned:.3g} ms of {name} and of its simulation differ (correlation {alike:.2f})"
             yield f"{words}: the delay may be wrong by a period"
         suffers = "its FRAC and residual suffer, and its damping if it is clipped after the end of the force"
         yield from _clipped(f"the record {name}", value, recorded, acquired.onsets[0], suffers)
     for sensor, late in zip(acquired.sensors, skew, strict=True):
         if late:
             words = f"{abs(late) * acquired.rate:.3g} samples {'later' if late > 0.0 else 'earlier'} than the others and its simulation"
-            yield f"the record {shown(sensor.name)} comes {words}: its channel was not sampled with theirs; its FRAC and residual suffer"
-    yield from _of_gains(acquired, corrected)
+            cause = "its channel may not have been sampled with theirs, or it passed another filter"
+            yield f"the record {shown(sensor.name)} comes {words}: {cause}; its FRAC and residual suffer"
+    yield from _of_gains(acquired, corrected, early)
     if acquired.force is not None:
         yield from _of_force(acquired, delay)
     yield from _of_excitation(acquired, excited)
     assert problem.plate.modes is not None
     highest = float(problem.plate.modes.frequencies[-1])
     if highest < excited.sought[1]:
-        yield f"the modes of the case end at {highest:.5g} Hz, and the band at {excited.sought[1]:.5g} Hz: ask for more modes"
+        yield f"the modes of the case end at {highest:.5g} Hz, and modes are sought up to {excited.sought[1]:.5g} Hz: ask for more modes"
 
 
 def _clipped(what: str, value: np.ndarray, recorded: np.ndarray, onset: int, suffers: str) -> Iterator[str]:
@@ -84,19 +88,20 @@ def _clipped(what: str, value: np.ndarray, recorded: np.ndarray, onset: int, suf
         yield f"{what} is clipped: at least {samples} samples lie at an end of its range; {suffers}"
 
 
-def _of_gains(acquired: Acquired, delay: Delay) -> Iterator[str]:
-    """Yield the doubts about records that are larger or smaller than their simulations, which else are like them."""
+def _of_gains(acquired: Acquired, delay: Delay, early: str) -> Iterator[str]:
+    """Yield the doubts about records that are larger or smaller than their simulations, which else are like them; `early`: when."""
     gain, like = np.abs(delay.gain), delay.correlation > _GAIN_ALIKE
     others = "the impact and the contact of the case" if acquired.force is None else "the calibration of the force"
     off = like & (np.abs(np.log(np.maximum(gain, 1e-300))) > _GAIN)
     if off.all() and np.ptp(np.log(gain)) < _GAIN:
         every = f"{'all records are' if len(gain) > 1 else 'the record is'} {np.exp(np.mean(np.log(gain))):.3g} times the simulation"
-        yield f"{every} in the first {1e3 * ALIGNED:g} ms: check {others}, the sensitivities, and mass and damping of the plate"
+        sensitivities = "the sensitivities" if len(gain) > 1 else "the sensitivity"
+        yield f"{every} {early}: check {others}, {sensitivities}, and mass and damping of the plate"
         return
     for sensor, times, wrong in zip(acquired.sensors, gain, off, strict=True):
         if wrong:
             words = "check its sensitivity and place, and the damping of the case"
-            yield f"the record {shown(sensor.name)} is {times:.3g} times its simulation in the first {1e3 * ALIGNED:g} ms: {words}"
+            yield f"the record {shown(sensor.name)} is {times:.3g} times its simulation {early}: {words}"
 
 
 def _of_force(acquired: Acquired, delay: Delay) -> Iterator[str]:
@@ -104,12 +109,13 @@ def _of_force(acquired: Acquired, delay: Delay) -> Iterator[str]:
     assert acquired.force is not None
     yield from _clipped("the force", acquired.force, acquired.recorded[-1], acquired.onsets[0], "frequency responses and simulation suffer")
     if (delay.polarity < 0.0).all():
-        yield "all records have inverted polarity: the sign of the force may be wrong"
+        every = "all records have" if len(delay.polarity) > 1 else "the only record has"
+        yield f"{every} inverted polarity: the sign of the force may be wrong"
     samples = delay.time * acquired.rate
     if abs(samples) > _TOGETHER:
         way = "later" if samples > 0.0 else "earlier"
         words = f"the records come {abs(samples):.3g} samples {way} than computed from the force"
-        yield f"{words}: the channels were not sampled simultaneously"
+        yield f"{words}: the channels may not have been sampled simultaneously, or passed different filters"
     if len(acquired.pulses) > len(acquired.onsets):
         yield f"double hit of the hammer: there are {len(acquired.pulses)} pulses of force in {len(acquired.onsets)} hits"
 

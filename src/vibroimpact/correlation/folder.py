@@ -93,6 +93,7 @@ def save_correlation(found: Correlation, directory: str | PathLike[str], *, forc
             octave_headers=octave_headers(found),
             octaves=octave_rows(found),
             of=what_frac_is_of(found),
+            aligned=f"{1e3 * found.aligned:.3g} ms",
             modes=mode_cells(found.modes),
             texts=TEXTS,
             damping=damping_field(found.modes),

@@ -45,11 +45,11 @@ class CommonDifference:
         """What it says of the case, without a full stop."""
         way = "higher" if self.value > 0.0 else "lower"
         frequency, stiffness = 100.0 * abs(self.value), 100.0 * ((1.0 + self.value) ** 2 - 1.0)
-        ends = sorted((100.0 * abs(self.least), 100.0 * abs(self.largest)))
-        thickness = f"its thickness by about {100.0 * self.value:+.2g} %"
-        causes = f"the plate's Young's modulus over density differs from the case's by {stiffness:+.2g} %, or {thickness}"
-        differ = f"the frequencies of {self.modes} modes are all {frequency:.2g} % {way} than the case's ({ends[0]:.2g} to {ends[1]:.2g} %)"
-        return f"{differ}: {causes}"
+        ends = sorted(100.0 * (end if self.value > 0.0 else -end) for end in (self.least, self.largest))
+        thickness = f"a thickness that differs by about {100.0 * self.value:+.2g} %"
+        causes = f"as with a Young's modulus over density of the plate that differs from the case's by {stiffness:+.2g} %, or {thickness}"
+        differ = f"the frequencies of {self.modes} modes are {frequency:.2g} % {way} than the case's ({ends[0]:.2g} to {ends[1]:.2g} %)"
+        return f"{differ}, {causes}"
 
 
 @dataclass(frozen=True)

@@ -74,5 +74,6 @@ def restitution_chart(found: Fitted, each: str = "Each row of the table", one: s
     bars = {"low": low, "high": high} if whole else {}
     marks.append(Points(speed, found.restitution[known], f"{one}s", "matched", names, **bars))
     panel = Panel(Axis("Approach speed", "m/s"), Axis("Restitution"), tuple(marks))
-    caption = f"{each}{f', with its {100.0 * found.confidence:g} % interval' if whole else ''}, and the fits."
+    interval = f", with its {100.0 * found.confidence:g} % interval" if whole else ""
+    caption = f"{each}{interval}, and the fit{'s' if len(found.laws) > 1 else ''}."
     return Chart("restitution", "Restitution over the approach speed", ((panel,),), caption, height=3.2)

@@ -147,10 +147,10 @@ def rebounds_of(
         if restitution[0] > 1.0 + 3.0 * deviation[0]:
             risen = 0.5 * flown[0] ** 2 / g
             words = f"after the first touch the ball rises by {risen:.4g} m, more than the height of {fall.value:g} m from which it fell"
-            raise InputError(f"{words}; look at the unit of the height, and whether the first touch is that of the fall")
+            raise InputError(f"{words}; look at height and gravity and their units, and whether the first touch is that of the fall")
         if abs(np.log(restitution[0] / restitution[1])) > np.log(_UNLIKE):
             words = f"the height gives the first touch a restitution of {restitution[0]:.3g}, and the next one has {restitution[1]:.3g}"
-            doubts.append(f"{words}: it may not be the first impact of the fall, and is left out of the fits")
+            doubts.append(f"{words}: the height may be wrong, or it is not the first impact of the fall; it is left out of the fits")
             inner, covariance = inner[1:], covariance[1:, 1:]
         if not fall.value.stated and fall.value.deviation**2 * (0.5 * restitution[0] / fall.value) ** 2 > 0.5 * deviation[0] ** 2:
             doubts.append(guessed_doubt(fall, "impact 1"))

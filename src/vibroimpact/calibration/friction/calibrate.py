@@ -104,9 +104,7 @@ class FrictionCalibration:
     @property
     def slips(self) -> Bools:
         """Which impacts slip throughout with the values found, (n,): friction changes their velocity as much as it can."""
-        taken = np.abs(self.outcomes["separation_velocity_x"] - self.impacts.velocity)
-        coefficient = self.parameters.with_values(self.values).coefficient
-        return np.asarray(taken >= _NEARLY * coefficient * (self.impacts.seen.speeds + self.outcomes["separation_speed"]))
+        return _slips(self.parameters, self.values, self.impacts, self.outcomes)
 
 
 def calibrate_friction(
@@ -197,7 +195,7 @@ def calibrate_friction(
     found = minimize(measured, best, bounds)
     at = int(np.argmin(found.cost))
     if not np.isfinite(found.cost[at]):
-        raise ComputationError("none of these impacts could be computed; look at the measured speeds, and at the case")
+        raise ComputationError(_not_computed(seen, np.isnan(off(found.values[[at]], seen.wanted)[0]).reshape(len(sizes), -1).any(axis=0)))
     least = _as_given(measured, Minimum(found.values[[at]], found.cost[[at]]), parameters.given, bounds)
     tell(0.3)
     freedom = float(len(sizes) * len(seen.speeds) - len(names))
@@ -228,7 +226,8 @@ def calibrate_friction(
             least = minimize(measured, start, bounds, idle)
     values, given = least.values[0], parameters.given
     outcomes = _one(model, values)
-    doubts = friction_doubts(parameters, values, intervals, seen, confidence, freedom, scatter, known=known)
+    slips = _slips(parameters, values, impacts, outcomes)
+    doubts = friction_doubts(parameters, values, intervals, seen, confidence, freedom, scatter, slips, known=known)
     return FrictionCalibration(
         problem=stated,
         parameters=parameters,
@@ -246,6 +245,23 @@ def calibrate_friction(
         bootstrap=bootstrap,
         doubts=(*rebound_doubts(impacts, outcomes["separation_speed"], stated.laws[0].name), *doubts),
     )
+
+
+def _not_computed(seen: Observations, failed: Bools) -> str:
+    """Return in words which impacts could not be computed; `failed`: whether each could not, (n,)."""
+    number, first = int(failed.sum()), int(np.argmax(failed))
+    which = seen.labels[first] if seen.labels else f"impact {first + 1}"
+    words = f"{number} of these {len(failed)} impacts could not be computed, the first {which}"
+    if len(failed) == 1:
+        words = f"{which} could not be computed"
+    return f"{words}; look at the measured speeds, and at the case"
+
+
+def _slips(parameters: FrictionParameters, values: Floats, impacts: ObliqueImpacts, outcomes: Mapping[str, Floats]) -> Bools:
+    """Return which impacts slip throughout, (n,)."""
+    taken = np.abs(outcomes["separation_velocity_x"] - impacts.velocity)
+    coefficient = parameters.with_values(values).coefficient
+    return np.asarray(taken >= _NEARLY * coefficient * (impacts.seen.speeds + outcomes["separation_speed"]))
 
 
 def _as_given(residuals: Residuals, best: Minimum, given: Floats, bounds: Bounds) -> Minimum:

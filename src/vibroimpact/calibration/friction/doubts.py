@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Bools, Floats
 from vibroimpact.calibration.friction.measured import ObliqueImpacts
 from vibroimpact.calibration.friction.parameters import FrictionParameters
 from vibroimpact.calibration.observations import Observations
@@ -61,10 +61,14 @@ def friction_doubts(
     confidence: float,
     freedom: float,
     scatter: float,
+    slips: Bools,
     *,
     known: bool,
 ) -> Iterator[str]:
-    """Yield warnings about parameters that the measurement does not determine, and about a law that does not follow it."""
+    """Yield warnings about parameters that the measurement does not determine, and about a law that does not follow it.
+
+    `slips`: which impacts slip throughout, (n,). Only where all are of the kind that tells nothing of a parameter, others would tell it.
+    """
     if intervals is None:
         yield "there are no more measured values than parameters, and no standard deviations: their uncertainty is unknown"
         return
@@ -72,12 +76,13 @@ def friction_doubts(
     for name, unit, value, interval, ends in zip(parameters.names, parameters.units, values, intervals, parameters.allowed, strict=True):
         low, high, shown = *(text(float(end), unit) for end in interval), text(float(value), unit)
         below, above = interval == ends
-        full, more = f"{FRICTION}{name}", _WOULD_TELL.get(name, "")
+        silent = not slips.any() if name == "coefficient" else bool(slips.all())
+        full, more = f"{FRICTION}{name}", _WOULD_TELL.get(name, "") if silent else ""
         wide = interval[1] - interval[0] > _WIDE * (0.5 * np.ptp(ends) if np.isfinite(ends).all() else abs(value))
         if below and above:
-            yield f"these impacts do not determine {full}, which stays {shown}: {at} any value agrees with them{more}"
+            yield f"these impacts do not determine {full}, which is left at its first value, {shown}: {at} they exclude none{more}"
         elif above:
-            stick = " (they stick with more friction)" if name == "coefficient" else ""
+            stick = " (they stick with more friction)" if name == "coefficient" and silent else ""
             yield f"these impacts give only a lower bound of {full}, {low} {at}{stick}{more}"
         elif below and wide:
             yield f"these impacts give only an upper bound of {full}, {high} {at}{more if name != 'coefficient' else ''}"
@@ -86,5 +91,5 @@ def friction_doubts(
     if seen.deviations_known and freedom > 0 and not known:
         yield (
             f"residuals are {digits(scatter, 3)} times as large as their standard deviations: {parameters.law.name} does not fit the "
-            "measurement, or its noise is larger; the intervals are widened by that factor"
+            "measurement, or its noise is larger; the intervals are widened accordingly"
         )

@@ -86,7 +86,8 @@ def minimize(residuals: Residuals, start: Floats, bounds: Bounds, fixed: Bools |
         left_there = residuals(trial, moving)
         cost_there = _sum(left_there)
         better = cost_there < cost[moving]
-        idle = better & (cost[moving] - cost_there <= _IDLE * cost[moving])
+        with np.errstate(invalid="ignore"):  # infinite where an impact could not be computed
+            idle = better & (cost[moving] - cost_there <= _IDLE * cost[moving])
         gone = moving[better]
         values[gone], left[gone], cost[gone] = trial[better], left_there[better], cost_there[better]
         damping[moving] = np.clip(damping[moving] * np.where(better, 0.1, 10.0), _SMALLEST, None)

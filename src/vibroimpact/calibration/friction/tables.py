@@ -18,6 +18,9 @@ from vibroimpact.cases.case import Case
 from vibroimpact.runs.tables import formatted_column
 from vibroimpact.units.display import column_texts, digits, fixed, text
 
+_ROUNDING = 1e-9
+"""Difference between computed and measured, over the largest that was measured, below which it is none."""
+
 
 def friction_words(found: FrictionCalibration) -> str:
     """Return the values found as text."""
@@ -42,18 +45,25 @@ def friction_sentences(found: FrictionCalibration) -> list[str]:
             )
         ]
         way = f"by bootstrap with {found.bootstrap} draws" if found.bootstrap else "by the profile of the sum of squares"
-        source = "the given standard deviations" if found.impacts.seen.deviations_known else "the scatter of the measurement"
+        source = "the scatter of the measurement"
+        if found.impacts.seen.deviations_known:
+            more = " and the scatter beyond them" if math.isfinite(found.freedom) else ""
+            source = f"the given standard deviations{more}"
         told.append(f"At {percent}: {', '.join(each)}. Intervals are {way}, from {source}.")
     for name, (_, unit, phrase) in ALONG_PLATE.items():
         if name in found.weights:
             off = found.outcomes[name] - found.impacts.measured[name]
-            mean, most = (text(float(value), unit, 3) for value in (np.abs(off).mean(), np.abs(off).max()))
+            off = np.where(np.abs(off) > _ROUNDING * np.abs(found.impacts.measured[name]).max(), np.abs(off), 0.0)
+            mean, most = (text(float(value), unit, 3) for value in (off.mean(), off.max()))
             told.append(f"Computed and measured {phrase} differ by {mean} in the mean and {most} at most.")
     if found.impacts.seen.deviations_known and math.isfinite(found.scatter):
         told.append(f"Residuals are {digits(found.scatter, 3)} times as large as their standard deviations.")
     slip, number = int(found.slips.sum()), len(found.slips)
-    alone = "; of friction, these depend on the coefficient alone" if slip else ""
-    told.append(f"Of {number} impacts {slip or 'none'} slip{'s' if slip == 1 else ''} throughout{alone}.")
+    alone = f"; of friction, {'these depend' if slip > 1 else 'it depends'} on the coefficient alone" if slip else ""
+    which = f"Of {number} impacts {slip or 'none'} slip{'s' if slip == 1 else ''}"
+    if number == 1:
+        which = "The impact slips" if slip else "The impact does not slip"
+    told.append(f"{which} throughout{alone}.")
     if found.impacts.separation_speed is not None:
         told.append("The normal rebound was measured too: the contact law is matched to it at each impact.")
     return told

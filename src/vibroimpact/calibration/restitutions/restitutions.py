@@ -10,7 +10,7 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.calibration.bounces.speed_laws import LINEAR, SpeedLaw, speed_laws
 from vibroimpact.calibration.fitting import half_width
-from vibroimpact.calibration.impact_table import DEVIATION, check_counts, check_positive, is_impact_table, read_impact_table
+from vibroimpact.calibration.impact_table import DEVIATION, check_counts, check_positive, is_impact_table, name_in_file, read_impact_table
 from vibroimpact.contact.speed_function import SpeedFunction
 from vibroimpact.errors import InputError
 from vibroimpact.measurements.table_file import TableFile
@@ -36,13 +36,15 @@ class Restitutions:
     count : array, shape (n,)
         The number of impacts of which each restitution is the mean.
     rounding : float
-        Step to which the restitutions are rounded, by their digits.
+        Step to which the restitutions are rounded, by their digits; or the separation speeds [m/s], if these are given.
     laws : list of SpeedLaw
         Fits of the restitution over the approach speed.
     confidence : float
         Confidence level of intervals.
     doubts : tuple of str
         Warnings, as sentences.
+    by_speeds : bool
+        Whether the table gives separation speeds in place of restitutions.
 
     Examples
     --------
@@ -65,6 +67,7 @@ class Restitutions:
     laws: list[SpeedLaw]
     confidence: float
     doubts: tuple[str, ...]
+    by_speeds: bool = False
 
     @property
     def function(self) -> SpeedFunction | None:
@@ -128,17 +131,19 @@ def read_restitutions(path: str | PathLike[str], *, confidence: float = 0.95, co
     speed, count = given["approach_speed"], given.get("count", np.ones(len(table.lines)))
     by_speeds = "restitution" not in given
     restitution = given["separation_speed"] / speed if by_speeds else given["restitution"]
-    _check_height(table, restitution)
+    _check_height(table, restitution, by_speeds=by_speeds)
     measured, other = ("separation_speed", "restitution") if by_speeds else ("restitution", "separation_speed")
     if f"{other}{DEVIATION}" in given:
-        raise InputError(f"{path}: it has {other}{DEVIATION}, but restitutions are those of {measured}; give {measured}{DEVIATION}")
+        has, of = (name_in_file(table, name) for name in (f"{other}{DEVIATION}", measured))
+        raise InputError(f"{path}: it has {has}, but restitutions are those of {of}; give {of}{DEVIATION}")
     known = given.get(f"{measured}{DEVIATION}")
     rounding = rounding_step(given["separation_speed"] if by_speeds else restitution)
     scale = 1.0 / speed if by_speeds else np.ones(len(speed))
     deviation = np.full(len(speed), np.nan) if known is None else scale * known / np.sqrt(count)
     variance = np.nan_to_num(deviation) ** 2 + (scale * rounding) ** 2 / 12.0
     laws = speed_laws(speed, restitution, np.diag(variance), count)
-    return Restitutions(str(path), speed, restitution, deviation, count, rounding, laws, confidence, _doubts(table, restitution, laws))
+    doubts = _doubts(table, restitution, laws)
+    return Restitutions(str(path), speed, restitution, deviation, count, rounding, laws, confidence, doubts, by_speeds)
 
 
 def rounding_step(values: Floats) -> float:
@@ -156,13 +161,15 @@ def rounding_step(values: Floats) -> float:
     return float(10.0**-_MOST_DIGITS)
 
 
-def _check_height(table: TableFile, restitution: Floats) -> None:
+def _check_height(table: TableFile, restitution: Floats, *, by_speeds: bool) -> None:
     """Raise InputError if a restitution is higher than noise makes it."""
     wrong = np.flatnonzero(restitution > _MOST)
     if wrong.size:
         value = restitution[wrong[0]]
         words = f"the restitution is {value:.4g}, more than {_MOST:g}, which is not taken for noise"
-        hint = "if it is in per cent, name its unit: restitution [%]" if value > 10.0 else "look at the speeds and their units"
+        hint = "look at the speeds and their units" if by_speeds else "look at the value"
+        if value > 10.0 and not by_speeds:
+            hint = f"if it is in per cent, name its unit: {name_in_file(table, 'restitution')} [%]"
         raise InputError(f"{table.path}, line {table.lines[wrong[0]]}: {words}; {hint}")
 
 

@@ -41,12 +41,15 @@ def status_sentence(found: Restitutions) -> str:
 
 def noise_sentence(found: Restitutions) -> str:
     """Return from where the intervals are."""
-    of = "the scatter about each fit"
+    many = len(found.count) > 1
+    of = ["the scatter about each fit"] if many else []
     if not math.isnan(found.deviation[0]):
-        of = "the standard deviations of the table and the scatter beyond them"
-    rounded = f"the step of {found.rounding:g} to which the values are rounded"
+        of = [f"the standard deviation{'s of the table and the scatter beyond them' if many else ' of the table'}"]
+    what = f"{found.rounding:g} m/s to which the separation speeds" if found.by_speeds else f"{found.rounding:g} to which the values"
+    of.append(f"the step of {what} are rounded")
     means = "" if (found.count == 1.0).all() else " A scatter is that of single impacts."
-    return f"The intervals of the fits follow from {of}, and from {rounded}; speeds are taken as exact.{means}"
+    exact = "approach speeds" if found.by_speeds else "speeds"
+    return f"The intervals of the fits follow from {', and from '.join(of)}; {exact} are taken as exact.{means}"
 
 
 def case_sentence(found: Restitutions) -> str:

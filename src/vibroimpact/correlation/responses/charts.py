@@ -58,9 +58,10 @@ def _responses(found: ResponseCorrelation) -> Chart:
         if found.coherence is not None and not np.isnan(found.coherence[number]).any():
             level = Axis("Coherence", range=(0.0, 1.02))
             rows.append((Panel(axis, level, (Line(found.frequency, found.coherence[number], role="detail"),), "Coherence"),))
+    place = visible(found.reference)
+    of = f"of the motion at {place} to forces at the sensors" if found.reciprocal else f"to a force at {place}"
     caption = (
-        f"Measured frequency responses to a force at {visible(found.reference)}, and those of the case. Ticks mark the modes of the case."
-        f"{those_drawn(len(found.sensors))}"
+        f"Measured frequency responses {of}, and those of the case. Ticks mark the modes of the case.{those_drawn(len(found.sensors))}"
     )
     return Chart("responses", "Frequency responses", tuple(rows), caption)
 

@@ -80,8 +80,10 @@ def correlate_responses(
     used = _band(problem, frequency, band)
     inside = (frequency >= used[0]) & (frequency <= used[1])
     if inside.sum() < _FEWEST:
-        words = f"there are {inside.sum()} frequencies from {used[0]:.5g} to {used[1]:.5g} Hz"
-        raise InputError(f"{words}, and the responses are from {frequency[0]:.5g} to {frequency[-1]:.5g} Hz; {_FEWEST} are needed")
+        there = {0: "there is no frequency", 1: "there is one frequency"}.get(int(inside.sum()), f"there are {inside.sum()} frequencies")
+        words = f"{there} from {used[0]:.5g} to {used[1]:.5g} Hz, and the responses are from {frequency[0]:.5g} to {frequency[-1]:.5g} Hz"
+        remedy = "measure at more frequencies" if band is None else "state a wider band, or measure at more frequencies"
+        raise InputError(f"{words}; {_FEWEST} are needed: {remedy}")
     found = modes_in_responses(match.responses, used)
     pairs = pairs_of(problem, match.sensors, found, used)
     differences = shared_differences(pairs)

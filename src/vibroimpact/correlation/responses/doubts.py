@@ -24,7 +24,7 @@ _ALIKE, _GAIN = 0.9, 0.05
 _LARGE_GAIN = 0.5
 """Relative error of the size of a response that is said of others."""
 _LINES = 3
-"""Frequencies in a half-power bandwidth below which its damping is not resolved."""
+"""Steps of the frequencies in a half-power bandwidth below which its damping is not resolved."""
 _NAMED = 4
 
 
@@ -95,7 +95,7 @@ def _of_coherence(found: ResponseCorrelation) -> Iterator[str]:
         many = f"at {100.0 * part:.2g} % of the frequencies" if part > _MANY else ""
         if at or many:
             words = f"the coherence of {shown(sensor.name)} is below {COHERENT} {' and '.join(filter(None, (at, many)))}"
-            yield f"{words}: noise, a second hit, or a nonlinearity; magnitude and damping are uncertain there"
+            yield f"{words}: noise, leakage, a second hit, or a nonlinearity; magnitude and damping are uncertain there"
 
 
 def doubts_of_resolution(modes: Sequence[DecayMode], frequency: Floats) -> Iterator[str]:
@@ -103,6 +103,6 @@ def doubts_of_resolution(modes: Sequence[DecayMode], frequency: Floats) -> Itera
     step = float(np.median(np.diff(frequency)))
     narrow = [f"{mode.frequency.value:.4g}" for mode in modes if 2.0 * mode.damping_ratio.value * mode.frequency.value < _LINES * step]
     if narrow:
-        places = f"bandwidths of the modes of {_few(narrow)} Hz have" if len(narrow) > 1 else f"bandwidth of the mode of {narrow[0]} Hz has"
-        words = f"the half-power {places} fewer than {_LINES} frequencies {step:.3g} Hz apart"
+        places = f"bandwidths of the modes of {_few(narrow)} Hz are" if len(narrow) > 1 else f"bandwidth of the mode of {narrow[0]} Hz is"
+        words = f"the half-power {places} below {_LINES} steps of the frequencies, {step:.3g} Hz each"
         yield f"{words}: a window or a record that was cut off makes damping look larger; measure longer"
