@@ -151,10 +151,11 @@ def sensors_of(sensors: Sequence[Sensor], records: Sequence[Record]) -> tuple[Se
         name = next((name for name in (record.name, *known) if name in known and is_named(record, name)), None)
         if name is None:
             there = ", ".join(f'"{name}"' for name in known)
-            words = f"the case has no sensor {shown(record.name)}; it has {there}.{did_you_mean(record.name, known)}"
+            words = f"the case has no sensor {shown(record.name)}; it has {there}"
             first = next(iter(known.values()))
-            column = f'; a column of a CSV file is named after its sensor and has its unit, such as "{first.name} [{first.unit}]"'
-            raise InputError(words if not record.source.lower().endswith(".csv") else words.removesuffix(".") + column)
+            if record.source.lower().endswith(".csv"):
+                words += f'; a column of a CSV file is named after its sensor and has its unit, such as "{first.name} [{first.unit}]"'
+            raise InputError(f"{words}.{did_you_mean(record.name, known)}")
         if name in chosen:
             raise InputError(f"there are two records {shown(name)}; give those of one fall")
         _check(record, known[name])
@@ -187,11 +188,12 @@ def on_common_time(records: Sequence[Record]) -> tuple[Floats, float]:
 def _check(record: Record, sensor: Sensor) -> None:
     """Raise InputError unless a record can be that of a sensor."""
     if record.unit.replace("^", "") != sensor.unit and (record.unit, sensor.unit) != _STRAIN:
-        raise InputError(f"the record {shown(record.name)} is in {record.unit}, and the sensor of that name reads {sensor.unit}")
+        given = f"in {record.unit}" if record.unit else "without a unit"
+        raise InputError(f"the record {shown(record.name)} is {given}, and the sensor of that name reads {sensor.unit}")
     if abs(record.rate / sensor.rate - 1.0) > _SAME:
-        words = f"the record {shown(record.name)} has {record.rate:g} samples per second, and the sensor of that name {sensor.rate:g}"
-        raise InputError(f"{words}; write rate = {record.rate:g} in the case, with the anti-alias filter that the record has")
+        words = f"the record {shown(record.name)} has {record.rate:.10g} samples per second, and the sensor of that name {sensor.rate:.10g}"
+        raise InputError(f"{words}; write rate = {record.rate:.10g} in the case, with the anti-alias filter that the record has")
     if not np.isfinite(record.value).all():
         raise InputError(f"the record {shown(record.name)} has samples that are not finite numbers")
     if not len(record.value) or np.ptp(record.value) == 0.0:
-        raise InputError(f"the record {shown(record.name)} is constant; nothing touched the plate")
+        raise InputError(f"the record {shown(record.name)} {'is constant' if len(record.value) else 'has no samples'}; it shows no impact")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -93,6 +94,17 @@ class SetupErrors:
     def is_none(self) -> bool:
         """Whether all is taken as certain."""
         return len(self.certain) == len(_MEANINGS)
+
+    def at_least(self, sizes: Mapping[str, float]) -> SetupErrors:
+        """Return errors of which some are at least of given sizes, as far as that is allowed.
+
+        Examples
+        --------
+        >>> SetupErrors(gain=0.02).at_least({"gain": 0.6, "thickness": 0.01}).options
+        '--gain-error 0.3 --thickness-error 0.01'
+        """
+        most = {name: _MOST_PLACE if name == "sensor_place" else _MOST_PART for name in _MEANINGS}
+        return replace(self, **{name: min(max(getattr(self, name), size), most[name]) for name, size in sizes.items()})
 
     def deviations(self, sensors: int) -> Floats:
         """Return the standard deviations of the numbers of a `Setup` of S sensors, (2 + 4 S,)."""
