@@ -105,7 +105,7 @@ def bound_of(
     falls = falls_of_study(population) if isinstance(population, Study) else falls_of_sweep(population)
     names, counts = np.unique(falls.classes, return_counts=True)
     if len(names) < 2:
-        raise InputError("fewer than two classes have falls that touched the plate, so that there is nothing to classify")
+        raise InputError("fewer than two classes have falls that were computed and touched the plate, so that there is nothing to classify")
     heard, steps = channel or Channel(), len(OBSERVATIONS) + BANDWIDTHS.size * SIGNAL_TO_NOISE.size + 1
 
     def tell(done: int) -> None:

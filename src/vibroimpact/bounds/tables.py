@@ -12,7 +12,7 @@ from vibroimpact.units.display import MISSING
 _FEW = 5.0
 """Median number of neighbours below which more falls would narrow a bracket."""
 _LEAST = 300
-"""Number of falls below which none wrong among them is said to be compatible with an error of 3 over their number (95 %), 1 % or more."""
+"""Number of falls below which none wrong among them is said to be compatible with an error of 3 over their number (95 %) or less."""
 
 
 def error_words(error: BayesError) -> str:
@@ -33,12 +33,14 @@ def headline(bound: Bound) -> str:
     """Return the finding in a sentence."""
     time, impact = bound.errors["contact time"], bound.errors["one impact"]
     number = len(bound.falls)
-    few = f" {number:,} falls are few: even an error of 0 may in truth be up to {300.0 / number:.1f} % (95 %)." if number < _LEAST else ""
+    most = 100.0 * (1.0 - 0.05 ** (1.0 / number))  # so large an error leaves all of them right once in twenty times
+    few = f" {number:,} falls are few: even an error of 0 may in truth be up to {most:.1f} % (95 %)." if number < _LEAST else ""
     names = np.unique(bound.falls.classes).tolist()
+    frequent = "more" if len(names) == 2 else "most"
     return (
         f"For {len(bound.falls):,} falls of {' and '.join(names)}, the lowest error of a classifier that sees only the contact time is "
         f"{error_words(time)}, and that of one that sees only impulse and contact time of one impact at a known position "
-        f"{error_words(impact)}; always naming the more frequent class has an error of {100.0 * bound.majority:.1f} %.{few}"
+        f"{error_words(impact)}; always naming the {frequent} frequent class has an error of {100.0 * bound.majority:.1f} %.{few}"
     )
 
 
