@@ -189,7 +189,22 @@ def test_the_same_signal_in_two_rocks(tmp_path: Path) -> None:
     def copy(data: dict[str, Any]) -> None:
         data["signal_a1"][80] = data["signal_a1"][3]
 
-    assert "signals 3 and 80 are the same and lie in two rocks (0 and 13)" in refused(tmp_path, copy)
+    assert "signals 3 and 80, counted from 0, are the same and lie in two rocks (0 and 13)" in refused(tmp_path, copy)
+
+
+def test_signals_are_numbered_as_in_the_file_where_drops_failed(tmp_path: Path) -> None:
+    def copy(data: dict[str, Any]) -> None:
+        data["signal_a1"][80] = data["signal_a1"][3]
+        data["signal_a1"][[0, 50]] = np.nan
+
+    assert "signals 3 and 80, counted from 0, are the same" in refused(tmp_path, copy)
+
+
+def test_more_signals_are_asked_for_only_where_there_are_more(tmp_path: Path) -> None:
+    def one_rock(data: dict[str, Any]) -> None:
+        data["rock"][:] = 0
+
+    assert refused(tmp_path, one_rock).endswith("give signals of several rocks")
 
 
 def test_the_same_signal_twice_in_one_rock_and_silence_are_allowed(tmp_path: Path) -> None:
