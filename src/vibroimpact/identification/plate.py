@@ -109,7 +109,9 @@ class Plate:
         low, high = self.bounds
         (length, width), modes = high - low, len(self.problem.models["plate"].angular_frequencies)
         step = np.sqrt(np.pi * length * width / modes) / _PER_WAVE  # a mode has the area of its wavelength squared over pi (Weyl)
-        x, y = (np.linspace(*ends, max(5, round((ends[1] - ends[0]) / step) + 1)) for ends in np.transpose([low, high]))
+        x, y = (
+            np.linspace(start, end, max(5, round((end - start) / step) + 1)) for start, end in zip(low.tolist(), high.tolist(), strict=True)
+        )
         places = np.stack(np.meshgrid(x, y), axis=-1)
         return x, y, self.deflections(places.reshape(-1, 2)).reshape(len(y), len(x), -1)
 

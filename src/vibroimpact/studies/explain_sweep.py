@@ -24,7 +24,7 @@ def explain_sweep(sweep: Sweep) -> RenderableType:
     axes = [("", key, axis) for key, axis in sweep.axes.items()]
     if sweep.population is not None:
         axes += [(name, key, axis) for name, own in sweep.population.own.items() for key, axis in own.items()]
-    over = [_words(axis, units[key], is_drawn=section.samples is not None) for _, key, axis in axes]
+    over = [_words(axis, units[key], units, is_drawn=section.samples is not None) for _, key, axis in axes]
     classes = [TerminalColumn("class", [name for name, _, _ in axes], text=True)] if sweep.population is not None else []
     table = TerminalTable(
         [*classes, TerminalColumn("swept key", [key for _, key, _ in axes], text=True), TerminalColumn("over", over, text=True)]
@@ -92,8 +92,8 @@ def _data(axis: Axis) -> dict[str, Any]:
     }
 
 
-def _words(axis: Axis, unit: str, *, is_drawn: bool) -> str:
-    """Return a short description of the values of an axis."""
+def _words(axis: Axis, unit: str, units: Mapping[str, str], *, is_drawn: bool) -> str:
+    """Return a short description of the values of an axis, with its unit and those of the swept keys."""
     if isinstance(axis, Listed):
         shown = [f"{value:g}" if isinstance(value, float) else str(value) for value in axis.values]
         text = ", ".join(shown) if len(shown) <= 8 else f"{len(shown)} values, {shown[0]} to {shown[-1]}"
@@ -104,8 +104,9 @@ def _words(axis: Axis, unit: str, *, is_drawn: bool) -> str:
     if isinstance(axis, Scaled):
         power = f" to the power of {axis.exponent:g}" if axis.exponent != 1.0 else ""
         per = f" for each {axis.each}" if axis.each else ""
-        factor = f"times {_words(axis.factor, '', is_drawn=is_drawn)}{per}"
-        return f"{axis.value:g} {unit} at {axis.of} = {axis.at:g}, proportional to it{power}, {factor}"
+        factor = f"times {_words(axis.factor, '', units, is_drawn=is_drawn)}{per}"
+        at = f"{axis.at:g} {units[axis.of]}".rstrip()
+        return f"{axis.value:g} {unit}".rstrip() + f" at {axis.of} = {at}, proportional to it{power}, {factor}"
     assert isinstance(axis, Normal)
     name = "lognormal" if axis.lognormal else "normal"
     ends = [f"{word} {end:g}" for word, end in (("at least", axis.at_least), ("at most", axis.at_most)) if abs(end) < float("inf")]

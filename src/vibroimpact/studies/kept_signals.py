@@ -47,7 +47,7 @@ def check_signals(case: Case, taken: Collection[str]) -> None:
             words = f'"{name}" can\'t be the name of a variable of the dataset, or is that of another; call the sensor otherwise'
             raise InputError(words, "sensors")
     if not sensors:
-        raise InputError('"signals" needs [[sensors]] on an elastic plate', "sweep.keep")
+        raise InputError('"signals" needs [[sensors]], on a plate that is elastic or shaken', "sweep.keep")
     if case.run.duration is None:
         raise InputError("it is missing; signals need it, so that those of all drops are of one length", "run.duration")
 
