@@ -14,6 +14,7 @@ from vibroimpact.identification.plate import Place, Plate
 from vibroimpact.identification.pulses import Search
 from vibroimpact.identification.sphere import SphereFit
 from vibroimpact.shown import shown
+from vibroimpact.units.display import digits
 
 _LEFT = 1.3
 """What a fit leaves, over the noise, from which on the model is doubted."""
@@ -65,17 +66,15 @@ def doubts_about(plate: Plate, measured: Measured, search: Search, sphere: Spher
     left = rms_of(sphere.residual, measured.heard)
     ratio, part = float((left / measured.noise).max()), float((left / measured.rms).max())
     if measured.quiet and ratio > _LEFT:
-        yield _of_misfit(
-            plate, measured, search, sphere, place, f"the fit leaves {ratio:.2g} times the noise before first touch of a record", ratio
-        )
+        words = f"the fit leaves {digits(ratio, 2)} times the noise before first touch of a record"
+        yield _of_misfit(plate, measured, search, sphere, place, words)
     if not measured.quiet and part > _PART:
-        words = (
-            f"the fit leaves {100.0 * part:.2g} % of the rms value of a record, and the records do not show the noise before first touch"
-        )
-        yield _of_misfit(plate, measured, search, sphere, place, words, part / _PART)
+        unknown = "the records do not show the noise before first touch"
+        words = f"the fit leaves {digits(100.0 * part, 2)} % of the rms value of a record, and {unknown}"
+        yield _of_misfit(plate, measured, search, sphere, place, words)
     for name, deviation in zip(("radius", "speed"), np.sqrt(np.diag(sphere.covariance))[2:4].tolist(), strict=True):
         if deviation > _WIDE:
-            yield f"the records do not determine the {name}: its standard deviation is {100.0 * deviation:.2g} %"
+            yield f"the records do not determine the {name}: its standard deviation is {digits(100.0 * deviation, 2)} %"
 
 
 def _of_records(measured: Measured) -> Iterator[str]:
@@ -89,12 +88,12 @@ def _of_records(measured: Measured) -> Iterator[str]:
             yield f"{words}; its sign was changed, correct it at the amplifier, in the file or in the case"
 
 
-def _of_misfit(plate: Plate, measured: Measured, search: Search, sphere: SphereFit, place: Place | None, words: str, ratio: float) -> str:
+def _of_misfit(plate: Plate, measured: Measured, search: Search, sphere: SphereFit, place: Place | None, words: str) -> str:
     """Return the doubt about a fit that leaves much of the records: with what explains it, if something of the set-up does."""
     found, less = causes(plate, measured, sphere, search.candidates[0], place)
     if found:
         given = "the case" if place is None else "the case or the place that was given"
-        explained = f"a set-up that differs from the case leaves {less * 100.0:.2g} % of that: {told(found)}"
+        explained = f"a set-up that differs from the case leaves {digits(100.0 * less, 2)} % of that: {told(found)}"
         return f"{words}: {explained}; correct {given}, or state {remedy(plate, found)}"
     wrong = "the plate, its sensors or the contact" if place is None else "the plate, its sensors, the contact or the place"
     others = "the records contain a further impact, or noise that is not there before first touch, or another sphere fits better"
@@ -109,8 +108,7 @@ def contradiction(sphere: SphereFit, force: Force) -> str:
         ("impulse", "N s", force.impulse, sphere.force.facts[1], deviations[1]),
     ):
         if abs(alone - fitted) > _CONTRADICTS * math.hypot(deviation, its):
-            words = (
-                f"the {name} from the records alone, {alone:.4g} {unit}, contradicts the {fitted:.4g} {unit} of the contact that was fitted"
-            )
+            told = f"{digits(alone, 3)} {unit}, contradicts the {digits(fitted, 3)} {unit} of the contact that was fitted"
+            words = f"the {name} from the records alone, {told}"
             return f"{words}; what is from the records alone is withheld, as it depends most on errors of the plate and its sensors"
     return ""

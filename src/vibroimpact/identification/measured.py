@@ -17,6 +17,7 @@ from vibroimpact.signals.clipped import clipped_samples
 from vibroimpact.signals.one_record import is_named
 from vibroimpact.signals.onset import onset_time
 from vibroimpact.signals.record import Record, Removed
+from vibroimpact.units.display import digits
 
 _LEAST = 64
 """Least number of samples from first touch on."""
@@ -119,7 +120,9 @@ def measured_of(sensors: Sequence[Sensor], records: Sequence[Record], window: fl
     last = min(round((onset + window - start) * rate), round((end - start) * rate))
     if last - round((onset - start) * rate) < _LEAST:
         words = f"the records have {max(0, last - round((onset - start) * rate))} samples in common from first touch on, to at most"
-        raise InputError(f"{words} {1e3 * window:g} ms; {_LEAST} are needed, which are {1e3 * _LEAST / rate:.3g} ms at {rate:g} Hz")
+        raise InputError(
+            f"{words} {1e3 * window:g} ms; {_LEAST} are needed, which are {digits(1e3 * _LEAST / rate, 3)} ms at {rate:.10g} Hz"
+        )
     value, heard = whole[:, first:last], ~clipped[:, first:last]
     quiet = first >= _QUIET
     noise = np.std(whole[:, :first], axis=1) if quiet else np.zeros(len(whole))

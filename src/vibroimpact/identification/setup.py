@@ -76,7 +76,7 @@ class SetupErrors:
             most, given = _MOST_PLACE if of_place else _MOST_PART, getattr(self, name)
             if not 0.0 <= given <= most:
                 allowed = f"it must be 0 to {most:g} m (5 mm is 0.005)" if of_place else f"it must be 0 to {most:g} (2 % is 0.02)"
-                raise InputError(f"an error of {given:g} of the {meaning} is not allowed; {allowed}")
+                raise InputError(f"an error of {given:.10g} of the {meaning} is not allowed; {allowed}")
 
     @property
     def options(self) -> str:

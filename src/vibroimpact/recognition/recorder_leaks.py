@@ -16,6 +16,7 @@ from vibroimpact.arrays import Floats, Indices
 from vibroimpact.dynamics.sensors.antialias import HALF_LENGTH
 from vibroimpact.recognition.labelled_signals import LabelledSignals, SensorSignals, lengths
 from vibroimpact.shown import shown
+from vibroimpact.units.display import digits
 
 _RATE = 0.01
 """Part of the data sets without a leak in which chance makes one."""
@@ -88,7 +89,7 @@ def _too_few(classes: Indices, groups: Indices, group: str) -> list[str]:
         needed += 1
     return [
         f"leaks of the recorder can't be told from chance with {len(firsts)} {group}s: chance separates classes fully in at "
-        f"least {100.0 * least:.2g} % of data sets; {needed} {group}s of each class suffice"
+        f"least {digits(100.0 * least, 2)} % of data sets; {needed} {group}s of each class suffice"
     ]
 
 
@@ -126,7 +127,7 @@ def _matters(name: str, values: Floats, classes: Indices, one: SensorSignals) ->
 def _shown(name: str, value: float, unit: str) -> str:
     """Return the median of a quantity with its unit."""
     if name in (LENGTH, ONSET):
-        return f"{value:.10g} samples"
+        return f"{value:.10g} sample{'' if value == 1.0 else 's'}"
     if name == CLOCK:
         return f"{100.0 * np.expm1(value):+.2g} %"
     if name.startswith("the correlation"):

@@ -13,13 +13,14 @@ from vibroimpact.studies.axes import Axis, Listed, Normal, Spaced
 from vibroimpact.studies.scaled import Scaled
 from vibroimpact.studies.sweep import Sweep
 from vibroimpact.studies.unit_slips import axis_slips
+from vibroimpact.units.display import digits
 
 
 def explain_sweep(sweep: Sweep) -> RenderableType:
     """Return the description of a study for the terminal."""
     section = sweep.section
     drawn = f", drawn with seed {section.seed}" if section.samples else ""
-    kept = " and ".join(dict.fromkeys(["peaks", *section.keep])) + f", about {sweep.bytes / 1e6:.3g} MB"
+    kept = " and ".join(dict.fromkeys(["peaks", *section.keep])) + f", about {digits(sweep.bytes / 1e6, 2)} MB"
     units = _units(sweep)
     axes = [("", key, axis) for key, axis in sweep.axes.items()]
     if sweep.population is not None:
