@@ -58,13 +58,14 @@ def scatter_words(bound: Bound) -> str:
 
 
 def heard_words(bound: Bound) -> str:
-    """Return the measuring channel, in a sentence."""
+    """Return the measuring channel, and how falls and bounces were computed, in sentences."""
     one = bound.channel
+    rigid = " The falls are computed on the plate as a rigid body." if bound.on_rigid_plate else ""
     return (
         f"Measured up to {one.bandwidth / 1e3:g} kHz, with the peak force of the median fall {one.signal_to_noise:g} dB above the noise in "
         f"10 kHz. Assumed relative standard deviations: sensitivity {100.0 * one.gain:g} %, amplitude at an unknown position "
         f"{100.0 * one.place:g} %, speed where it is measured {100.0 * one.height:g} %, radius where it is measured {100.0 * one.size:g} "
-        f"%, time to the next impact {100.0 * one.interval:g} %."
+        f"%, time to the next impact {100.0 * one.interval:g} %, which is that of a bounce on a level plate in standard gravity.{rigid}"
     )
 
 
