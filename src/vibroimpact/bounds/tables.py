@@ -11,19 +11,24 @@ from vibroimpact.units.display import MISSING
 
 _FEW = 5.0
 """Median number of neighbours below which more falls would narrow a bracket."""
+_COARSE = 0.02
+"""Standard error from which on an error has no decimals."""
 _LEAST = 300
 """Number of falls below which none wrong among them is said to be compatible with an error of 3 over their number (95 %) or less."""
 
 
 def error_words(error: BayesError) -> str:
-    """Return the bracket of a Bayes error in per cent.
+    """Return the bracket of a Bayes error in per cent, without tenths if few falls tell it.
 
     Examples
     --------
     >>> error_words(BayesError(0.0044, 0.0101, 0.002, 20.0)), error_words(BayesError(0.0, 0.004, 0.002, 1.0))
     ('0.4 to 1.0 %', 'at most 0.4 %')
+    >>> error_words(BayesError(0.21, 0.24, 0.043, 20.0))
+    '21 to 24 %'
     """
-    low, high = f"{100.0 * error.lower:.1f}", f"{100.0 * error.upper:.1f}"
+    decimals = 1 if error.standard_error < _COARSE else 0
+    low, high = f"{100.0 * error.lower:.{decimals}f}", f"{100.0 * error.upper:.{decimals}f}"
     if error.neighbours < _FEW:
         return f"at most {high} %"
     return f"{high} %" if low == high else f"{low} to {high} %"
