@@ -94,7 +94,7 @@ def _differences(free: SphereFit, sensors: list[str], exponent: float) -> Iterat
     for number, name in enumerate(sensors):
         off = float(np.hypot(*setup.moved[number]))
         if off > max(_LEAST["sensor_place"], _SURE * math.hypot(x[number], y[number])):
-            yield Cause(f"{shown(name)} lies {digits(1e3 * off, 2)} mm from its place in the case", "sensor_place", off)
+            yield Cause(f"{shown(name)} lies about {digits(1e3 * off, 2)} mm from its place in the case", "sensor_place", off)
         if abs(more[number]) > max(_LEAST["gain"], _SURE * float(spread[number])):
             beside = " beside the others" if len(sensors) > 1 else ""
             yield Cause(f"{shown(name)} reads {_percent(float(more[number]))} than it should{beside}", "gain", abs(float(more[number])))
@@ -104,7 +104,7 @@ def _differences(free: SphereFit, sensors: list[str], exponent: float) -> Iterat
 
 
 def _percent(part: float) -> str:
-    return f"{digits(100.0 * abs(part), 2)} % {'higher' if part > 0.0 else 'lower'}"
+    return f"about {digits(100.0 * abs(part), 2)} % {'higher' if part > 0.0 else 'lower'}"
 
 
 def _up(size: float) -> float:

@@ -31,7 +31,7 @@ def explain_sweep(sweep: Sweep) -> RenderableType:
         [*classes, TerminalColumn("swept key", [key for _, key, _ in axes], text=True), TerminalColumn("over", over, text=True)]
     )
     return Group(
-        Text(f"A study of {sweep.size:,} drops: {section.design}{drawn}; keeps {kept}.", style="bold"),
+        Text(f"A study of {sweep.size:,} drop{'' if sweep.size == 1 else 's'}: {section.design}{drawn}; keeps {kept}.", style="bold"),
         table,
         *(Text(f"Doubt: {doubt}.", style="yellow") for doubt in axis_slips(sweep)),
         Text("The case at its first point:\n"),

@@ -18,14 +18,13 @@ from vibroimpact.units.display import digits
 
 CARD = "card.md"
 
-_SPLIT = (
-    "Falls of one rock are more similar to each other than falls of its class, and so are falls on one plate. Split training and test data "
-    "by `rock`, or by `plate` for an application to other plates than these; never by fall, and never by windows of one signal."
-)
+_ALIKE = "Falls of one rock are more similar to each other than falls of its class, and so are falls on one plate."
+_BY_PLATE = "or by `plate` for an application to other plates than these"
+_ONE_PLATE = "for an application to another plate than this, falls on several plates are needed"
 _LIMITS = (
-    "The falls are computed: spheres, each of one material, fall on a plate whose supports, damping and instruments are as the study "
-    "states. Irregular shapes, cracks, layers of fines, and other vibration of the plate are not included: expect a lower accuracy in the "
-    "field than on these falls."
+    "The falls are computed: spheres, each of one material, fall on a plate that is, with its supports, damping and instruments, as the "
+    "study states. Irregular shapes, cracks, layers of fines, and other vibration of the plate are not included: expect a lower accuracy "
+    "in the field than on these falls."
 )
 
 
@@ -51,12 +50,18 @@ def data_card(study: Study) -> str:
         _table(["key", "meaning", *_names(study)], _drawn(study)),
         *(["## Signals", _table(["variable", "quantity", "unit", "samples", "rate [Hz]"], signals)] if signals else []),
         "## Labels and groups",
-        f"`{CLASS}` is the class of the rock, `{ROCK}` and `{PLATE}` number what falls share. {_SPLIT}",
+        f"`{CLASS}` is the class of the rock, `{ROCK}` and `{PLATE}` number what falls share. {_ALIKE} Split training and test data by "
+        f"`{ROCK}`{_split(study)}; never by fall, and never by windows of one signal.",
         "## Limits",
         _LIMITS,
         *_doubts(study),
     ]
     return "\n\n".join(parts) + "\n"
+
+
+def _split(study: Study) -> str:
+    """Return by what else than rocks falls are split, and what that needs."""
+    return f", {_BY_PLATE}" if _number(study, PLATE) > 1 else f" ({_ONE_PLATE})"
 
 
 def _number(study: Study, label: str) -> int:
