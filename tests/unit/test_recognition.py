@@ -471,7 +471,7 @@ def test_a_classifier_above_the_bound_is_a_leak(tmp_path: Path, found: vi.Recogn
 
     leaky = vi.recognise(write_knocks(tmp_path / "data", leak, rocks=40, falls=6), folds=2, seeds=1)
     words = (
-        "below the Bayes error of 23.10% that the data set states; if the bound counts all that an impact tells, it has used information"
+        "below the Bayes error of 23.1% that the data set states; if the bound counts all that an impact tells, it has used information"
     )
     assert any(one.startswith(f"possible leak: {leaky.best} errs in") and words in one for one in leaky.doubts)
 
@@ -483,7 +483,7 @@ def test_a_computed_bound_names_what_it_counts(found: vi.Recognition) -> None:
     perfect = {"any": score(right[np.newaxis], rocks % 2, Bootstrap(rocks, rocks % 2))}
     (doubt,) = bound_doubts(perfect, 0.2, "any", "any", "impulse and contact time")
     assert doubt.startswith(
-        "possible leak: any errs in 0.00%, below the Bayes error of 20.00% of classifiers that see only impulse and contact"
+        "possible leak: any errs in 0.0%, below the Bayes error of 20.0% of classifiers that see only impulse and contact"
     )
     assert "such as the position of the impact" in doubt
     stated, computed = ("".join(sentences(replace(found, bayes_error_sees=sees))) for sees in (None, "impulse and contact time"))
