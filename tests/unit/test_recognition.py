@@ -470,9 +470,7 @@ def test_a_classifier_above_the_bound_is_a_leak(tmp_path: Path, found: vi.Recogn
         data["signal_a1"][data["class"] == 1] += 0.05 * np.sin(2 * np.pi * 9500.0 * time).astype(np.float32)
 
     leaky = vi.recognise(write_knocks(tmp_path / "data", leak, rocks=40, falls=6), folds=2, seeds=1)
-    words = (
-        "below the Bayes error of 23.1% that the data set states; if the bound counts all that an impact tells, it has used information"
-    )
+    words = "below the Bayes error of 23.1% that the data set states; if the bound counts all that an impact tells, it has used information"
     assert any(one.startswith(f"possible leak: {leaky.best} errs in") and words in one for one in leaky.doubts)
 
 
