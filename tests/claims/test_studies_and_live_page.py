@@ -20,8 +20,8 @@ from vibroimpact.app.limits import (
 )
 from vibroimpact.app.server import MOST_WINDOWS
 from vibroimpact.cli.studies import MOST_BYTES_UNCONFIRMED, MOST_DROPS_UNCONFIRMED
+from vibroimpact.studies.design import MOST_DROPS
 from vibroimpact.studies.report.tables import doubt_sentences
-from vibroimpact.studies.section import MOST_DROPS
 from vibroimpact.studies.sensitivity import MOST_LEFT_OUT
 
 STUDIES = "docs/studies.md"

@@ -56,7 +56,7 @@ def test_what_is_measured_besides_never_raises_the_bound(samples: int) -> None:
 def test_the_headline_of_few_falls_states_what_they_tell(bound: Bound) -> None:
     assert "falls are few" not in headline(bound)
     few = headline(bound_of(vi.load_sweep("signals:coal-gangue", 64)))
-    assert few.endswith("64 falls are few: even an error of 0 may in truth be up to 4.7 % (95 %).")
+    assert few.endswith("64 falls are few: even an error of 0 may in truth be up to 4.6 % (95 %).")
 
 
 def test_noise_and_a_narrow_band_cost(bound: Bound) -> None:

@@ -193,8 +193,8 @@ def test_eight_rocks_are_too_few_to_find_a_leak_of_the_recorder_and_that_is_said
     """Of 70 ways to give four of eight rocks a class two separate them as these do; nothing was said."""
     (doubt,) = leaks(8, 1e-3, 0)
     assert doubt == (
-        "leaks of the recorder can't be told from chance with 8 rocks: chance separates classes fully in at least 2.9 % of data sets; at "
-        "least 5 rocks of each class are needed"
+        "leaks of the recorder can't be told from chance with 8 rocks: chance separates classes fully in at least 2.9 % of data sets; 5 "
+        "rocks of each class suffice"
     )
 
 

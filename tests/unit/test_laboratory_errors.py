@@ -159,7 +159,7 @@ def test_an_offset_before_first_touch_is_removed() -> None:
 CAUSES = {
     "moved": (a_case(moved={"b": (-0.045, 0.08)}), measured, '"b" lies', 'state --sensor-error "'),
     "gain": (a_case(), lambda: changed("c", lambda value: 1.1 * value), '"c" reads', "state --gain-error"),
-    "thickness": (a_case({"size": [0.3, 0.3, 0.0202]}), measured, "makes its frequencies", "state --thickness-error"),
+    "thickness": (a_case({"size": [0.3, 0.3, 0.0202]}), measured, "plate's frequencies are on average", "state --thickness-error"),
 }
 
 
@@ -180,6 +180,12 @@ def test_a_wrong_set_up_is_named_and_its_remedy_helps(cause: str) -> None:
         assert low < value < high
     left, before = (np.sqrt((one.sphere.residual**2).mean(axis=1)).max() for one in (better, found))
     assert left < 0.5 * before
+
+
+@pytest.mark.slow
+def test_the_error_that_a_doubt_asks_for_is_allowed() -> None:
+    found = vi.identify(a_case(), changed("c", lambda value: 1.6 * value))
+    assert any(doubt.endswith("state --gain-error 0.3") for doubt in found.doubts)
 
 
 @pytest.mark.slow

@@ -14,6 +14,7 @@ from studies import coal_on_steel
 from vibroimpact.dynamics.first_touch import first_touch
 from vibroimpact.errors import ComputationError
 from vibroimpact.studies.axes import Listed, Normal, Spaced
+from vibroimpact.studies.compute_points import compute_points
 from vibroimpact.studies.population import Population
 from vibroimpact.studies.window import Window
 
@@ -77,8 +78,17 @@ def test_the_window_is_cut_at_the_last_sample_before_it() -> None:
         window.samples(np.array([]), 20e3, 4000)
     with pytest.raises(ComputationError, match=r"touches 0 s after the start, less than the 0.001 s"):
         window.samples(np.array([0.0]), 20e3, 4000)
-    with pytest.raises(ComputationError, match=r"ends at 0.2 s, before the window does, at 0.204 s"):
+    with pytest.raises(ComputationError, match=r"ends at 0.2 s, before the window does, at 0.204 s; give a longer run.duration"):
         window.samples(np.array([0.2]), 20e3, 4000)
+
+
+def test_a_window_after_the_last_impact_asks_for_more_impacts() -> None:
+    """A longer duration was asked for, which did not help."""
+    case = {**table(), "run": {"duration": 0.6, "impacts": 1}}
+    sweep = {"over": {"drop.height": [0.1]}, "keep": ["signals"], "window": {"length": 0.25}}
+    study = vi.read_sweep({**case, "sweep": sweep})
+    failures = compute_points(study.table, ("signals",), 0, study.plan.points(0, 1), study.window).failures
+    assert "as the run ended before run.duration; allow more run.impacts" in failures[0]
 
 
 def table(**sweep: Any) -> dict[str, Any]:
@@ -150,6 +160,15 @@ def test_a_population_is_computed_and_read(tmp_path: Path) -> None:
         (
             {"classes": {"a": {"over": {"plate.damping": [0.1]}}, "b": {"over": {"plate.damping": [0.4]}}}},
             'sweep.classes."a".over."plate.damping": the plate is not of a class',
+        ),
+        (
+            {
+                "classes": {
+                    "a": {"over": {"sphere.radius": [0.01]}},
+                    "b": {"over": {"sphere.radius": {"distribution": "normal", "mean": 0.01, "standard_deviation": 0.1}}},
+                }
+            },
+            'sweep.classes."b".over."sphere.radius": -0.',
         ),
         ({"classes": {"a": {"share": 0.0, "over": {}}, "b": {"over": {}}}}, "share"),
         ({"samples": 2}, 'sweep.samples: "'),

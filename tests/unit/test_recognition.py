@@ -189,7 +189,22 @@ def test_the_same_signal_in_two_rocks(tmp_path: Path) -> None:
     def copy(data: dict[str, Any]) -> None:
         data["signal_a1"][80] = data["signal_a1"][3]
 
-    assert "signals 3 and 80 are the same and lie in two rocks (0 and 13)" in refused(tmp_path, copy)
+    assert "signals 3 and 80, counted from 0, are the same and lie in two rocks (0 and 13)" in refused(tmp_path, copy)
+
+
+def test_signals_are_numbered_as_in_the_file_where_drops_failed(tmp_path: Path) -> None:
+    def copy(data: dict[str, Any]) -> None:
+        data["signal_a1"][80] = data["signal_a1"][3]
+        data["signal_a1"][[0, 50]] = np.nan
+
+    assert "signals 3 and 80, counted from 0, are the same" in refused(tmp_path, copy)
+
+
+def test_more_signals_are_asked_for_only_where_there_are_more(tmp_path: Path) -> None:
+    def one_rock(data: dict[str, Any]) -> None:
+        data["rock"][:] = 0
+
+    assert refused(tmp_path, one_rock).endswith("give signals of several rocks")
 
 
 def test_the_same_signal_twice_in_one_rock_and_silence_are_allowed(tmp_path: Path) -> None:
@@ -455,9 +470,7 @@ def test_a_classifier_above_the_bound_is_a_leak(tmp_path: Path, found: vi.Recogn
         data["signal_a1"][data["class"] == 1] += 0.05 * np.sin(2 * np.pi * 9500.0 * time).astype(np.float32)
 
     leaky = vi.recognise(write_knocks(tmp_path / "data", leak, rocks=40, falls=6), folds=2, seeds=1)
-    words = (
-        "below the Bayes error of 23.10% that the data set states; if the bound counts all that an impact tells, it has used information"
-    )
+    words = "below the Bayes error of 23.1% that the data set states; if the bound counts all that an impact tells, it has used information"
     assert any(one.startswith(f"possible leak: {leaky.best} errs in") and words in one for one in leaky.doubts)
 
 
@@ -468,7 +481,7 @@ def test_a_computed_bound_names_what_it_counts(found: vi.Recognition) -> None:
     perfect = {"any": score(right[np.newaxis], rocks % 2, Bootstrap(rocks, rocks % 2))}
     (doubt,) = bound_doubts(perfect, 0.2, "any", "any", "impulse and contact time")
     assert doubt.startswith(
-        "possible leak: any errs in 0.00%, below the Bayes error of 20.00% of classifiers that see only impulse and contact"
+        "possible leak: any errs in 0.0%, below the Bayes error of 20.0% of classifiers that see only impulse and contact"
     )
     assert "such as the position of the impact" in doubt
     stated, computed = ("".join(sentences(replace(found, bayes_error_sees=sees))) for sees in (None, "impulse and contact time"))

@@ -76,6 +76,14 @@ def test_a_trace_of_the_recorder_is_found_without_a_bound(kind: str) -> None:
         assert all(one.startswith("leak of the recorder at") and len(one) < 490 for one in found)
 
 
+def test_the_step_between_sample_values_is_told_with_its_unit() -> None:
+    """Its logarithm was told."""
+    value, data = recorded(0)
+    step = np.where(data["class"] == 1, 2e-3, 1e-3)[:, None]
+    (leak,) = (one for one in leaks(np.round(value / step) * step, 0) if "the step between sample values" in one)
+    assert "(medians 0.001 V for coal, 0.002 V for gangue;" in leak
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 def test_traces_are_found_in_every_data_set(kind: str) -> None:
@@ -110,7 +118,7 @@ def test_near_copies_are_copies(difference: float) -> None:
     value, groups = value.copy(), data["rock"].astype(np.intp)
     value[100] = value[3] * (1.0 + difference * np.random.default_rng(1).standard_normal(value.shape[1]))
     signals = LabelledSignals("knocks", {"a1": SensorSignals(value.astype(np.float32), 20e3, "V")}, None, ("coal", "gangue"))
-    words = r"signals 3 and 100 (are the same|differ by only .* of their size) and lie in two rocks \(0 and 16\)"
+    words = r"signals 3 and 100, counted from 0, (are the same|differ by only .* of their size) and lie in two rocks \(0 and 16\)"
     with pytest.raises(vi.InputError, match=words):
         check_duplicates(signals, groups, "rock")
 

@@ -69,7 +69,10 @@ def test_the_card_of_a_data_set_says_what_follows_what(tmp_path: Path) -> None:
     stated = population({"drop.speed": SPEED}, {"sphere.radius": RADIUS})
     study = vi.read_study(vi.run_sweep(vi.read_sweep(stated), tmp_path / "study"))
     assert study.failures == {}
-    assert "each independently. `drop.speed` follows `sphere.radius`." in data_card(study)
+    card = data_card(study)
+    assert "each independently. `drop.speed` follows `sphere.radius`." in card
+    assert "Values and labels, without signals, are in `study.nc`" in card
+    assert "## Signals" not in card
 
 
 def test_a_description_says_what_follows_what() -> None:

@@ -180,7 +180,7 @@ def test_failures_are_told_with_their_points_and_left_out_of_the_numbers(tmp_pat
     assert '<th scope="row">5</th><td>30.00\u00a0mm</td><td>40.00\u00a0mm</td>' in page
     spreads = {one.name: one.spread for one in study_outputs(study)}
     assert spreads["number_of_impacts"].drops == 5
-    assert "1: drop.height: 0.03 m does not lift the sphere off the surface" in told(study, 200)
+    assert "1 drop: drop.height: 0.03 m does not lift the sphere off the surface" in told(study, 200)
 
 
 def test_a_study_of_which_every_drop_failed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -194,7 +194,7 @@ def test_a_study_of_which_every_drop_failed(tmp_path: Path, monkeypatch: pytest.
     assert "12 drops; all of them failed." in page_of(study)
     assert not charts_of(study)
     assert rows_of(study.path.parent / "percentiles.csv") == []
-    assert "12: no luck" in told(study)
+    assert "12 drops, such as: no luck" in told(study)
 
 
 def test_laws_without_restitution_and_without_force(tmp_path: Path) -> None:
@@ -205,7 +205,7 @@ def test_laws_without_restitution_and_without_force(tmp_path: Path) -> None:
     over = {"contact.restitution": [0.3, 0.5], "drop.height": ["1 m", "2 m"]}
     newton = study_of(tmp_path / "newton", {"over": over}, contact={"law": "newton", "restitution": 0.5})
     assert charts_of(newton) == {"curves", "restitution", "sensitivity"}
-    assert "Without a value in all drops: largest force" in page_of(newton)
+    assert "Without a value in any drop: largest force" in page_of(newton)
 
 
 def test_signals_of_sensors_whatever_they_are_called(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -309,4 +309,4 @@ def test_keys_without_effect_are_named_and_not_a_row(tmp_path: Path) -> None:
     outputs = drawn_outputs(study_outputs(study))
     assert [row[0] for row in sensitivity_table(found, outputs)[1]] == ["sphere.radius"]
     assert without_effect(found, outputs) == ["plate.size.thickness"]
-    assert "Without effect on these results: plate.size.thickness." in page_of(study)
+    assert "Left out, as all their numbers are missing or zero once rounded: plate.size.thickness." in page_of(study)

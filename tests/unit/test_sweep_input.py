@@ -80,12 +80,21 @@ FAULTS: list[tuple[object, str]] = [
         drawn(design="sobol", samples=100),
         "sweep.samples: 100 is not a power of two, which the sequence needs to be balanced; take 64 or 128",
     ),
+    (drawn(design="sobol", samples=9_000_000), "which the sequence needs to be balanced; take 8388608"),
+    (
+        {
+            "design": "latin-hypercube",
+            "samples": 4,
+            **over(sphere__radius=[0.01, 0.03], contact__restitution={"value": 0.5, "of": "sphere.radius", "at": 0.01}),
+        },
+        'sweep.over."contact.restitution": 1.5 is not allowed; it must be at least 0 and at most 1; it follows another key: choose',
+    ),
     (drawn(seed=-1), "sweep.seed: -1 is not allowed"),
     ({"design": "saltelli", "samples": 8, **over(sphere__radius={"from": 0.01, "to": 0.02})}, "sweep.over: there is one key alone"),
     ({"design": "zip", **over(sphere__radius=[0.01], drop__height=[1.0, 2.0])}, "sphere.radius has 1, drop.height has 2"),
     ({"design": "zip", **normal()}, f"{RADIUS}: a distribution has no values in an order"),
     ({"keep": ["impact"], **over(sphere__radius=[0.01])}, 'sweep.keep.0: "impact" is not allowed; it must be'),
-    ({"keep": ["signals"], **over(sphere__radius=[0.01])}, 'sweep.keep: "signals" needs [[sensors]] on an elastic plate'),
+    ({"keep": ["signals"], **over(sphere__radius=[0.01])}, 'sweep.keep: "signals" needs [[sensors]], on a plate that is elastic or shaken'),
     (
         over(sphere__radius={"from": 1e-3, "to": 2e-3, "number": 10_000}, drop__height={"from": 1, "to": 2, "number": 10_000}),
         "there would be 100000000",

@@ -51,6 +51,8 @@ class Bound:
     without_scatter : dict of str to BayesError
         The Bayes error if the assumed scatter of the amplitude is zero, that of sensitivity and of the position: `Channel.gain` and
         `Channel.place`.
+    on_rigid_plate : bool, default False
+        Whether the falls were computed on the plate as a rigid body, as those of a stated population are.
 
     Examples
     --------
@@ -68,6 +70,7 @@ class Bound:
     remaining: dict[str, Floats]
     map: Floats
     without_scatter: dict[str, BayesError]
+    on_rigid_plate: bool = False
 
 
 def bound_of(
@@ -105,7 +108,7 @@ def bound_of(
     falls = falls_of_study(population) if isinstance(population, Study) else falls_of_sweep(population)
     names, counts = np.unique(falls.classes, return_counts=True)
     if len(names) < 2:
-        raise InputError("fewer than two classes have falls that touched the plate, so that there is nothing to classify")
+        raise InputError("fewer than two classes have falls that were computed and touched the plate, so that there is nothing to classify")
     heard, steps = channel or Channel(), len(OBSERVATIONS) + BANDWIDTHS.size * SIGNAL_TO_NOISE.size + 1
 
     def tell(done: int) -> None:
@@ -125,7 +128,8 @@ def bound_of(
         tell(len(OBSERVATIONS) + place + 1)
     without = _without_scatter(falls, heard, errors, seed)
     tell(steps)
-    return Bound(population.name, falls, heard, errors, 1.0 - counts.max() / counts.sum(), remaining, found, without)
+    majority, rigid = 1.0 - counts.max() / counts.sum(), not isinstance(population, Study)
+    return Bound(population.name, falls, heard, errors, majority, remaining, found, without, rigid)
 
 
 SEEN_AT_BEST = "impulse, contact time and the time to the next impact"

@@ -11,19 +11,24 @@ from vibroimpact.units.display import MISSING
 
 _FEW = 5.0
 """Median number of neighbours below which more falls would narrow a bracket."""
+_COARSE = 0.02
+"""Standard error from which on an error has no decimals."""
 _LEAST = 300
-"""Number of falls below which none wrong among them is said to be compatible with an error of 3 over their number (95 %), 1 % or more."""
+"""Number of falls below which none wrong among them is said to be compatible with an error of 3 over their number (95 %) or less."""
 
 
 def error_words(error: BayesError) -> str:
-    """Return the bracket of a Bayes error in per cent.
+    """Return the bracket of a Bayes error in per cent, without tenths if few falls tell it.
 
     Examples
     --------
     >>> error_words(BayesError(0.0044, 0.0101, 0.002, 20.0)), error_words(BayesError(0.0, 0.004, 0.002, 1.0))
     ('0.4 to 1.0 %', 'at most 0.4 %')
+    >>> error_words(BayesError(0.21, 0.24, 0.043, 20.0))
+    '21 to 24 %'
     """
-    low, high = f"{100.0 * error.lower:.1f}", f"{100.0 * error.upper:.1f}"
+    decimals = 1 if error.standard_error < _COARSE else 0
+    low, high = f"{100.0 * error.lower:.{decimals}f}", f"{100.0 * error.upper:.{decimals}f}"
     if error.neighbours < _FEW:
         return f"at most {high} %"
     return f"{high} %" if low == high else f"{low} to {high} %"
@@ -33,12 +38,14 @@ def headline(bound: Bound) -> str:
     """Return the finding in a sentence."""
     time, impact = bound.errors["contact time"], bound.errors["one impact"]
     number = len(bound.falls)
-    few = f" {number:,} falls are few: even an error of 0 may in truth be up to {300.0 / number:.1f} % (95 %)." if number < _LEAST else ""
+    most = 100.0 * (1.0 - 0.05 ** (1.0 / number))  # so large an error leaves all of them right once in twenty times
+    few = f" {number:,} falls are few: even an error of 0 may in truth be up to {most:.1f} % (95 %)." if number < _LEAST else ""
     names = np.unique(bound.falls.classes).tolist()
+    frequent = "more" if len(names) == 2 else "most"
     return (
         f"For {len(bound.falls):,} falls of {' and '.join(names)}, the lowest error of a classifier that sees only the contact time is "
         f"{error_words(time)}, and that of one that sees only impulse and contact time of one impact at a known position "
-        f"{error_words(impact)}; always naming the more frequent class has an error of {100.0 * bound.majority:.1f} %.{few}"
+        f"{error_words(impact)}; always naming the {frequent} frequent class has an error of {100.0 * bound.majority:.1f} %.{few}"
     )
 
 
@@ -56,13 +63,14 @@ def scatter_words(bound: Bound) -> str:
 
 
 def heard_words(bound: Bound) -> str:
-    """Return the measuring channel, in a sentence."""
+    """Return the measuring channel, and how falls and bounces were computed, in sentences."""
     one = bound.channel
+    rigid = " The falls are computed on the plate as a rigid body." if bound.on_rigid_plate else ""
     return (
         f"Measured up to {one.bandwidth / 1e3:g} kHz, with the peak force of the median fall {one.signal_to_noise:g} dB above the noise in "
         f"10 kHz. Assumed relative standard deviations: sensitivity {100.0 * one.gain:g} %, amplitude at an unknown position "
         f"{100.0 * one.place:g} %, speed where it is measured {100.0 * one.height:g} %, radius where it is measured {100.0 * one.size:g} "
-        f"%, time to the next impact {100.0 * one.interval:g} %."
+        f"%, time to the next impact {100.0 * one.interval:g} %, which is that of a bounce on a level plate in standard gravity.{rigid}"
     )
 
 

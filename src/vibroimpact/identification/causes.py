@@ -14,6 +14,7 @@ from vibroimpact.identification.plate import Place, Plate
 from vibroimpact.identification.pulses import Candidate
 from vibroimpact.identification.sphere import SphereFit, fit_sphere
 from vibroimpact.shown import shown
+from vibroimpact.units.display import digits
 
 _WIDE = {"sensor_place": 0.01, "gain": 0.1, "thickness": 0.02, "resonance": 0.1}
 """Deviations with which the set-up is free; thickness stands for modulus too, since frequencies hardly tell them apart."""
@@ -58,14 +59,14 @@ def causes(plate: Plate, measured: Measured, sphere: SphereFit, start: Candidate
     less = float((free.noise / measured.noise).max() / (sphere.noise / measured.noise).max())
     if less > _LESS:
         return [], less
-    found = _differences(free, [sensor.name for sensor in measured.sensors])
+    found = _differences(free, [sensor.name for sensor in measured.sensors], float(plate.thickness_exponents.mean()))
     return sorted(found, key=lambda one: one.size / _LEAST[one.name], reverse=True), less
 
 
 def remedy(plate: Plate, found: list[Cause]) -> str:
     """Return the options that state differences, and what was stated before."""
-    sizes = {name: max([getattr(plate.errors, name), *(_up(one.size) for one in found if one.name == name)]) for name in _WIDE}
-    return replace(plate.errors, **sizes).options
+    sizes = {one.name: max(_up(other.size) for other in found if other.name == one.name) for one in found}
+    return plate.errors.at_least(sizes).options
 
 
 def told(found: list[Cause]) -> str:
@@ -74,8 +75,8 @@ def told(found: list[Cause]) -> str:
     return ", ".join(one.words for one in found[:_NAMED]) + more
 
 
-def _differences(free: SphereFit, sensors: list[str]) -> Iterator[Cause]:
-    """Yield how a set-up that was found differs from the case."""
+def _differences(free: SphereFit, sensors: list[str], exponent: float) -> Iterator[Cause]:
+    """Yield how a set-up that was found differs from the case; the thickness to the power of an exponent gives frequencies."""
     setup, deviations = free.setting.found, free.setting.deviations
     x, y, _, resonance = deviations[2:].reshape(4, -1)
     if len(sensors) > 1:
@@ -85,15 +86,15 @@ def _differences(free: SphereFit, sensors: list[str]) -> Iterator[Cause]:
         more, spread = setup.gain - setup.gain[middle], np.linalg.norm(of_gain - of_gain[middle], axis=1)
     else:
         more, spread = setup.gain, deviations[4:5]
-    along = np.append([1.0, 0.5], np.zeros(len(deviations) - 2))
-    stretch = setup.thickness + 0.5 * setup.modulus
+    along = np.append([exponent, 0.5], np.zeros(len(deviations) - 2))
+    stretch = exponent * setup.thickness + 0.5 * setup.modulus
     if abs(stretch) > max(_LEAST["thickness"], _SURE * float(np.linalg.norm(along @ free.setting.errors))):
-        words = f"the thickness or the modulus of the plate makes its frequencies {_percent(stretch)} than in the case"
-        yield Cause(words, "thickness", abs(stretch))
+        words = f"the plate's frequencies are on average {_percent(stretch)} than in the case, by another thickness or modulus"
+        yield Cause(words, "thickness", abs(stretch) / exponent)
     for number, name in enumerate(sensors):
         off = float(np.hypot(*setup.moved[number]))
         if off > max(_LEAST["sensor_place"], _SURE * math.hypot(x[number], y[number])):
-            yield Cause(f"{shown(name)} lies {1e3 * off:.2g} mm from its place in the case", "sensor_place", off)
+            yield Cause(f"{shown(name)} lies about {digits(1e3 * off, 2)} mm from its place in the case", "sensor_place", off)
         if abs(more[number]) > max(_LEAST["gain"], _SURE * float(spread[number])):
             beside = " beside the others" if len(sensors) > 1 else ""
             yield Cause(f"{shown(name)} reads {_percent(float(more[number]))} than it should{beside}", "gain", abs(float(more[number])))
@@ -103,7 +104,7 @@ def _differences(free: SphereFit, sensors: list[str]) -> Iterator[Cause]:
 
 
 def _percent(part: float) -> str:
-    return f"{100.0 * abs(part):.2g} % {'higher' if part > 0.0 else 'lower'}"
+    return f"about {digits(100.0 * abs(part), 2)} % {'higher' if part > 0.0 else 'lower'}"
 
 
 def _up(size: float) -> float:

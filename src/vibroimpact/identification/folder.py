@@ -80,6 +80,7 @@ def save_identification(found: Identification, directory: str | PathLike[str], *
             rows=identification_rows(found),
             doubts=found.doubts,
             certain=found.certain,
+            model_errors=bool(found.plate.model_error),
             version=__version__,
         )
         (folder / "report.html").write_text(page, encoding="utf-8")

@@ -23,6 +23,7 @@ from vibroimpact.identification.sphere import SphereFit, fit_sphere
 from vibroimpact.signals.baseline import without_baseline
 from vibroimpact.signals.estimate import Estimate
 from vibroimpact.signals.record import Record
+from vibroimpact.units.display import digits
 
 WINDOW = 5e-3
 """Time from first touch on that is used unless another is given [s]."""
@@ -252,15 +253,20 @@ def _started(plate: Plate, records: Sequence[Record], place: Place | None) -> tu
     InputError
         If a place lies outside the plate, a record is not one of a sensor, or its sampling is too slow for the contact.
     """
-    if place is not None and any(abs(at) > half for at, half in zip(place, plate.half, strict=True)):
-        x, y = plate.half
-        words = f"the place ({place[0]:g}, {place[1]:g}) m is off the plate, or too near its edge"
-        raise InputError(f"{words}; from the plate's centre it may be up to {x:g} m along x and {y:g} m along y")
+    low, high = plate.bounds
+    if place is not None and not ((low <= place) & (place <= high)).all():
+        words = f"the place ({place[0]:.10g}, {place[1]:.10g}) m is off the plate, or too near its edge"
+        raise InputError(f"{words}; x must be from {low[0]:.10g} to {high[0]:.10g} m, and y from {low[1]:.10g} to {high[1]:.10g} m")
     measured, search = upright(plate, measured_of(plate.problem.sensors, records, plate.window), place)
     pulse = search.candidates[0]
-    if pulse.duration * measured.band < _TOLD or pulse.spread > _VAGUE:
-        words = f"the sensors hear up to {measured.band:.4g} Hz, enough for contacts of {1e6 * _TOLD / measured.band:.3g} us or longer"
-        remedy = f"sample faster than at {measured.rate:g} Hz, or with less noise"
+    if pulse.duration * measured.band < _TOLD:
+        shortest = digits(1e6 * _TOLD / measured.band, 3)
+        words = f"the sensors hear up to {measured.band:,.0f} Hz, enough for contacts of {shortest} us or longer"
+        remedy = f"sample faster than at {measured.rate:.10g} Hz, with an anti-alias filter that passes more"
+        raise InputError(f"the records do not determine the duration of the contact: {words}; {remedy}")
+    if pulse.spread > _VAGUE:
+        words = f"the standard deviation of its logarithm is {digits(pulse.spread, 2)}, from what the best pulse leaves of them"
+        remedy = "measure with less noise, or check that they are of an impact on the plate of the case"
         raise InputError(f"the records do not determine the duration of the contact: {words}; {remedy}")
     return measured, search
 

@@ -17,6 +17,7 @@ from vibroimpact.signals.clipped import clipped_samples
 from vibroimpact.signals.one_record import is_named
 from vibroimpact.signals.onset import onset_time
 from vibroimpact.signals.record import Record, Removed
+from vibroimpact.units.display import digits
 
 _LEAST = 64
 """Least number of samples from first touch on."""
@@ -119,7 +120,9 @@ def measured_of(sensors: Sequence[Sensor], records: Sequence[Record], window: fl
     last = min(round((onset + window - start) * rate), round((end - start) * rate))
     if last - round((onset - start) * rate) < _LEAST:
         words = f"the records have {max(0, last - round((onset - start) * rate))} samples in common from first touch on, to at most"
-        raise InputError(f"{words} {1e3 * window:g} ms; {_LEAST} are needed, which are {1e3 * _LEAST / rate:.3g} ms at {rate:g} Hz")
+        raise InputError(
+            f"{words} {1e3 * window:g} ms; {_LEAST} are needed, which are {digits(1e3 * _LEAST / rate, 3)} ms at {rate:.10g} Hz"
+        )
     value, heard = whole[:, first:last], ~clipped[:, first:last]
     quiet = first >= _QUIET
     noise = np.std(whole[:, :first], axis=1) if quiet else np.zeros(len(whole))
@@ -151,10 +154,11 @@ def sensors_of(sensors: Sequence[Sensor], records: Sequence[Record]) -> tuple[Se
         name = next((name for name in (record.name, *known) if name in known and is_named(record, name)), None)
         if name is None:
             there = ", ".join(f'"{name}"' for name in known)
-            words = f"the case has no sensor {shown(record.name)}; it has {there}.{did_you_mean(record.name, known)}"
+            words = f"the case has no sensor {shown(record.name)}; it has {there}"
             first = next(iter(known.values()))
-            column = f'; a column of a CSV file is named after its sensor and has its unit, such as "{first.name} [{first.unit}]"'
-            raise InputError(words if not record.source.lower().endswith(".csv") else words.removesuffix(".") + column)
+            if record.source.lower().endswith(".csv"):
+                words += f'; a column of a CSV file is named after its sensor and has its unit, such as "{first.name} [{first.unit}]"'
+            raise InputError(f"{words}.{did_you_mean(record.name, known)}")
         if name in chosen:
             raise InputError(f"there are two records {shown(name)}; give those of one fall")
         _check(record, known[name])
@@ -187,11 +191,12 @@ def on_common_time(records: Sequence[Record]) -> tuple[Floats, float]:
 def _check(record: Record, sensor: Sensor) -> None:
     """Raise InputError unless a record can be that of a sensor."""
     if record.unit.replace("^", "") != sensor.unit and (record.unit, sensor.unit) != _STRAIN:
-        raise InputError(f"the record {shown(record.name)} is in {record.unit}, and the sensor of that name reads {sensor.unit}")
+        given = f"in {record.unit}" if record.unit else "without a unit"
+        raise InputError(f"the record {shown(record.name)} is {given}, and the sensor of that name reads {sensor.unit}")
     if abs(record.rate / sensor.rate - 1.0) > _SAME:
-        words = f"the record {shown(record.name)} has {record.rate:g} samples per second, and the sensor of that name {sensor.rate:g}"
-        raise InputError(f"{words}; write rate = {record.rate:g} in the case, with the anti-alias filter that the record has")
+        words = f"the record {shown(record.name)} has {record.rate:.10g} samples per second, and the sensor of that name {sensor.rate:.10g}"
+        raise InputError(f"{words}; write rate = {record.rate:.10g} in the case, with the anti-alias filter that the record has")
     if not np.isfinite(record.value).all():
         raise InputError(f"the record {shown(record.name)} has samples that are not finite numbers")
     if not len(record.value) or np.ptp(record.value) == 0.0:
-        raise InputError(f"the record {shown(record.name)} is constant; nothing touched the plate")
+        raise InputError(f"the record {shown(record.name)} {'is constant' if len(record.value) else 'has no samples'}; it shows no impact")

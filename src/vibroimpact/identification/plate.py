@@ -90,11 +90,11 @@ class Plate:
     detunings: dict[tuple[str, ...], tuple[Floats, Floats]] = field(default_factory=dict)
 
     @property
-    def half(self) -> tuple[float, float]:
-        """Largest x and y of a place [m]."""
-        extent, thickness = self.problem.models["plate"].mesh.extent, self.problem.models["plate"].thickness
-        margin = _MARGIN * (thickness or float(extent[2]))
-        return 0.5 * float(extent[0]) - margin, 0.5 * float(extent[1]) - margin
+    def bounds(self) -> tuple[Floats, Floats]:
+        """Least and largest x and y of a place [m], (2,) each."""
+        model = self.problem.models["plate"]
+        nodes, margin = model.mesh.nodes[:, :2], _MARGIN * (model.thickness or float(model.mesh.extent[2]))
+        return nodes.min(axis=0) + margin, nodes.max(axis=0) - margin
 
     @property
     def modes(self) -> ModalBasis:
@@ -106,9 +106,12 @@ class Plate:
     @cached_property
     def grid(self) -> tuple[Floats, Floats, Floats]:
         """x and y of a grid of places that no mode oscillates between [m], and the deflections there, (y, x, modes)."""
-        (length, width), modes = (2.0 * np.asarray(self.half)), len(self.problem.models["plate"].angular_frequencies)
+        low, high = self.bounds
+        (length, width), modes = high - low, len(self.problem.models["plate"].angular_frequencies)
         step = np.sqrt(np.pi * length * width / modes) / _PER_WAVE  # a mode has the area of its wavelength squared over pi (Weyl)
-        x, y = (np.linspace(-half, half, max(5, round(2.0 * half / step) + 1)) for half in self.half)
+        x, y = (
+            np.linspace(start, end, max(5, round((end - start) / step) + 1)) for start, end in zip(low.tolist(), high.tolist(), strict=True)
+        )
         places = np.stack(np.meshgrid(x, y), axis=-1)
         return x, y, self.deflections(places.reshape(-1, 2)).reshape(len(y), len(x), -1)
 
@@ -337,7 +340,7 @@ def plate_of(
     Raises
     ------
     InputError
-        If the plate is rigid or moves, the case has no sensors, or the sphere's own modes would change with its size.
+        If the plate is rigid, narrow or moves, the case has no sensors, or the sphere's own modes would change with its size.
     """
     check_case(case)
     if case.plate.model == "rigid":
@@ -347,7 +350,7 @@ def plate_of(
     if not case.sensors:
         raise InputError("the case has no sensors; say where those of the records are", "sensors")
     if isinstance(case.plate.mesh, BroughtMeshTable) and case.plate.mesh.contact:
-        raise InputError("the place of the force is sought, and this names one; leave it out", "plate.mesh.contact")
+        raise InputError("an identification places the force itself, and this fixes its place; leave it out", "plate.mesh.contact")
     if case.sphere.model == "elastic":
         raise InputError('the modes of a sphere change with its size, which is sought; leave it "rigid"', "sphere.model")
     if case.contact.local.finite_sphere or treatment_of(case) == "identified":
@@ -362,4 +365,9 @@ def plate_of(
     of_frequencies = np.concatenate(
         [np.zeros(0 if rigid is None else len(rigid.frequencies)), np.hypot(model_error * of_mesh, frequency_error)]
     )
-    return Plate(case, problem, window, of_frequencies, errors or SetupErrors(), model_error)
+    plate = Plate(case, problem, window, of_frequencies, errors or SetupErrors(), model_error)
+    low, high = plate.bounds
+    if not (low < high).all():
+        words = f"an impact is identified {_MARGIN:g} thicknesses or more from the edge"
+        raise InputError(f"{words}, and the plate is at most {2.0 * _MARGIN:g} thicknesses long or wide", "plate")
+    return plate

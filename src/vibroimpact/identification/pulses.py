@@ -95,8 +95,8 @@ def search_place(plate: Plate, measured: Measured, place: Place | None = None) -
     step = 0.0 if place is not None else float(np.hypot(x[1] - x[0], y[1] - y[0]))
     found: list[Candidate] = []
     for one in np.argsort(energies):
-        (*at, impulse, duration, touch), half = fits[one].parameters.tolist(), np.array(plate.half)
-        at_x, at_y = np.clip(at, -half, half).tolist()
+        *at, impulse, duration, touch = fits[one].parameters.tolist()
+        at_x, at_y = np.clip(at, *plate.bounds).tolist()
         again = any(np.hypot(at_x - other.place[0], at_y - other.place[1]) < _APART * step for other in found)
         if not again and energies[one] - energies.min() < _ALIKE * scale:
             spread = float(np.sqrt(scale * fits[one].covariance[3, 3]))
@@ -132,11 +132,11 @@ def _over_the_plate(plate: Plate, measured: Measured, shapes: Floats) -> Matched
 def _refined(plate: Plate, measured: Measured, start: Floats, *, known: bool) -> Fit:
     """Return place, logarithms of impulse and duration, and first touch of the pulse that fits best, from near it."""
     heard = plate.heard([sensor.name for sensor in measured.sensors])
-    samples, bound = measured.value.shape[1], np.array(plate.half)
+    samples, (low, high) = measured.value.shape[1], plate.bounds
     none = np.zeros(len(measured.sensors))
 
     def model(parameters: Floats) -> tuple[Floats, Floats]:
-        place = np.clip(parameters[:2], -bound, bound)
+        place = np.clip(parameters[:2], low, high)
         impulse, duration, touch = np.exp(parameters[2]), np.exp(parameters[3]), parameters[4]
         answers = [heard.at(shapes, none) for shapes in plate.deflections(place + _NUDGE * np.array([[0, 0], [1, 0], [0, 1]]))]
 
@@ -156,5 +156,5 @@ def _refined(plate: Plate, measured: Measured, start: Floats, *, known: bool) ->
             slopes[:2] = [np.zeros_like(here)] * 2
         return here - (measured.value * measured.weights).ravel(), np.stack(slopes, axis=1)
 
-    most = np.array([*(0.25 * (2.0 * bound) / 8.0), 0.5, 0.3, 1.0 / measured.rate])
+    most = np.array([*(0.25 * (high - low) / 8.0), 0.5, 0.3, 1.0 / measured.rate])
     return gauss_newton(model, start, most)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -75,7 +76,7 @@ class SetupErrors:
             most, given = _MOST_PLACE if of_place else _MOST_PART, getattr(self, name)
             if not 0.0 <= given <= most:
                 allowed = f"it must be 0 to {most:g} m (5 mm is 0.005)" if of_place else f"it must be 0 to {most:g} (2 % is 0.02)"
-                raise InputError(f"an error of {given:g} of the {meaning} is not allowed; {allowed}")
+                raise InputError(f"an error of {given:.10g} of the {meaning} is not allowed; {allowed}")
 
     @property
     def options(self) -> str:
@@ -93,6 +94,17 @@ class SetupErrors:
     def is_none(self) -> bool:
         """Whether all is taken as certain."""
         return len(self.certain) == len(_MEANINGS)
+
+    def at_least(self, sizes: Mapping[str, float]) -> SetupErrors:
+        """Return errors of which some are at least of given sizes, as far as that is allowed.
+
+        Examples
+        --------
+        >>> SetupErrors(gain=0.02).at_least({"gain": 0.6, "thickness": 0.01}).options
+        '--gain-error 0.3 --thickness-error 0.01'
+        """
+        most = {name: _MOST_PLACE if name == "sensor_place" else _MOST_PART for name in _MEANINGS}
+        return replace(self, **{name: min(max(getattr(self, name), size), most[name]) for name, size in sizes.items()})
 
     def deviations(self, sensors: int) -> Floats:
         """Return the standard deviations of the numbers of a `Setup` of S sensors, (2 + 4 S,)."""

@@ -133,10 +133,11 @@ def fit_sphere(plate: Plate, measured: Measured, start: Candidate, place: Place 
     deviations = plate.errors.deviations(sensors)
     unknowns = _OF_CONTACT + sensors + len(plate.frequency_errors) + len(deviations)  # in their deviations
     expected = np.append([1.0 / _NEXT_OCTAVE, 1.0, lacking / deviation if deviation else 0.0], np.zeros(unknowns - _OF_CONTACT))
+    low, high = plate.bounds
     farthest = np.concatenate([_FARTHEST[:2], np.repeat(_FARTHEST[2:], sensors)])
     in_deviations = np.divide(farthest, deviations, out=np.full(len(deviations), np.inf), where=deviations > 0.0)
     of_model = np.full(unknowns - len(deviations), np.inf)
-    most = np.array([*(0.06 * np.array(plate.half)), 0.3, 0.3, 1.0 / measured.rate, *of_model, *in_deviations])
+    most = np.array([*(0.03 * (high - low)), 0.3, 0.3, 1.0 / measured.rate, *of_model, *in_deviations])
     by_prior = np.concatenate([np.zeros((unknowns, _FITTED)), np.eye(unknowns)], axis=1)
     free = np.concatenate([np.full(2, place is None), np.ones(3 + unknowns)])
 
@@ -163,10 +164,10 @@ def fit_sphere(plate: Plate, measured: Measured, start: Candidate, place: Place 
         if np.all(less > _SETTLED * noise):
             break
         noise = less  # the fit came from afar, and ended with what was left there as noise
-    found, half = explained(fit.parameters.tobytes()), np.array(plate.half)
+    found = explained(fit.parameters.tobytes())
     vectors, values, _ = np.linalg.svd(fit.covariance[-len(deviations) :, -len(deviations) :], hermitian=True)
     return SphereFit(
-        np.append(np.clip(fit.parameters[:2], -half, half), fit.parameters[2:_FITTED]),
+        np.append(np.clip(fit.parameters[:2], low, high), fit.parameters[2:_FITTED]),
         fit.covariance[:_FITTED, :_FITTED],
         found.force,
         found.force_slopes @ fit.covariance @ found.force_slopes.T,
@@ -182,8 +183,8 @@ def fit_sphere(plate: Plate, measured: Measured, start: Candidate, place: Place 
 def _explained(plate: Plate, measured: Measured, parameters: Floats) -> _Explained:
     """Return what a sphere makes of the records, from its parameters and the unknowns, in their deviations."""
     names, sensors = [sensor.name for sensor in measured.sensors], len(measured.sensors)
-    deviations, bound, samples = plate.errors.deviations(sensors), np.array(plate.half), measured.value.shape[1]
-    place, (radius, speed, touch) = np.clip(parameters[:2], -bound, bound), parameters[2:_FITTED]
+    deviations, samples = plate.errors.deviations(sensors), measured.value.shape[1]
+    place, (radius, speed, touch) = np.clip(parameters[:2], *plate.bounds), parameters[2:_FITTED]
     unknown, numbers = parameters[_FITTED : -len(deviations)], parameters[-len(deviations) :] * deviations
     setup, at = Setup.of(numbers), (float(place[0]), float(place[1]))
     here = plate if plate.errors.is_none else plate.under(setup, names)

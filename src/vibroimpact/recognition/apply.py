@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from vibroimpact._version import __version__
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Floats, Indices
 from vibroimpact.errors import InputError
 from vibroimpact.files.plain_names import one_line
 from vibroimpact.files.reading import with_path
@@ -46,6 +46,8 @@ class Recognised:
         Balanced accuracy, where the classes of the signals are known.
     doubts : tuple of str
         What is doubtful, such as another version.
+    places : array of int, shape (signals,), optional
+        The place of each signal in its file, from 0; by default all are there, in this order.
 
     Examples
     --------
@@ -63,6 +65,7 @@ class Recognised:
     fractions: Mapping[str, Estimate]
     accuracy: float | None
     doubts: tuple[str, ...]
+    places: Indices | None = None
 
 
 def apply_recogniser(model: Recogniser | str | PathLike[str], dataset: str | PathLike[str] | LabelledSignals) -> Recognised:
@@ -111,6 +114,7 @@ def apply_recogniser(model: Recogniser | str | PathLike[str], dataset: str | Pat
         recogniser.fractions(guessed),
         _accuracy(signals, [names[one] for one in guessed], names),
         tuple(doubts),
+        signals.places,
     )
 
 
@@ -144,6 +148,8 @@ def recognised_document(found: Recognised) -> dict[str, Any]:
 def save_recognised(found: Recognised, directory: str | PathLike[str], *, force: bool = False) -> Path:
     """Write `predictions.csv`, a row a signal with the probability of each class, and `summary.json`, atomically.
 
+    Signals are numbered as they are in the file, from 0.
+
     Parameters
     ----------
     found : Recognised
@@ -169,10 +175,11 @@ def save_recognised(found: Recognised, directory: str | PathLike[str], *, force:
     """
     columns = [f"probability_{one_line(name)}" for name in found.class_names]
     guessed = [found.class_names[one] for one in found.probabilities.argmax(axis=1)]
+    places = range(len(guessed)) if found.places is None else found.places.tolist()
     with new_folder(directory, force=force) as folder:
         rows = (
             {"signal": number, "class": name, **dict(zip(columns, values.tolist(), strict=True))}
-            for number, (name, values) in enumerate(zip(guessed, found.probabilities, strict=True))
+            for number, name, values in zip(places, guessed, found.probabilities, strict=True)
         )
         write_csv(rows, ["signal", "class", *columns], folder / "predictions.csv")
         write_summary(recognised_document(found), folder)

@@ -52,17 +52,18 @@ def bound_doubts(scores: Mapping[str, Scores], bayes_error: float | None, probe:
         bound, beyond = (
             (
                 "that the data set states",
-                "if the bound counts all that an impact tells, it has used information that does not come from the impact",
+                "if the bound counts all that an impact tells, it has used information that does not come from the impact, or this is "
+                "chance",
             )
             if sees is None
             else (
                 f"of classifiers that see only {sees}",
                 "it has used something else, such as the position of the impact or the shape of the pulse, or information that does not "
-                "come from the impact",
+                "come from the impact, or this is chance",
             )
         )
         found = [
-            f"possible leak: {name} errs in {one.error.value:.2%}, below the Bayes error of {bayes_error:.2%} {bound}; {beyond}"
+            f"possible leak: {name} errs in {one.error.value:.1%}, below the Bayes error of {bayes_error:.1%} {bound}; {beyond}"
             for name, one in scores.items()
             if below_bound(one.error, bayes_error)
         ]

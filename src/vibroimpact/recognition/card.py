@@ -55,6 +55,8 @@ def check_card(card: Mapping[str, Any], graph: str) -> None:
 
 def _check_format(card: Mapping[str, Any]) -> None:
     form = card.get("format")
+    if form is None:
+        raise InputError("the card has no format; train the model anew")
     if form != FORMAT:
         by = f" by vibroimpact {shown(card['version']).strip(chr(34))}" if "version" in card else ""
         raise InputError(f'the model was saved in the format {shown(form)}{by}; this version reads "{FORMAT}": train it anew')

@@ -103,8 +103,10 @@ def _unseen_chart(found: Recognition) -> Chart:
     )
     panel = Panel(Axis("Balanced accuracy", range=(0.0, 1.0)), Axis(names=_short(names)), marks)
     caption = (
-        "Signals in each range of a sampled key, classified after training on all ranges, and after training on the other ranges alone; "
-        f"both are grouped by {found.group}. Keys that define the classes are not left out. Best classifier: {found.best}."
+        "Signals in each range of a sampled key, in SI units, classified after training on all ranges, and after training on the "
+        "others alone; "
+        f"both are grouped by {found.group}. Not left out are ranges of the sphere's material and of the contact, and "
+        f"those without which a class could not be trained or tested. Best classifier: {found.best}."
     )
     return Chart("unseen", "Accuracy on ranges left out of training", ((panel,),), caption, 0.9 + 0.36 * len(names))
 

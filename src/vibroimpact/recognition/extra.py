@@ -14,8 +14,14 @@ def needs_extra() -> Iterator[None]:
     try:
         yield
     except ModuleNotFoundError as error:
-        package = (error.name or "").split(".")[0]
+        package, _, part = (error.name or "").partition(".")
+        if part:  # a package of another version is there
+            raise _unloadable(error) from None
         name = {"sklearn": "scikit-learn"}.get(package, package)
         raise InputError(f'recognition needs {name}, which is not installed: pip install "vibroimpact[ml]"') from None
     except ImportError as error:  # versions that do not fit together
-        raise InputError(f'recognition can\'t load its libraries ({error}): pip install --upgrade "vibroimpact[ml]"') from None
+        raise _unloadable(error) from None
+
+
+def _unloadable(error: ImportError) -> InputError:
+    return InputError(f'recognition can\'t load its libraries ({error}): pip install --upgrade "vibroimpact[ml]"')

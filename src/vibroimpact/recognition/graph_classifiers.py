@@ -51,7 +51,7 @@ def one_of(attributes: Attributes, key: str, allowed: Collection[Any]) -> None:
 def _only(attributes: Attributes, *keys: str) -> None:
     unknown = sorted(attributes.keys() - set(keys))
     if unknown:
-        raise InputError(f"has the attribute {shown(unknown[0])}, which no classifier of this program has")
+        raise InputError(f"has the attribute {shown(unknown[0])}, which it does not have in a model of this program")
 
 
 def _check_labels(attributes: Attributes, key: str, classes: int) -> None:

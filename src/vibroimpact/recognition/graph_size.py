@@ -58,7 +58,7 @@ def _fields(data: bytes, start: int, end: int, wanted: int) -> Iterator[tuple[in
             place += 8 if kind == 1 else 4
         else:
             raise _cut_short()
-    raise InputError(f"the graph has a table of more than {_MOST_PARTS:,} fields; no model of this program has so many")
+    raise InputError(f"the graph has a table of {_MOST_PARTS:,} fields or more; no model of this program has so many")
 
 
 def _whole_number(data: bytes, place: int) -> tuple[int, int]:

@@ -9,6 +9,7 @@ from vibroimpact.arrays import Floats, Indices
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.recognition.folds import default_folds
 from vibroimpact.recognition.labelled_signals import GROUPS, LabelledSignals, lengths
+from vibroimpact.units.display import digits
 
 DURATION, FORCE = "first_duration_s", "largest_force_N"
 _COPY, _SUMS = 1e-4, 8
@@ -63,9 +64,10 @@ def check_groups(signals: LabelledSignals, classes: Indices, group: str, folds: 
     groups = signals.groups[group]
     names = {int(one): np.unique(groups[classes == one]) for one in np.unique(classes)}
     if len(np.unique(groups)) == 1:
+        more = ", or use more of the signals (--most)" if signals.total is not None and signals.total > len(signals) else ""
         raise InputError(
             f"all {len(groups)} signals are of one {group}, so that no classifier can be tested on another {group}; "
-            f"give signals of several {group}s, or draw more of the signals (--most)"
+            f"give signals of several {group}s{more}"
         )
     if all(len(one) == 1 for one in names.values()):
         raise InputError(
@@ -78,7 +80,7 @@ def check_groups(signals: LabelledSignals, classes: Indices, group: str, folds: 
         remedy = f"or ask for {count} folds" if count > 1 else "since training on one can't be tested on another"
         raise InputError(
             f"{signals.class_names[fewest]} is in {count} {group}{'s' if count > 1 else ''}, too few for {folds} folds; "
-            f"give signals of {folds} {group}s or more, {remedy}"
+            f"give signals of it from {folds} {group}s or more, {remedy}"
         )
     return groups
 
@@ -118,8 +120,8 @@ def check_duplicates(signals: LabelledSignals, groups: Indices, group: str) -> N
         if apart <= _COPY**2 * size:
             exact = "are the same" if not apart else f"differ by only {np.sqrt(apart / size):.1g} of their size"
             raise InputError(
-                f"signals {one} and {other} {exact} and lie in two {group}s ({groups[one]} and {groups[other]}): one would be "
-                "trained on and the other tested on; remove one"
+                f"signals {signals.places[one]} and {signals.places[other]}, counted from 0, {exact} and lie in two {group}s "
+                f"({groups[one]} and {groups[other]}): one could be trained on and the other tested on; remove one"
             )
 
 
@@ -146,8 +148,9 @@ def check_rates(signals: LabelledSignals, classes: Indices) -> list[str]:
     if not rate < needed:  # or no impact has a duration
         return []
     words = (
-        f"{fastest} samples at {rate:.4g} Hz and resolves up to {0.5 * rate:.4g} Hz; contacts of {median * 1e6:.3g} us, the longest median "
-        f"of a class, affect the spectrum from {_CORNER / median:.4g} Hz on, so contact times need {needed:.4g} Hz or more"
+        f"{fastest} samples at {digits(rate)} Hz and resolves up to {digits(0.5 * rate)} Hz; contacts of {digits(median * 1e6, 3)} us, the "
+        f"longest median of a class, affect the spectrum from {digits(_CORNER / median, 3)} Hz on, so contact times need "
+        f"{digits(needed)} Hz or more"
     )
     if FORCE in signals.truth and separation(signals.truth[FORCE], classes) < 0.5 * separation(duration, classes):
         raise InputError(f"the sampling rate is too low: the classes differ far more in contact time than in force; {words}")

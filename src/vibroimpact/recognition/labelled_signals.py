@@ -66,6 +66,8 @@ class LabelledSignals:
         SHA-256 of the file.
     bayes_error_sees : str, optional
         The quantities alone that a classifier sees for which this bound was computed; None if the data set states the bound.
+    rows : array of int, shape (signals,), optional
+        The place of each signal in the file, from 0; by default all are there, in this order.
 
     Examples
     --------
@@ -86,6 +88,12 @@ class LabelledSignals:
     total: int | None = None
     check_sum: str = ""
     bayes_error_sees: str | None = None
+    rows: Indices | None = None
+
+    @property
+    def places(self) -> Indices:
+        """The place of each signal in its file, from 0."""
+        return np.arange(len(self)) if self.rows is None else self.rows
 
     def __len__(self) -> int:
         """Return the number of signals."""
@@ -108,6 +116,7 @@ class LabelledSignals:
             groups={name: one[kept] for name, one in self.groups.items()},
             drawn={name: one[kept] for name, one in self.drawn.items()},
             truth={name: one[kept] for name, one in self.truth.items()},
+            rows=self.places[kept],
         )
 
     def of_present_classes(self) -> LabelledSignals:

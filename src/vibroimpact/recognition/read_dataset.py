@@ -126,6 +126,7 @@ def _read(file: h5py.File, path: Path, most: int | None, group: str, seed: int) 
         count,
         file_digest(path),
         SEEN_AT_BEST if _is_computed(path) else None,
+        kept,
     )
     # of a drop that failed there is no sample
     there = np.any([np.isfinite(one).any(axis=1) for one in values.values()], axis=0)
@@ -136,13 +137,14 @@ def _read(file: h5py.File, path: Path, most: int | None, group: str, seed: int) 
 
 def _signals(variables: Mapping[str, h5py.Dataset | h5py.Group]) -> dict[str, h5py.Dataset]:
     """Return the variable with the signals of each sensor, all of as many rows."""
-    found = {}
+    found, others_told = {}, ""
     for name, data in variables.items():
         if not name.startswith(_SIGNAL):
             continue
         if not isinstance(data, h5py.Dataset):
             raise InputError(f"{name} is a group; it must be a variable of two dimensions (signal, time)")
         if data.ndim != 2:
+            others_told = f"; {name} is of the shape {data.shape}"
             continue
         if data.dtype.kind not in "fiu":
             raise InputError(f"{name} is of the type {data.dtype}; the samples of signals must be real numbers")
@@ -150,7 +152,7 @@ def _signals(variables: Mapping[str, h5py.Dataset | h5py.Group]) -> dict[str, h5
             raise InputError(f"{name} has no samples; its shape is {data.shape}")
         found[name.removeprefix(_SIGNAL)] = data
     if not found:
-        raise InputError("there are no signals; a variable signal_SENSOR (signal, time_SENSOR) holds those of a sensor")
+        raise InputError(f"there are no signals; a variable signal_SENSOR (signal, time_SENSOR) holds those of a sensor{others_told}")
     first, *others = found
     for sensor in others:
         if len(found[sensor]) != len(found[first]):

@@ -82,7 +82,7 @@ class Recogniser:
                 raise InputError(f"the model was trained on the sensor {shown(sensor)}, which these signals do not have")
             one = signals.sensors[sensor]
             if not np.isclose(one.rate, trained["rate_Hz"], rtol=1e-6) or one.unit != trained["unit"]:
-                words = f"at {trained['rate_Hz']:g} Hz in {trained['unit']}, and these signals are at {one.rate:g} Hz in {one.unit}"
+                words = f"at {trained['rate_Hz']:.10g} Hz in {trained['unit']}, and these signals are at {one.rate:.10g} Hz in {one.unit}"
                 raise InputError(f"{sensor}: the model was trained {words}")
             if (length := one.values.shape[1]) != trained["samples"]:
                 raise InputError(f"{sensor}: the model was trained on {trained['samples']} samples a signal, and these have {length}")
@@ -180,7 +180,7 @@ def _probabilities(values: Floats) -> Floats:
     if not right.all():  # a comparison with NaN is not right either
         first = int(np.flatnonzero(~right)[0])
         what = shown([float(f"{value:.4g}") for value in values[first]])
-        raise InputError(f"the model gives {what} for signal {first}; probabilities are from 0 to 1, and add up to 1: train it anew")
+        raise InputError(f"the model gives {what} for a signal; probabilities are from 0 to 1, and add up to 1: train it anew")
     return np.clip(values, 0.0, 1.0)
 
 

@@ -16,6 +16,7 @@ from vibroimpact.arrays import Floats, Indices
 from vibroimpact.dynamics.sensors.antialias import HALF_LENGTH
 from vibroimpact.recognition.labelled_signals import LabelledSignals, SensorSignals, lengths
 from vibroimpact.shown import shown
+from vibroimpact.units.display import digits
 
 _RATE = 0.01
 """Part of the data sets without a leak in which chance makes one."""
@@ -36,7 +37,8 @@ _CLOCK = 3e-3
 _STRETCH, _GRID, _SMOOTH = 0.05, 4096, 161
 """Largest stretch of a clock that is sought, points of the logarithmic axis of frequency, and those over which resonances are smoothed."""
 
-LENGTH, ONSET, CLOCK = "the length", "the number of samples before the onset", "the frequencies at which the plate rings down"
+LENGTH, ONSET, STEP = "the length", "the number of samples before the onset", "the step between sample values"
+CLOCK = "the deviation of the frequencies at which the plate rings down"
 
 
 def recorder_leaks(signals: LabelledSignals, classes: Indices, groups: Indices, group: str, seed: int = 0) -> list[str]:
@@ -63,7 +65,7 @@ def recorder_leaks(signals: LabelledSignals, classes: Indices, groups: Indices, 
             if chance > _RATE or not _matters(name, traces[name], classes, one):
                 continue
             medians = [float(np.median(traces[name][classes == number])) for number in np.unique(classes)]
-            told = ", ".join(f"{value:.4g} for {signals.class_names[place]}" for place, value in enumerate(medians))
+            told = ", ".join(f"{_shown(name, value, one.unit)} for {signals.class_names[place]}" for place, value in enumerate(medians))
             often = f"in {50.0 + 50.0 * apart:.0f} % of pairs, by chance in at most {100.0 * _RATE:g} % of data sets"
             words = f"{name} tells the classes apart (medians {told}; {often}); it does not come from what falls"
             found.append(f"leak of the recorder at {shown(sensor)}: {words}: record all {group}s alike")
@@ -87,7 +89,7 @@ def _too_few(classes: Indices, groups: Indices, group: str) -> list[str]:
         needed += 1
     return [
         f"leaks of the recorder can't be told from chance with {len(firsts)} {group}s: chance separates classes fully in at "
-        f"least {100.0 * least:.2g} % of data sets; at least {needed} {group}s of each class are needed"
+        f"least {digits(100.0 * least, 2)} % of data sets; {needed} {group}s of each class suffice"
     ]
 
 
@@ -120,6 +122,19 @@ def _matters(name: str, values: Floats, classes: Indices, one: SensorSignals) ->
     if name == ONSET:
         return float(np.ptp(medians)) > _LATER + _rise(one)
     return name != CLOCK or float(np.ptp(medians)) > _CLOCK
+
+
+def _shown(name: str, value: float, unit: str) -> str:
+    """Return the median of a quantity with its unit."""
+    if name in (LENGTH, ONSET):
+        return f"{value:.10g} sample{'' if value == 1.0 else 's'}"
+    if name == CLOCK:
+        return f"{100.0 * np.expm1(value):+.2g} %"
+    if name.startswith("the correlation"):
+        return f"{value:.2g}"
+    if name == STEP and not value:
+        return "none"
+    return f"{value:.4g}{'' if unit in ('', '1') else f' {unit}'}"
 
 
 def _tested(traces: Mapping[str, Floats], classes: Indices, groups: Indices, seed: int) -> dict[str, tuple[float, float]]:
@@ -171,7 +186,7 @@ def _traces(one: SensorSignals, plates: Indices) -> dict[str, Floats]:
         found["the drift before the onset"] = np.array([row[len(row) // 2 :].mean() - row[: len(row) // 2].mean() for row in before])
         for lag in (1, 2):
             found[f"the correlation of samples {lag} apart before the onset"] = np.array([_likeness(row, lag) for row in before])
-    found["the step between sample values"] = np.array([_step(row[:end]) for row, end in zip(value, length.tolist(), strict=True)])
+    found[STEP] = np.array([_step(row[:end]) for row, end in zip(value, length.tolist(), strict=True)])
     found[CLOCK] = _clock(value, onset, length, plates)
     return found
 
@@ -187,7 +202,7 @@ def _step(row: Floats) -> float:
     values = np.unique(row)
     if len(values) < 3 or len(values) > 0.9 * len(row):
         return 0.0
-    return float(np.log(np.diff(values).min()))
+    return float(np.diff(values).min())
 
 
 def _rise(one: SensorSignals) -> float:

@@ -73,13 +73,15 @@ def baseline_doubts(signals: LabelledSignals) -> list[str]:
     doubts = []
     for sensor, one in signals.sensors.items():
         found = feature_table(_continued(one), one.rate, [_PEAK])
-        large = is_large(np.abs(found.offset) + found.drift, found[_PEAK])
+        baselines = np.abs(found.offset) + found.drift
+        large = is_large(baselines, found[_PEAK])
         if large.any():
-            most = float(np.abs(found.offset[large]).max())
-            words = (
-                f"from {large.sum():,} of {len(large):,} signals of {shown(sensor)} baselines with offsets of up to {most:.4g} {one.unit}"
-            )
-            doubts.append(f"{words} were removed, more than a tenth of their peaks: check that it rests at zero, and alike in all classes")
+            unit = "" if one.unit in ("", "1") else f" {one.unit}"
+            offset, drift = float(np.abs(found.offset[large]).max()), float(found.drift[large].max())
+            drifting = f" and drifts of up to {drift:.4g}{unit}" if is_large(drift, offset) else ""
+            words = f"from {large.sum():,} of {len(large):,} signals of {shown(sensor)} baselines with offsets of up to {offset:.4g}{unit}"
+            words += f"{drifting} were removed, more than a tenth of their peaks"
+            doubts.append(f"{words}: check that it rests at zero, and alike in all classes")
     return doubts
 
 

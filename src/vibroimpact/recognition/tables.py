@@ -232,8 +232,8 @@ def sentences(found: Recognition) -> Iterator[str]:
     if hardest:
         worst = max(hardest, key=lambda row: row.error)
         yield (
-            f"The fraction of {worst.class_name} in a stream of {worst.impacts} impacts has an error of {_percent(worst.error, digits)} % "
-            f"(root mean square, at the fraction with the largest error, {worst.fraction:g})."
+            f"The fraction of {worst.class_name} in a stream of {worst.impacts} impacts has an error of {_percent(worst.error, digits)} "
+            f"percentage points (root mean square, at the fraction with the largest error, {worst.fraction:g})."
         )
 
 

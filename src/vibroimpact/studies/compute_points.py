@@ -196,9 +196,11 @@ def _part_of(study: _Study, place: int, response: Response) -> _Part:
     if "signals" in study.keep:
         duration = problem.duration or 0.0  # required by the study if signals are kept; a contact in progress at that time was completed
         for name, signal in response.signals().items():
-            value, rate = signal.value[: sample_count(duration, signal.sensor.rate)], signal.sensor.rate
+            rate = signal.sensor.rate
+            asked = sample_count(duration, rate)
+            value = signal.value[:asked]
             if study.window is not None:
-                begin, end = study.window.samples(response.impacts["time_s"], rate, len(value))
+                begin, end = study.window.samples(response.impacts["time_s"], rate, len(value), ended=len(value) < asked)
                 value, signals[f"{name}{SIGNAL_START}"] = value[begin:end], np.array([begin / rate])
             signals[f"{SIGNAL}{name}"] = value.astype(np.float32)[None]
             signals[f"{name}{SENSOR_PEAK}"] = np.array([np.abs(value).max()])

@@ -238,7 +238,7 @@ def _check_memory(sweep: Sweep, memory: float) -> None:
     if memory < least:
         size = chunk_size(sweep, memory)
         raise InputError(
-            f"{memory / 1e6:.3g} MB is too little for {sweep.size:,} drops: computed {size:,} at a time they take over a third longer; "
+            f"{memory / 1e6:.10g} MB is too little for {sweep.size:,} drops: computed {size:,} at a time they take over a third longer; "
             f"give {math.ceil(least / 1e6)} MB or more",
             "memory",
         )

@@ -74,7 +74,8 @@ def _client(address: str) -> Any:
         client = Client(address, timeout=_PATIENCE)
     except (OSError, ValueError, TimeoutError) as error:
         words = 'the address of a scheduler is such as tcp://10.0.0.5:8786, or "local" for one of this machine'
-        raise InputError(f"{address}: no Dask scheduler answers there ({str(error).splitlines()[0]}); {words}", "--scheduler") from None
+        why = next(iter(str(error).splitlines()), type(error).__name__)
+        raise InputError(f"{address}: no Dask scheduler answers there ({why}); {words}", "--scheduler") from None
     found = client.run(_version)
     if not found:
         client.close()

@@ -15,6 +15,9 @@ from vibroimpact.studies.plan import Plan
 from vibroimpact.studies.population import Population
 from vibroimpact.studies.scaled import scaled_columns
 
+MOST_DROPS = 10_000_000
+"""Maximum number of drops of a study."""
+
 
 @dataclass(frozen=True)
 class Asked:

@@ -13,24 +13,25 @@ from vibroimpact.studies.axes import Axis, Listed, Normal, Spaced
 from vibroimpact.studies.scaled import Scaled
 from vibroimpact.studies.sweep import Sweep
 from vibroimpact.studies.unit_slips import axis_slips
+from vibroimpact.units.display import digits
 
 
 def explain_sweep(sweep: Sweep) -> RenderableType:
     """Return the description of a study for the terminal."""
     section = sweep.section
     drawn = f", drawn with seed {section.seed}" if section.samples else ""
-    kept = " and ".join(dict.fromkeys(["peaks", *section.keep])) + f", about {sweep.bytes / 1e6:.3g} MB"
+    kept = " and ".join(dict.fromkeys(["peaks", *section.keep])) + f", about {digits(sweep.bytes / 1e6, 2)} MB"
     units = _units(sweep)
     axes = [("", key, axis) for key, axis in sweep.axes.items()]
     if sweep.population is not None:
         axes += [(name, key, axis) for name, own in sweep.population.own.items() for key, axis in own.items()]
-    over = [_words(axis, units[key], is_drawn=section.samples is not None) for _, key, axis in axes]
+    over = [_words(axis, units[key], units, is_drawn=section.samples is not None) for _, key, axis in axes]
     classes = [TerminalColumn("class", [name for name, _, _ in axes], text=True)] if sweep.population is not None else []
     table = TerminalTable(
         [*classes, TerminalColumn("swept key", [key for _, key, _ in axes], text=True), TerminalColumn("over", over, text=True)]
     )
     return Group(
-        Text(f"A study of {sweep.size:,} drops: {section.design}{drawn}; keeps {kept}.", style="bold"),
+        Text(f"A study of {sweep.size:,} drop{'' if sweep.size == 1 else 's'}: {section.design}{drawn}; keeps {kept}.", style="bold"),
         table,
         *(Text(f"Doubt: {doubt}.", style="yellow") for doubt in axis_slips(sweep)),
         Text("The case at its first point:\n"),
@@ -92,8 +93,8 @@ def _data(axis: Axis) -> dict[str, Any]:
     }
 
 
-def _words(axis: Axis, unit: str, *, is_drawn: bool) -> str:
-    """Return a short description of the values of an axis."""
+def _words(axis: Axis, unit: str, units: Mapping[str, str], *, is_drawn: bool) -> str:
+    """Return a short description of the values of an axis, with its unit and those of the swept keys."""
     if isinstance(axis, Listed):
         shown = [f"{value:g}" if isinstance(value, float) else str(value) for value in axis.values]
         text = ", ".join(shown) if len(shown) <= 8 else f"{len(shown)} values, {shown[0]} to {shown[-1]}"
@@ -104,8 +105,9 @@ def _words(axis: Axis, unit: str, *, is_drawn: bool) -> str:
     if isinstance(axis, Scaled):
         power = f" to the power of {axis.exponent:g}" if axis.exponent != 1.0 else ""
         per = f" for each {axis.each}" if axis.each else ""
-        factor = f"times {_words(axis.factor, '', is_drawn=is_drawn)}{per}"
-        return f"{axis.value:g} {unit} at {axis.of} = {axis.at:g}, proportional to it{power}, {factor}"
+        factor = f"times {_words(axis.factor, '', units, is_drawn=is_drawn)}{per}"
+        at = f"{axis.at:g} {units[axis.of]}".rstrip()
+        return f"{axis.value:g} {unit}".rstrip() + f" at {axis.of} = {at}, proportional to it{power}, {factor}"
     assert isinstance(axis, Normal)
     name = "lognormal" if axis.lognormal else "normal"
     ends = [f"{word} {end:g}" for word, end in (("at least", axis.at_least), ("at most", axis.at_most)) if abs(end) < float("inf")]

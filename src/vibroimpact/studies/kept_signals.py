@@ -47,7 +47,7 @@ def check_signals(case: Case, taken: Collection[str]) -> None:
             words = f'"{name}" can\'t be the name of a variable of the dataset, or is that of another; call the sensor otherwise'
             raise InputError(words, "sensors")
     if not sensors:
-        raise InputError('"signals" needs [[sensors]] on an elastic plate', "sweep.keep")
+        raise InputError('"signals" needs [[sensors]], on a plate that is elastic or shaken', "sweep.keep")
     if case.run.duration is None:
         raise InputError("it is missing; signals need it, so that those of all drops are of one length", "run.duration")
 
@@ -72,7 +72,7 @@ def check_swept_sensors(table: Mapping[str, Any], keys: Collection[str], case: C
     if not any(key.startswith("sensors.") for key in keys):
         return
     for own, swept in zip(sensors_of(table).values(), case.sensors, strict=True):
-        wanted, found = (f"{sensor.sensor().quantity} [{sensor.sensor().unit}] at {sensor.rate:g} Hz" for sensor in (own, swept))
+        wanted, found = (f"{sensor.sensor().quantity} [{sensor.sensor().unit}] at {sensor.rate:.10g} Hz" for sensor in (own, swept))
         if wanted != found:
             words = f"it would give {found}, and {wanted} by the case; signals of a study have one quantity, unit and rate"
             raise InputError(words, f"sensors.{own.name}")

@@ -80,8 +80,10 @@ def _check_alive(executor: Executor) -> None:
     try:
         executor.submit(int).result()
     except BrokenExecutor:
-        words = 'a script that starts processes must do its work under: if __name__ == "__main__":'
-        raise ComputationError(f"the processes die before they have computed anything; {words}") from None
+        words = 'a script that starts them does not do its work under: if __name__ == "__main__":'
+        raise ComputationError(
+            f"the processes die before they have computed anything; memory may be too short for them, or {words}"
+        ) from None
 
 
 def _result(future: Future[ChunkResult], chunk: Span) -> ChunkResult:

@@ -17,11 +17,8 @@ from vibroimpact.measurements.table_file import TableFile, read_table_file
 from vibroimpact.ranges import Range
 from vibroimpact.shown import shown
 from vibroimpact.studies.axes import Axis, Listed, Normal, Spaced
-from vibroimpact.studies.design import designs, find_design
+from vibroimpact.studies.design import MOST_DROPS, designs, find_design
 from vibroimpact.studies.scaled import Each, Scaled
-
-MOST_DROPS = 10_000_000
-"""Maximum number of drops of a study."""
 
 _LEVELS = 10  # default number of levels of a range or a distribution in a grid
 _Levels = Annotated[int, Field(ge=2, le=MOST_DROPS, strict=True)]
@@ -124,9 +121,10 @@ class ScaledTable(Section):
 
 _DISTRIBUTIONS: dict[str, type[Section]] = {"normal": NormalTable, "lognormal": NormalTable, "uniform": UniformTable}
 _ASKED = "a list of values, a range { from, to, number, scale }, a distribution or a column { file, column, weights, columns }"
+_DEPENDENCE = ", or a dependence on another key { value, of, at, exponent, factor }"
 
 
-def read_axis(value: Any, quantity: Quantity | None) -> Axis:
+def read_axis(value: Any, quantity: Quantity | None, otherwise: str = _DEPENDENCE) -> Axis:
     """Return the axis of a swept key.
 
     Parameters
@@ -135,6 +133,8 @@ def read_axis(value: Any, quantity: Quantity | None) -> Axis:
         Its entry in the TOML file.
     quantity : Quantity or None
         The quantity of the key; None if it is not a quantity, so that only a list is allowed.
+    otherwise : str
+        What is allowed in addition, for a message.
 
     Raises
     ------
@@ -153,7 +153,7 @@ def read_axis(value: Any, quantity: Quantity | None) -> Axis:
     if quantity is None:
         raise InputError("this key holds no quantity, so that it takes a list of values alone")
     if not isinstance(value, Mapping):
-        raise InputError(f"{shown(value)} is not allowed; it must be {_ASKED}")
+        raise InputError(f"{shown(value)} is not allowed; it must be {_ASKED}{otherwise}")
     if "file" in value:
         return _columns(read_table(ColumnTable, value), quantity)
     if "distribution" in value:
@@ -164,7 +164,7 @@ def read_axis(value: Any, quantity: Quantity | None) -> Axis:
         table = read_table(_DISTRIBUTIONS[kind], value)
         return _normal(table, quantity) if isinstance(table, NormalTable) else _spaced(table, quantity, is_random=True)
     if "from" not in value and "to" not in value:
-        raise InputError(f"{shown(value)} has no values; it must be {_ASKED}")
+        raise InputError(f"{shown(value)} has no values; it must be {_ASKED}{otherwise}")
     return _spaced(read_table(RangeTable, value), quantity, is_random=False)
 
 
@@ -199,7 +199,7 @@ def _factor(value: Any) -> Axis:
     quantity = Quantity("", "factor", Range(above=0))
     if isinstance(value, list):
         value = [_number(item, quantity, quantity.allowed) for item in value]
-    return read_axis(value, quantity)
+    return read_axis(value, quantity, otherwise="")
 
 
 def _read_item(item: Any, quantity: Quantity) -> Any:
@@ -220,7 +220,7 @@ def _spaced(table: Section, quantity: Quantity, *, is_random: bool) -> Spaced:
     assert isinstance(table, RangeTable)
     start, end = (_number(value, quantity, quantity.allowed, key) for key, value in (("from", table.start), ("to", table.end)))
     if not end > start:
-        raise InputError(f"{end:g} is not greater than from, {start:g}", "to")
+        raise InputError(f"{end:.16g} is not greater than from, {start:.16g}", "to")
     if table.scale == "log" and start <= 0.0:
         raise InputError(f"{start:g} has no logarithm; it must be greater than 0", "from")
     return Spaced(start, end, table.number, table.scale, is_random)
@@ -232,7 +232,7 @@ def _normal(table: NormalTable, quantity: Quantity) -> Normal:
     deviation = _number(table.standard_deviation, quantity, positive, "standard_deviation")
     ends = {key: _number(value, quantity, anything, key) for key in ("at_least", "at_most") if (value := getattr(table, key)) is not None}
     if len(ends) == 2 and not ends["at_most"] > ends["at_least"]:
-        raise InputError(f"{ends['at_most']:g} is not more than at_least, {ends['at_least']:g}", "at_most")
+        raise InputError(f"{ends['at_most']:.16g} is not more than at_least, {ends['at_least']:.16g}", "at_most")
     bounds = (ends.get("at_least", -math.inf), ends.get("at_most", math.inf))
     return Normal(mean, deviation, table.number, *bounds, lognormal=table.distribution == "lognormal")
 

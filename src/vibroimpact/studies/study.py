@@ -145,7 +145,8 @@ class Study:
             return read_array(file[name], place or ())
 
     def __repr__(self) -> str:
-        return f"<Study of {self.size} drops: {', '.join(f'{name} {length}' for name, length in self.dimensions.items())}>"
+        over = ", ".join(f"{name} {length}" for name, length in self.dimensions.items())
+        return f"<Study of {self.size} drop{'' if self.size == 1 else 's'}: {over}>"
 
     def _repr_html_(self) -> str:
         import vibroimpact  # an import upwards, as in Response.save: tables and charts lie above the study

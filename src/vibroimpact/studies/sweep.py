@@ -27,15 +27,15 @@ from vibroimpact.dynamics.columns import ALL_IMPACT_COLUMNS, IMPACT_COLUMNS, mea
 from vibroimpact.errors import InputError, listed
 from vibroimpact.meshes.mesh_digest import mesh_digest
 from vibroimpact.shown import shortened, shown
-from vibroimpact.studies.axes import Axis, Listed, Values
-from vibroimpact.studies.design import Asked, find_design
+from vibroimpact.studies.axes import Axis, Listed, Normal, Values
+from vibroimpact.studies.design import MOST_DROPS, Asked, find_design
 from vibroimpact.studies.drop_variables import OUTCOME, PEAKS, SENSOR_PEAK, SIGNAL, SIGNAL_START
 from vibroimpact.studies.kept_signals import check_need_of_signals, check_signals, check_swept_sensors
 from vibroimpact.studies.limit_columns import limit_meanings
 from vibroimpact.studies.plan import Plan
-from vibroimpact.studies.population import LABELS, Population
-from vibroimpact.studies.scaled import check_scaled
-from vibroimpact.studies.section import MOST_DROPS, SweepSection, read_axis, read_scaled
+from vibroimpact.studies.population import CLASS, LABELS, Population
+from vibroimpact.studies.scaled import Scaled, check_scaled
+from vibroimpact.studies.section import SweepSection, read_axis, read_scaled
 from vibroimpact.studies.swept_keys import case_at
 from vibroimpact.studies.window import Window
 
@@ -332,8 +332,10 @@ def _read_population(base: Mapping[str, Any], section: SweepSection) -> tuple[Sw
         first = next(iter(own.values()))
         wrong = sorted(first.keys() ^ over.keys())
         if wrong or not over:
-            words = f'"{wrong[0]}" is not there for all classes; give' if wrong else "it is empty; give"
-            raise InputError(f"{words} the same keys for all, or leave it to [sweep.over]", f"{where}.over")
+            words = "it is empty; give one key or more, the same for all classes"
+            if wrong:
+                words = f'"{wrong[0]}" is not there for all classes; give the same keys for all, or leave it to [sweep.over]'
+            raise InputError(words, f"{where}.over")
         for key in over:
             shared = _SHARED.get(key.partition(".")[0])
             if key in section.over or shared:
@@ -381,13 +383,13 @@ def _check_points(sweep: Sweep) -> None:
     columns = sweep.plan.columns
     for key, values in columns.items():
         quantity = sweep.quantities[key]
-        if quantity is not None and values.dtype != object:
+        if quantity is None or values.dtype == object:
+            continue
+        for where, axis, own in _stated(sweep, key, values):
             try:
-                quantity.allowed.check(values, quantity.unit)
+                quantity.allowed.check(own, quantity.unit)
             except InputError as error:
-                random = key not in sweep.axes or sweep.axes[key].is_random
-                remedy = "; truncate the distribution with at_least and at_most" if random else ""
-                raise InputError(f"{error.message}{remedy}", f'sweep.over."{key}"') from None
+                raise InputError(f"{error.message}{_remedy(axis)}", f'sweep.{where}."{key}"') from None
     first = sweep.values_of(0)
     check_swept_sensors(sweep.table, columns, sweep.case_at(first))
     for key, values in columns.items():
@@ -397,6 +399,22 @@ def _check_points(sweep: Sweep) -> None:
                 check_swept_sensors(sweep.table, columns, sweep.case_at({**first, key: value}))
             except InputError as error:
                 raise InputError.of_several(f"at {key} = {_level(value)}: {fault}" for fault in error.faults) from None
+
+
+def _stated(sweep: Sweep, key: str, values: Values) -> Iterator[tuple[str, Axis, Values]]:
+    """Yield where a key stands, in [sweep.over] or in each class, with its axis and its values there."""
+    if sweep.population is None or key in sweep.axes:
+        yield "over", sweep.axes[key], values
+        return
+    for name, own in sweep.population.own.items():
+        yield f'classes."{name}".over', own[key], values[sweep.plan.labels[CLASS] == name]
+
+
+def _remedy(axis: Axis) -> str:
+    """Return what keeps the values of a key in their range, where they are drawn or follow another key."""
+    if isinstance(axis, Scaled):
+        return "; it follows another key: choose value, exponent and factor so that it stays in this range"
+    return "; truncate the distribution with at_least and at_most" if isinstance(axis, Normal) else ""
 
 
 def _level(value: Any) -> str:

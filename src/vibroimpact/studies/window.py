@@ -24,7 +24,7 @@ class Window:
     before: float
     length: float
 
-    def samples(self, touches: Floats, rate: float, count: int) -> tuple[int, int]:
+    def samples(self, touches: Floats, rate: float, count: int, *, ended: bool = False) -> tuple[int, int]:
         """Return the numbers of the first sample that is kept and of the one after the last.
 
         The first is the last sample that is not later than `before` ahead of the first touch, so that the touch falls between samples as
@@ -38,6 +38,8 @@ class Window:
             Samples per second [Hz].
         count : int
             Number of samples of the whole signal.
+        ended : bool, default False
+            Whether the run ended before its duration, such as after its last impact.
 
         Raises
         ------
@@ -56,8 +58,12 @@ class Window:
         if begin < 0:
             early = f"the sphere touches {float(touches[0]):.3g} s after the start"
             words = f"{early}, less than the {self.before:g} s before the touch that sweep.window keeps"
-            raise ComputationError(f"{words}; let it fall from higher up (drop.height), or keep less before the touch")
+            raise ComputationError(
+                f"{words}; let it fall from higher up, by drop.height in place of drop.speed, or keep less before the touch"
+            )
         if begin + length > count:
             words = f"the signal ends at {count / rate:.4g} s, before the window does, at {(begin + length) / rate:.4g} s"
+            if ended:
+                raise ComputationError(f"{words}, as the run ended before run.duration; allow more run.impacts, or keep a shorter part")
             raise ComputationError(f"{words}; give a longer run.duration")
         return begin, begin + length

@@ -28,4 +28,4 @@ def plan(asked: Asked) -> Plan:
     return Plan("population", columns, False, labels)
 
 
-DESIGN = Design("population", "falls of rocks drawn from classes, several of one rock, on several plates", True, size, plan)
+DESIGN = Design("population", "falls of rocks drawn from classes, one or more of each rock, on one or more plates", True, size, plan)

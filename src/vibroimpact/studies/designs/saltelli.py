@@ -18,7 +18,7 @@ def size(asked: Asked) -> int:
     InputError
         If the number of samples is not a power of two, or there is only one axis.
     """
-    check_power_of_two(asked.samples)
+    check_power_of_two(asked.samples, 2 + len(asked.axes))
     if len(asked.axes) < 2:
         raise InputError("there is one key alone, so that everything depends on it; sweep two or more", "over")
     return asked.samples * (2 + len(asked.axes))

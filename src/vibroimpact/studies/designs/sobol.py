@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from vibroimpact.errors import InputError
-from vibroimpact.studies.design import Asked, Design, drawn_plan, generator
+from vibroimpact.studies.design import MOST_DROPS, Asked, Design, drawn_plan, generator
 from vibroimpact.studies.plan import Plan
 
 
@@ -19,13 +19,13 @@ def size(asked: Asked) -> int:
     return asked.samples
 
 
-def check_power_of_two(samples: int) -> None:
-    """Check that a number of samples is a power of two."""
+def check_power_of_two(samples: int, blocks: int = 1) -> None:
+    """Check that a number of samples in each of some blocks is a power of two."""
     if samples & (samples - 1):
+        allowed = 1 << ((MOST_DROPS // blocks).bit_length() - 1)
         below = 1 << (samples.bit_length() - 1)
-        raise InputError(
-            f"{samples} is not a power of two, which the sequence needs to be balanced; take {below} or {2 * below}", "samples"
-        )
+        take = f"{below} or {2 * below}" if 2 * below <= allowed else f"{min(below, allowed)}"
+        raise InputError(f"{samples} is not a power of two, which the sequence needs to be balanced; take {take}", "samples")
 
 
 def plan(asked: Asked) -> Plan:

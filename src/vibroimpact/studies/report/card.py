@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -18,14 +18,13 @@ from vibroimpact.units.display import digits
 
 CARD = "card.md"
 
-_SPLIT = (
-    "Falls of one rock are more similar to each other than falls of its class, and so are falls on one plate. Split training and test data "
-    "by `rock`, or by `plate` for an application to other plates than these; never by fall, and never by windows of one signal."
-)
+_ALIKE = "Falls of one rock are more similar to each other than falls of its class, and so are falls on one plate."
+_BY_PLATE = "or by `plate` for an application to other plates than these"
+_ONE_PLATE = "for an application to another plate than this, falls on several plates are needed"
 _LIMITS = (
-    "The signals are computed: spheres, each of one material, fall on a plate whose supports, damping and instruments are as the study "
-    "states. Irregular shapes, cracks, layers of fines, and other vibration of the plate are not included: expect a lower accuracy in the "
-    "field than on these signals."
+    "The falls are computed: spheres, each of one material, fall on a plate that is, with its supports, damping and instruments, as the "
+    "study states. Irregular shapes, cracks, layers of fines, and other vibration of the plate are not included: expect a lower accuracy "
+    "in the field than on these falls."
 )
 
 
@@ -37,25 +36,32 @@ def data_card(study: Study) -> str:
     study : Study
         The completed study.
     """
+    signals = [_signal(study, variable) for variable in study.shapes if variable.startswith(SIGNAL)]
+    kept = "Signals, values and labels" if signals else "Values and labels, without signals,"
     parts = [
         f"# {study.name[:1].upper() + study.name[1:]}",
         f"{drops_text(study.size)} of {_counted(study, ROCK)} on {_counted(study, PLATE)}, computed by vibroimpact "
-        f"{study.version}. Signals, values and labels are in `study.nc`; `study.toml` computes it again.",
+        f"{study.version}. {kept} are in `study.nc`; `study.toml` computes it again.",
         "## Classes",
         _table(["class", "falls", "rocks", "share of the rocks"], _classes(study)),
         "## Sampled keys",
         "Keys of `plate` and `sensors` are drawn once a plate, those of `drop` once a fall, all others once a rock, each independently."
-        + "".join(f" `{key}` follows `{other}`." for key, other in _following(study)),
+        + "".join(f" {words}." for words in _following(study)),
         _table(["key", "meaning", *_names(study)], _drawn(study)),
-        "## Signals",
-        _table(["variable", "quantity", "unit", "samples", "rate [Hz]"], _signals(study)),
+        *(["## Signals", _table(["variable", "quantity", "unit", "samples", "rate [Hz]"], signals)] if signals else []),
         "## Labels and groups",
-        f"`{CLASS}` is the class of the rock, `{ROCK}` and `{PLATE}` number what falls share. {_SPLIT}",
+        f"`{CLASS}` is the class of the rock, `{ROCK}` and `{PLATE}` number what falls share. {_ALIKE} Split training and test data by "
+        f"`{ROCK}`{_split(study)}; never by fall, and never by windows of one signal.",
         "## Limits",
         _LIMITS,
         *_doubts(study),
     ]
     return "\n\n".join(parts) + "\n"
+
+
+def _split(study: Study) -> str:
+    """Return by what else than rocks falls are split, and what that needs."""
+    return f", {_BY_PLATE}" if _number(study, PLATE) > 1 else f" ({_ONE_PLATE})"
 
 
 def _number(study: Study, label: str) -> int:
@@ -89,33 +95,36 @@ def _drawn(study: Study) -> Iterator[Sequence[str]]:
             yield f"`{axis.key}`", axis.words, *map(range_text, ranges)
 
 
-def _following(study: Study) -> list[tuple[str, str]]:
-    """Return the keys that follow another one, and these."""
+def _following(study: Study) -> list[str]:
+    """Return which keys follow another one, and for what their factors are drawn, in words."""
     sweep = study.table["sweep"]
-    groups = [sweep["over"], *(one["over"] for one in sweep["classes"].values())]
-    found = {key: value["of"] for over in groups for key, value in over.items() if isinstance(value, Mapping) and "of" in value}
-    return list(found.items())
+    groups = [("", sweep["over"]), *((f" of {name}", one["over"]) for name, one in sweep["classes"].items())]
+    found = []
+    for of_class, over in groups:
+        for key, value in over.items():
+            if isinstance(value, Mapping) and "of" in value:
+                drawn = f", with a factor that is drawn once a {value['each']}" if value.get("each") else ""
+                found.append(f"`{key}`{of_class} follows `{value['of']}`{drawn}")
+    return found
 
 
-def _signals(study: Study) -> Iterator[Sequence[str]]:
-    for variable, shape in study.shapes.items():
-        if variable.startswith(SIGNAL):
-            times = study.times(variable.removeprefix(SIGNAL))
-            rate = f"{1.0 / (times[1] - times[0]):g}" if len(times) > 1 else ""
-            yield f"`{variable}`", study.meanings[variable][1], study.meanings[variable][0], str(shape[-1]), rate
+def _signal(study: Study, variable: str) -> Sequence[str]:
+    times = study.times(variable.removeprefix(SIGNAL))
+    rate = f"{1.0 / (times[1] - times[0]):.10g}" if len(times) > 1 else ""
+    return f"`{variable}`", study.meanings[variable][1], study.meanings[variable][0], str(study.shapes[variable][-1]), rate
 
 
 def _doubts(study: Study) -> Iterator[str]:
     """Yield what failed, and the limits of the theory that falls exceed."""
     for number, words in reasons(study):
-        yield f"* {drops_text(number)} failed and {'has no signal' if number == 1 else 'have no signal, such as'}: {words}."
+        yield f"* {drops_text(number)} failed and {'has no results' if number == 1 else 'have no results, such as'}: {words}."
     known: Mapping[str, Any] = limits()
     for limit, drops, *_ in study.doubts:
         title = known[limit].title if limit in known else limit
         yield f"* {title}: beyond the limit in {drops:,} of {study.size:,} falls (listed in `doubts` of `study.nc`)."
 
 
-def _table(heads: Sequence[str], rows: Iterator[Sequence[str]]) -> str:
+def _table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     """Return a table in Markdown."""
     lines = [heads, ["---"] * len(heads), *rows]
     return "\n".join(f"| {' | '.join(cell.replace('|', '/') for cell in line)} |" for line in lines)

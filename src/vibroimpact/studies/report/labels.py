@@ -9,6 +9,7 @@ import numpy as np
 
 from vibroimpact.shown import shortened, visible
 from vibroimpact.studies.percentiles import PERCENTILES
+from vibroimpact.studies.population import CLASS
 from vibroimpact.studies.report.axes import StudyAxis
 from vibroimpact.units.display import digits, multiple, text
 
@@ -44,7 +45,8 @@ def keys_told(axes: Sequence[StudyAxis]) -> str:
     >>> keys_told([StudyAxis("sphere.radius", "radius of the sphere", "m", np.array([0.01, 0.02]))])
     'In the case: sphere.radius.'
     """
-    return f"In the case: {', '.join(shortened(visible(axis.key), 60) for axis in axes)}."
+    keys = [shortened(visible(axis.key), 60) for axis in axes if axis.key != CLASS]  # the class is a label, and no key
+    return f"In the case: {', '.join(keys)}." if keys else ""
 
 
 def range_text(axis: StudyAxis) -> str:

@@ -54,7 +54,7 @@ def plot_study(study: Study, name: str = "") -> go.Figure:
     """
     charts = {chart.name: chart for chart in study_charts(study)}
     if not charts:
-        raise InputError("this study has no charts, as no result varies")
+        raise InputError("this study has no charts, as no result that they show varies")
     if name and name not in charts:
         raise InputError(f"there is no chart {shown(name)} of this study; there are {choices(charts, str(name))}")
     return plotly_figure(charts[name or next(iter(charts))])

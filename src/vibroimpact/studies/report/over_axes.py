@@ -87,11 +87,7 @@ def _caption(study: Study, axes: list[StudyAxis]) -> str:
     number = len(drop_numbers(study, *sampled_places(study, MOST_DROPS)))
     some = f"{number} of the drops" if number < independent_drops(study) else "All drops"
     blocks = " of the blocks A and B" if study.design == "saltelli" else ""
-    of_what = (
-        f"of drops at a level, or of drops next to each other where there are more than {_BINS} levels"
-        if study.is_grid
-        else "of drops next to each other"
-    )
+    of_what = f"of drops with the same value, or of drops next to each other where a key has more than {_BINS} numbers"
     band = f"; the line and the band are the median and {BAND} {of_what}" if _has_band(study) else ""
     first = f" Drawn are the first {MOST_AXES} of {len(axes)} keys." if len(axes) > MOST_AXES else ""
     return f"{some}{blocks}, over each key{band}.{first} {keys_told(axes[:MOST_AXES])}"

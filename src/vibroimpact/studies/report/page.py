@@ -86,6 +86,7 @@ def _page(study: Study, outputs: list[Output], found: Sensitivity | None) -> str
         axes=axes_table(study, study_axes(study)),
         reasons=[(f"{drops_text(number)}{', such as' if number > 1 else ''}", words) for number, words in reasons(study)],
         failures=failures_table(study) if study.failures else None,
+        failed_drops=len(study.failures),
         spread_words=spread_words(study),
         percentiles=percentiles_table(outputs),
         without=[one.title for one in outputs if not one.spread.drops and not one.is_sensor_reading],

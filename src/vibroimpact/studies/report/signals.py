@@ -60,7 +60,7 @@ def _signal_chart(study: Study, sensor: str, name: str) -> Chart | None:
     lower = Panel(Axis(label, "s", views=_views(step, len(times))), reading, single, "Single drops")
     caption = (
         "Above, all readings in short spans of the time since first touch, as long as half of the drops have readings. Below, single drops "
-        "aligned at first touch: those of the smallest and the largest peak, and some between."
+        "aligned at first touch: those of the smallest and the largest peak, and up to three between."
     )
     return Chart(name, f"Sensor {shortened(visible(sensor), 60)}", ((band,), (lower,)), caption, 2.6)
 

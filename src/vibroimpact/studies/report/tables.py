@@ -126,7 +126,7 @@ def sensitivity_table(found: Sensitivity, outputs: list[Output]) -> tuple[list[s
 
 
 def without_effect(found: Sensitivity, outputs: list[Output]) -> list[str]:
-    """Return the keys that the table of sensitivities leaves out, as they have no effect on any of the results."""
+    """Return the keys that the table of sensitivities leaves out, as all their numbers there are zero once rounded."""
     shown = [one for one in outputs if one.name in found.rows]
     return [key for key, rows in _sensitivity_cells(found, shown).items() if all(_is_idle(row[1:]) for row in rows)]
 

@@ -9,7 +9,7 @@ from vibroimpact.report.terminal_table import TerminalColumn, TerminalTable
 from vibroimpact.runs.text import doubt_lines
 from vibroimpact.studies.percentiles import PERCENTILES
 from vibroimpact.studies.report.axes import study_axes
-from vibroimpact.studies.report.labels import percent, with_unit
+from vibroimpact.studies.report.labels import drops_text, percent, with_unit
 from vibroimpact.studies.report.outputs import study_outputs
 from vibroimpact.studies.report.restitution import restitution_sentence, summarize_restitution
 from vibroimpact.studies.report.sensitivity import RANKS, SOBOL, Sensitivity, sensitivity_of, strongest
@@ -36,7 +36,10 @@ def study_summary(study: Study, width: int) -> RenderableType:
         named = told.way == RANKS and any(not axis.numeric for axis in study_axes(study))
         heading = "most sensitive, of numeric keys, to" if named else "most sensitive to"
         columns.append(TerminalColumn(heading, [_strongest(told, one.name) for one in outputs], text=True))
-    why = [Text(f" {number}: {words}", style="yellow") for number, words in reasons(study)[:_REASONS]]
+    why = [
+        Text(f" {drops_text(number)}{', such as' if number > 1 else ''}: {words}", style="yellow")
+        for number, words in reasons(study)[:_REASONS]
+    ]
     restitution, doubts = restitution_sentence(summarize_restitution(study)), doubt_sentences(study)
     return Group(
         Text(study.name, style="bold"),
