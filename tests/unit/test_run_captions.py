@@ -5,9 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
+from rich.console import Console
 
 import vibroimpact as vi
 from vibroimpact.runs.captions import caption, left_out
+from vibroimpact.runs.case_explained import case_explained
 from vibroimpact.runs.history_charts import POSITION, history_chart
 from vibroimpact.runs.page import run_page
 from vibroimpact.runs.setup import setup_chart
@@ -68,6 +70,22 @@ def test_the_loop_of_a_sphere_that_vibrates_encloses_energy(treatment: str) -> N
     result = run_of(sphere=sphere, contact={"law": "hertz", "local_compliance": treatment})
     assert words("force_indentation", result).startswith("No energy is lost in contact: the area that a loop encloses is the energy that")
     assert "damping adds" not in words("force", result)
+
+
+def test_a_check_tells_all_that_ends_a_run() -> None:
+    """Without gravity a sphere never rests, and one that moves along a plate of known size may fall off it."""
+
+    def ends(**sections: Any) -> str:
+        table = {"sphere": SPHERE, "plate": {"material": "steel"}, "drop": FALL, "contact": TSUJI, "run": {"impacts": 3}, **sections}
+        console = Console(width=200)
+        with console.capture() as printed:
+            console.print(case_explained(vi.read_case(table)))
+        return next(line for line in printed.get().split("\n") if line.startswith("stops")).removeprefix("stops").strip()
+
+    tilted = {"material": "steel", "size": ["0.3 m", "0.2 m", "5 mm"], "inclination": "10 deg"}
+    assert ends() == "at rest or after 3 impacts"
+    assert ends(drop={"speed": "1 m/s", "gravity": 0}) == "when it flies off for good or after 3 impacts"
+    assert ends(plate=tilted) == "at rest or after 3 impacts or when it falls off the edge of the plate"
 
 
 def test_what_is_not_known_is_not_drawn_to_scale() -> None:

@@ -247,6 +247,7 @@ def _cause(error: Exception) -> str:
 
 def _remedy(folder: Path, name: str) -> str:
     """Return a sentence on how to restore a damaged file of a result."""
-    if name == CASE or not (folder / CASE).is_file():
+    unknown = name == SUMMARY and not (folder / NETCDF).is_file()  # it may be the folder of another command
+    if name == CASE or unknown or not (folder / CASE).is_file():
         return "make the result anew"
     return f"make it anew with: vibroimpact run {shlex.quote(str(folder / CASE))} -o {shlex.quote(str(folder))} --force"
