@@ -44,6 +44,7 @@ def test_a_lower_sphere_is_not_called_a_plate() -> None:
     assert history_chart(fixed, fixed.history, POSITION, "").title == "Height of the sphere's centre above the lower sphere"
     assert "remains in the motion of the lower sphere." in words("energy", free)
     assert "damping of the bodies" not in words("energy", free)
+    assert "leaves at 700.0 mm/s, relative to the lower sphere: a restitution of 0.7000." in words("velocity", free)
 
 
 def test_heights_over_a_shaken_plate_are_above_its_mean_position() -> None:
@@ -53,6 +54,15 @@ def test_heights_over_a_shaken_plate_are_above_its_mean_position() -> None:
     assert words("position", result).startswith("The sphere's centre starts 200.0 mm above the mean position of the plate.")
     assert "Rebound height is that of the sphere's centre above the mean position of the plate." in run_page(result)
     assert "remains" not in words("energy", result)
+
+
+def test_air_slows_the_motion_along_the_plate() -> None:
+    """Only in a vacuum the sphere moves freely between impacts."""
+    drop = {"height": "0.2 m", "velocity": ["1 m/s", 0, 0]}
+    friction = {**TSUJI, "friction": {"law": "coulomb", "coefficient": 0.2}}
+    assert words("along_plate", run_of(drop=drop, contact=friction)).startswith("Along the plate the sphere moves freely between impacts")
+    through_air = run_of(drop={**drop, "air": True}, contact=friction)
+    assert words("along_plate", through_air).startswith("Along the plate the drag of air slows the sphere between impacts; in contact")
 
 
 def test_friction_is_lost_too() -> None:

@@ -6,7 +6,7 @@ import numpy as np
 
 from vibroimpact.dynamics.problem import STANDARD_GRAVITY
 from vibroimpact.results.result import Result
-from vibroimpact.runs.below import body_below, level_below
+from vibroimpact.runs.below import body_below, is_free_below, level_below
 from vibroimpact.runs.chart_data import contacts_with_duration
 from vibroimpact.runs.scene import exaggeration
 from vibroimpact.runs.sensor_charts import MOST, drawn_sensors
@@ -76,13 +76,18 @@ def _velocity(result: Result) -> str:
     impacts = result.impacts
     if not len(impacts["time_s"]):
         return f"The sphere does not touch the {body_below(result)} in this run."
-    approach, separation = float(impacts["approach_speed_m_s"][0]), float(impacts["separation_speed_m_s"][0])
+    columns = {"approach_speed_m_s": "m/s", "separation_speed_m_s": "m/s", "restitution_achieved": ""}
+    approach, separation, restitution = (impact_text(result, 0, name, unit) for name, unit in columns.items())
     return (
-        f"In impact 1 the sphere arrives at {text(approach, 'm/s')} and leaves at {text(separation, 'm/s')}"
+        f"In impact 1 the sphere arrives at {approach} and leaves at {separation}"
         f"{', along the normal' if 'tangential_restitution' in impacts else ''}"
-        f"{', relative to the plate' if 'plate_velocity_m_s' in impacts else ''}: "
-        f"a restitution of {fixed(separation / approach, 4)}."
+        f"{f', relative to the {body_below(result)}' if _moves_below(result) else ''}: a restitution of {restitution}."
     )
+
+
+def _moves_below(result: Result) -> bool:
+    """Return whether what the sphere falls on is shaken or free, so that speeds are relative to it."""
+    return "plate_velocity_m_s" in result.impacts or is_free_below(result)
 
 
 def _acceleration(result: Result) -> str:
@@ -260,7 +265,9 @@ def _part(value: float, whole: float) -> str:
 
 def _along_plate(result: Result) -> str:
     friction = result.case.get("contact", {}).get("friction")
-    words = "Along the plate the sphere moves freely between impacts"
+    drag = [what for what, entry in (("air", "air_J"), ("the liquid", "liquid_J")) if entry in result.energy]
+    words = f"Along the plate the drag of {drag[0]} slows the sphere between impacts" if drag else ""
+    words = words or "Along the plate the sphere moves freely between impacts"
     if friction is None:
         return f"{words}; there is no friction."
     words += f"; in contact, friction ({friction['law']}, coefficient {float(friction['coefficient']):g}) acts on it."
