@@ -134,7 +134,7 @@ def lines_of(faults: Iterable[str]) -> tuple[str, ...]:
     >>> lines_of(["no such file", "no such file", "a name\x1b[31m"])
     ('no such file', 'a name\\x1b[31m')
     >>> lines_of(map(str, range(500)))[-1]
-    'and more than 190 other faults'
+    'and at least 190 other faults'
     """
     first = iter(faults)
     found = tuple(dict.fromkeys(shortened(visible(fault), LONGEST_LINE) for fault in islice(first, _LARGEST_COUNT)))
@@ -142,12 +142,12 @@ def lines_of(faults: Iterable[str]) -> tuple[str, ...]:
     few = len(found) <= MOST_LINES + 1  # a line that counts one fault would be as long as the fault
     if all_seen and few and len("\n".join(found)) <= LONGEST_MESSAGE:
         return found
-    room = LONGEST_MESSAGE - len("and more than 200 other faults")
+    room = LONGEST_MESSAGE - len("and at least 200 other faults")
     fitting = sum(end <= room for end in accumulate(len(line) + 1 for line in found[:MOST_LINES]))
     rest = len(found) - fitting
     if not rest:  # many are alike, and not all were looked at
         return (*found, "and perhaps other faults")
-    return (*found[:fitting], f"and {'' if all_seen else 'more than '}{rest} other fault{'s' if rest > 1 else ''}")
+    return (*found[:fitting], f"and {'' if all_seen else 'at least '}{rest} other fault{'s' if rest > 1 else ''}")
 
 
 def listed(names: Iterable[str], near: str = "", command: str = "") -> str:

@@ -69,7 +69,7 @@ class _Short(reprlib.Repr):
         self.maxlevel, self.maxstring, self.maxother = 4, 60, 60
 
     def repr_int(self, x: int, level: int) -> str:
-        return repr(x) if x.bit_length() < 400 else f"a whole number of {int(x.bit_length() * 0.30103)} digits"
+        return repr(x) if x.bit_length() < 400 else f"a whole number of about {int(x.bit_length() * 0.30103)} digits"
 
     def repr_bool(self, x: bool, level: int) -> str:
         return str(x).lower()

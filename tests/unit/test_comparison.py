@@ -6,6 +6,7 @@ import csv
 import json
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -180,3 +181,26 @@ def test_the_command_writes_a_whole_folder(tmp_path: Path, monkeypatch: pytest.M
 def test_settings_that_are_none_are_refused(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     assert run(monkeypatch, "--laws", "flores", "--set", "restitution", "-o", str(tmp_path / "x")) == 2
     assert "give KEY=VALUE" in capsys.readouterr().err
+
+
+def test_friction_and_a_liquid_stay_under_each_law() -> None:
+    """The drop is that of the case: what is beside the law in its section is not left out, and lowers the curves of restitution."""
+    liquid, friction = {"density": 1000.0, "viscosity": 0.002}, {"law": "coulomb", "coefficient": 0.2}
+    table: dict[str, Any] = {
+        "sphere": {"radius": "1 mm", "material": "steel"},
+        "plate": {"material": "steel"},
+        "drop": {"height": "50 mm"},
+        "contact": {"law": "tsuji", "restitution": 0.7, "liquid": liquid},
+        "run": {"impacts": 1},
+    }
+    wet = vi.compare_laws(vi.read_case(table), ["tsuji", "newton"])
+    for name, result in wet.results.items():
+        speed, achieved = (float(result.impacts[column][0]) for column in ("approach_speed_m_s", "restitution_achieved"))
+        assert achieved < 0.69
+        assert np.interp(speed, wet.speeds, wet.restitutions[name]) == pytest.approx(achieved, abs=5e-4)
+    table |= {
+        "plate": {"material": "steel", "inclination": "20 deg"},
+        "contact": {"law": "tsuji", "restitution": 0.7, "friction": friction},
+    }
+    rough = vi.compare_laws(vi.read_case(table), ["tsuji", "newton"])
+    assert all(result.energy["friction_J"] > 0.0 for result in rough.results.values())

@@ -173,7 +173,9 @@ def test_a_damaged_calibration_is_named(text: str, tmp_path: Path) -> None:
 def test_other_folders_are_refused(variable: vi.Response, tmp_path: Path) -> None:
     with pytest.raises(vi.InputError, match="this is not a result folder"):
         load_drop(tmp_path)
-    for key, words in (("laws", "a comparison of contact laws"), ("modes", "modes of elastic bodies")):
+    others = {"laws": "a comparison of contact laws", "modes": "modes of elastic bodies", "majority_error": "a bound on the error"}
+    others |= {"estimates": "an identified impact", "octaves_Hz": "a comparison of a test", "responses": "modes of measured frequency"}
+    for key, words in others.items():
         (tmp_path / "summary.json").write_text(json.dumps({key: {}}))
         with pytest.raises(vi.InputError, match=words):
             load_drop(tmp_path)

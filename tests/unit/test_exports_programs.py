@@ -298,3 +298,34 @@ def test_the_dialog_of_adams_is_the_exported_force() -> None:
     assert [float(number) for number in written] == pytest.approx(list(row.values()), rel=1e-14)
     assert len(adams_solver.FORMAT.dialog(told_case("paper:type1-variable"))) == 5
     assert not adams_solver.FORMAT.dialog(told_case("paper:type1-theory"))
+
+
+def _changing(law: Any, **values: Any) -> Drop:
+    """Return a drop whose law has other values in its second impact."""
+    return replace(told(law), laws=(law, law.changed(values)))
+
+
+def test_refusals_name_the_key_of_the_case() -> None:
+    """A spring that changes, or has an exponent that a program lacks, is refused at the key that sets it."""
+    with pytest.raises(InputError, match=r"^contact\.stiffness: the spring changes from impact to impact"):
+        lammps.FORMAT.write(_changing(TSUJI, stiffness=2.0 * STIFFNESS))
+    with pytest.raises(InputError, match=r"^contact\.exponent: 1\.4 can't be written"):
+        lammps.FORMAT.write(told(AdamsImpact(stiffness=STIFFNESS, exponent=1.4, damping_max=100.0)))
+    with pytest.raises(InputError, match=r"^contact: Adams' contact can change its damping"):
+        adams_solver.FORMAT.write(_changing(AdamsImpact(stiffness=STIFFNESS, damping_max=100.0), stiffness=2.0 * STIFFNESS))
+
+
+def test_yade_tells_at_which_speeds_the_restitution_is_that_of_the_law() -> None:
+    """With a damping for each impact it is so at each of them, not only at the first."""
+    assert "at the first impact's speed, and" in " ".join(yade.FORMAT.notes(told(TSUJI)))
+    assert "at the speed of each impact of this drop, and" in " ".join(yade.FORMAT.notes(_changing(TSUJI, restitution=0.5)))
+
+
+def test_the_way_to_rigid_bodies_that_rebound_as_elastic_ones() -> None:
+    """It names a law that can be calibrated, and is not told where no rigid body can rebound so."""
+    hertz = replace(told(Hertz(stiffness=STIFFNESS)), elastic=("plate",))
+    slower = replace(hertz, original_impacts={"restitution_achieved": np.array([0.5])})
+    (way,) = (note for note in lammps.FORMAT.notes(slower) if "calibrate the case" in note)
+    assert all(words in way for words in ("none of the keys of elastic bodies, no [[sensors]] and", "loss parameter, such as tsuji"))
+    faster = replace(hertz, original_impacts={"restitution_achieved": np.array([0.5, 1.3])})
+    assert "Rigid bodies can't rebound as in the run, where an impact has a restitution above 1." in lammps.FORMAT.notes(faster)

@@ -95,7 +95,7 @@ def test_faults_are_few_short_and_clean() -> None:
         vi.read_case(case)
     lines = str(caught.value).split("\n")
     assert 1 < len(lines) <= MOST_LINES + 1
-    assert lines[-1].startswith("and more than ")
+    assert lines[-1].startswith("and at least ")
     assert all(line.isprintable() for line in lines)
     assert len(str(caught.value)) <= LONGEST
 

@@ -370,7 +370,10 @@ def test_the_option_of_features_and_calibrate(command: Callable[..., tuple[int, 
     code, out, _ = command("calibrate", "ev.csv", "--columns", "speed=m/s,restitution", "-o", "fitted", "--json")
     assert code == 0
     assert [row["restitution"] for row in json.loads(out)["restitutions"]["rows"]] == [0.81, 0.78, 0.74]
-    assert "--columns goes with a record of bounces" in command("calibrate", "paper:calibration", "--columns", "time=s,force=N")[2]
+    assert (
+        "--columns goes with a table of restitutions or of bounces"
+        in command("calibrate", "paper:calibration", "--columns", "time=s,force=N")[2]
+    )
     assert "and this is none; leave it out" in command("features", "found/summary.wav", "--columns", "time=s,force=N")[2]
 
 

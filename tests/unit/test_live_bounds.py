@@ -113,8 +113,8 @@ def test_a_message_is_measured_in_bytes() -> None:
     [
         ({**RIGID, "sphere": None}, "sphere"),
         ({**RIGID, "drop": {**RIGID["drop"], "speed": None}}, "drop.speed"),
-        ({**RIGID, "contact": {**RIGID["contact"], "restitution": [0.5, None]}}, "contact.restitution.1"),
-        ({**RIGID, "sensors": [{"name": None}]}, "sensors.0.name"),
+        ({**RIGID, "contact": {**RIGID["contact"], "restitution": [0.5, None]}}, "contact.restitution (the 2nd)"),
+        ({**RIGID, "sensors": [{"name": None}]}, "sensors.name"),
     ],
     ids=["section", "key", "list", "table in a list"],
 )

@@ -462,6 +462,15 @@ def test_an_interrupt_tells_how_to_go_on(tmp_path: Path, monkeypatch: pytest.Mon
     assert f"continue with: vibroimpact reproduce -o {tmp_path / 'paper'} --only fig3\n" in capsys.readouterr().err
 
 
+def test_an_interrupt_of_parts_made_anew_tells_to_make_them(
+    copy: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Parts that are there already are not those that are missing, which a command without --only would make."""
+    monkeypatch.setitem(PARTS, "table1", ReportPart("table1", chart=raises(KeyboardInterrupt())))
+    assert command(monkeypatch, "reproduce", "--only", "table1", "-o", copy) == 130
+    assert f"continue with: vibroimpact reproduce -o {copy} --only table1\n" in capsys.readouterr().err
+
+
 def test_the_report_is_remade_and_other_files_stay(copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     before = contents(copy)
     for name in ("report.md", "report.html", "values.csv"):

@@ -242,6 +242,17 @@ def test_damage_is_named_with_its_part_and_the_remedy(folder: Path, tmp_path: Pa
     assert str(refused.value) == f"{copy / 'result.nc'}: {words}; {remedy}"
 
 
+def test_a_damaged_summary_is_not_mended_by_a_run_of_another_case(folder: Path, tmp_path: Path) -> None:
+    """Without the data of a run beside it, it may be that of a calibration, which a run would replace."""
+    copy = Path(shutil.copytree(folder, tmp_path / "copy"))
+    (copy / "summary.json").write_text("{")
+    with pytest.raises(vi.InputError, match="make it anew with: vibroimpact run"):
+        vi.read_result(copy)
+    (copy / "result.nc").unlink()
+    with pytest.raises(vi.InputError, match=r"make the result anew$"):
+        vi.read_result(copy)
+
+
 def test_results_of_earlier_versions_open(folder: Path, tmp_path: Path, theory: vi.Response) -> None:
     import shutil
 

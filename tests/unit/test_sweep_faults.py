@@ -121,7 +121,7 @@ def test_ctrl_c_says_how_to_go_on(tmp_path: Path) -> None:
     told = running.communicate()[1]
     assert running.returncode == 130
     first, last = told.strip().splitlines()
-    assert first == "vibroimpact: stopping after the drops that are under way; Ctrl-C once more stops at once"
+    assert first == "vibroimpact: stopping after what is under way; Ctrl-C once more stops at once"
     assert last.startswith("vibroimpact: interrupted; completed drops are kept; continue with: vibroimpact sweep")
     assert f"-o {folder} --resume" in last
     assert 0 < chunks_done(folder) < 40

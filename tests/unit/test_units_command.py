@@ -152,3 +152,12 @@ def test_the_command_refuses(
 ) -> None:
     status, printed = outcome(monkeypatch, capsys, *arguments)
     assert (status, words in printed) == (2, True), printed
+
+
+def test_quotes_are_advised_only_where_words_of_the_unit_are_missing(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A blank in the unit of --to makes its last word one of the quantity; that of the quantity needs no quotes."""
+    assert '--to "N s/mm"' in outcome(monkeypatch, capsys, "179.75", "N", "s/m", "--to", "N", "s/mm")[1]
+    for unit in ("kg", "foo"):
+        assert "quotes" not in outcome(monkeypatch, capsys, "5", "N", "s/m", "--to", unit)[1]

@@ -84,4 +84,4 @@ def test_a_chaotic_drop_prints_no_digits_that_it_lacks() -> None:
     assert table["achieved, last"] == "?"
     headers, rows, *_ = impact_table(first)
     assert rows[-1][headers.index(("Largest force", "kN"))] == "?"
-    assert "? mJ (? %) remains in their motion" in caption("energy", first).replace("\u00a0", " ")
+    assert "? mJ (? %) remains in the motion of the plate" in caption("energy", first).replace("\u00a0", " ")

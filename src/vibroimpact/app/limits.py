@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.costs import costs_of, impacts_expected, seconds_at_most, seconds_expected
 from vibroimpact.cases.fields.elastic_body import BroughtMeshTable
+from vibroimpact.cases.fields.item_labels import path_in_words
 from vibroimpact.cases.rigid import elastic_names
 from vibroimpact.errors import InputError
 
@@ -45,7 +46,7 @@ def check_table(table: dict[str, Any]) -> None:
         within, where = left.pop()
         for key, value in within.items() if isinstance(within, dict) else enumerate(within):
             if value is None:
-                raise InputError("null is not a value of a case; leave it out", f"{where}{key}")
+                raise InputError("null is not a value of a case; leave it out", path_in_words(f"{where}{key}", table))
             if isinstance(value, (dict, list)):
                 left.append((value, f"{where}{key}."))
     for body, key in (("sphere", "mesh"), ("plate", "mesh"), ("plate", "motion")):

@@ -90,7 +90,8 @@ def calibrate(
         return
     for option, value in {**given, "--columns": columns}.items():
         if value is not None:
-            raise InputError(f"{option} goes with a record of bounces ({', '.join(RECORDS)}); a case has its own keys")
+            kinds = ("a table of restitutions or of bounces", TABLES) if option == "--columns" else ("a record of bounces", RECORDS)
+            raise InputError(f"{option} goes with {kinds[0]} ({', '.join(kinds[1])}); a case has its own keys")
     from vibroimpact.calibration.calibrate_case import calibrate_case, load_calibration
     from vibroimpact.calibration.folder import save_calibration
     from vibroimpact.calibration.reported import report_of

@@ -41,7 +41,9 @@ def compare(
     achieving: Annotated[
         float | None,
         typer.Option(
-            "--achieving", metavar="E", help="Tune each law to this restitution at the speed of the first impact, without gravity."
+            "--achieving",
+            metavar="E",
+            help="Tune each law to this restitution at the speed of the first impact, without gravity and losses in a liquid.",
         ),
     ] = None,
     output: Annotated[
@@ -53,7 +55,7 @@ def compare(
 ) -> None:
     """Compare the results of several contact laws for one case.
 
-    Parameters of the case's own law are also used for the other laws that have them.
+    Parameters of the case's own law are also used for the other laws that have them; friction and a liquid stay under each law.
     """
     from vibroimpact.cases.reader import load_case
     from vibroimpact.comparison.comparison import compare_laws

@@ -125,7 +125,9 @@ def _compiler_words(compiler: Mapping[str, Any]) -> str:
         slower = "some ten times slower, where bodies vibrate one to two hundred times"
         return f"none: the solver runs in plain Python, {slower}: {compiler['reason']}"
     if not compiler["usable"]:
-        return f"{compiler['folder']} is not a folder that can be written to: the solver is compiled again by each command"
+        where = f"{compiler['folder']} is not a folder that can be written to"
+        kept = f", but for the {compiler['entries']} functions that it has" if compiler["entries"] else ""
+        return f"{where}: the solver is compiled again by each command{kept}"
     return f"{compiler['entries']} functions, {compiler['size_byte'] / 1e6:.3g} MB, in {compiler['folder']}"
 
 

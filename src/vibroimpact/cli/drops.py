@@ -217,7 +217,7 @@ def figures(
 ) -> None:
     """Write the charts of a run or a study as files.
 
-    For a run whose plate is elastic an animation, plate.gif, is written too.
+    For a run whose elastic plate is hit an animation, plate.gif, is written too.
     """
     from vibroimpact.figures import save_figures
     from vibroimpact.report.progress import patient_progress

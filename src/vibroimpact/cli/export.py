@@ -43,7 +43,7 @@ def export(
     from vibroimpact.exporting.text import export_summary, format_table
 
     if formats and (to is not None or output is not None or force):
-        raise InputError("--formats lists them, and takes no other option")
+        raise InputError("--formats lists the formats, and takes no --to, -o or --force")
     if formats or to is None:
         if output is not None or force:
             raise InputError("name the format: vibroimpact export DIR --to FORMAT")

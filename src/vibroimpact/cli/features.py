@@ -70,6 +70,8 @@ def features(
 
     if packets and window is not None:
         raise InputError("a row is a packet with --packets, and a window with --window; give one of them")
+    if output is not None and output.is_dir():
+        raise InputError(f"{output} is a folder; name a file for the table")
     if output is not None and output.exists() and not force:
         raise InputError(f"{output} exists; take another name, or --force to replace it")
     names = None if only is None else names_in(only)
@@ -116,4 +118,4 @@ def _records(
             except InputError as error:
                 raise with_path(record.source, error) from None
     if len(told) > _TOLD:
-        note(f"doubt: there are {len(told) - _TOLD:,} further doubts about records; the columns offset and drift have what was removed")
+        note(f"doubt: there are {len(told) - _TOLD:,} further doubts about records; offset and drift of a table (-o) are what was removed")

@@ -39,7 +39,7 @@ def recognise(
     seeds: Annotated[int, typer.Option("--seeds", metavar="N", help="Number of seeds over which the scores are averaged.")] = 5,
     seed: Annotated[int, typer.Option("--seed", metavar="N", min=0, help="The first seed.")] = 0,
     most: Annotated[
-        int, typer.Option("--most", metavar="N", help="Largest number of signals; of more, whole groups are drawn at random.")
+        int, typer.Option("--most", metavar="N", help="Largest number of signals; of more, whole groups are drawn at random, one at least.")
     ] = 4000,
     figures: Figures = False,
     force: Force = False,

@@ -37,7 +37,9 @@ def new(
     force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
 ) -> None:
     """Write a new case file from an existing case. Unused keys are in it as comments."""
+    from vibroimpact.cases.reader import load_table
     from vibroimpact.cases.template import case_template
+    from vibroimpact.cli.case_text import command_for
     from vibroimpact.files.atomic_write import write_text_file
     from vibroimpact.files.recover import recover
 
@@ -45,13 +47,15 @@ def new(
     path = Path(f"{title}.toml")
     if not title.strip() or title != path.stem:
         raise InputError(f'"{name}" is not a file name; give one without folders, such as my-plate')
+    if path.is_dir():
+        raise InputError(f"{path} is a folder; take another name")
     if path.exists() and not force:
         raise InputError(f"{path} exists; take another name, or --force to replace it")
     text = case_template(source, title, settings_of(changes))
     recover(path)
     write_text_file(path, text)
-    quoted = shlex.quote(str(path))
-    say(f"wrote {path}; explain it: vibroimpact check {quoted}; run it: vibroimpact run {quoted}")
+    quoted, command = shlex.quote(str(path)), command_for(load_table(path))
+    say(f"wrote {path}; explain it: vibroimpact check {quoted}; {command} it: vibroimpact {command} {quoted}")
 
 
 @app.command(context_settings={"ignore_unknown_options": True})  # a number may be negative
@@ -73,9 +77,21 @@ def units(
         value, unit = parse_quantity(" ".join(quantity))
         shown = unit_table(value, unit) if to is None else converted(value, unit, to)
     except InputError as error:
-        hint = '; a unit with blanks needs quotes, as in --to "N s/mm"' if to and " " not in to and len(quantity) > 2 else ""
-        raise InputError(f"{error}{hint}") from None
+        raise InputError(f"{error}{_quotes_hint(quantity, to)}") from None
     show(lambda: unit_document(value, unit, to), lambda: shown, as_json=as_json)
+
+
+def _quotes_hint(quantity: list[str], to: str | None) -> str:
+    """Return a hint that the unit of --to needs quotes, if its last words became those of the quantity; else an empty text."""
+    from vibroimpact.units.reading import convert_units, parse_quantity
+
+    for count in range(1, len(quantity) - 1) if to else ():
+        try:
+            convert_units(*parse_quantity(" ".join(quantity[:-count])), " ".join([str(to), *quantity[-count:]]))
+        except InputError:
+            continue
+        return f'; a unit with blanks needs quotes: --to "{" ".join([str(to), *quantity[-count:]])}"'
+    return ""
 
 
 @app.command()
@@ -164,5 +180,5 @@ def doctor(
     )
     error = first_rebound_error()
     if not error < 1e-7:
-        raise ComputationError(f"the self-test is off by {error:.1e}; reinstall the package")
-    say(f"self-test passed: the paper's first rebound, off by {error:.1e}", err=as_json)
+        raise ComputationError(f"self-test failed: the speed of the paper's first rebound is off by {error:.1e}; reinstall the package")
+    say("self-test passed: the speed of the paper's first rebound is right to 1e-7", err=as_json)

@@ -44,7 +44,8 @@ def reproduce(
             folder = reproduce_paper(output, names, force=force, progress=progress, tell=note)
     except KeyboardInterrupt:
         left = [name for name in missing_parts(output) if names is not None and name in names]
-        some = f" --only {','.join(left)}" if left else ""
+        again = left or names  # of parts that were there before it is not known which were computed again
+        some = f" --only {','.join(again)}" if again else ""
         fail(f"interrupted; completed parts are kept; continue with: vibroimpact reproduce -o {shlex.quote(str(output))}{some}", 130)
     parts = read_parts(folder)
     show_folder(

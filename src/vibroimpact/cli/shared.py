@@ -264,7 +264,7 @@ def interrupt_flag(message: str) -> Iterator[Callable[[], bool]]:
         if pressed > 1:
             note(message)
             os._exit(130)  # worker processes end with this one
-        note("stopping after the drops that are under way; Ctrl-C once more stops at once")
+        note("stopping after what is under way; Ctrl-C once more stops at once")
 
     before = {number: signal.signal(number, press) for number in (signal.SIGINT, signal.SIGTERM)}  # schedulers send SIGTERM
     try:

@@ -13,6 +13,7 @@ import typer
 from vibroimpact.cli.completion import complete_case
 from vibroimpact.cli.shared import Json, app, console, fail, interrupt_flag, note, quantity_in, say, show, stem
 from vibroimpact.errors import InputError
+from vibroimpact.shown import shown
 
 if TYPE_CHECKING:
     from vibroimpact.studies.sweep import Sweep
@@ -194,7 +195,8 @@ def _check_confirmed(study: str, found: Sweep, *, yes: bool) -> None:
         )
     if found.bytes > MOST_BYTES_UNCONFIRMED and not yes:
         words = f"the results would take about {found.bytes / 1e9:.3g} GB, more than {MOST_BYTES_UNCONFIRMED / 1e9:g} GB"
-        raise InputError(f"{study}: {words}; confirm that they are wanted with --yes, or keep fewer signals")
+        keep = shown(list(found.section.keep))
+        raise InputError(f"{study}: {words}; confirm that they are wanted with --yes, or keep less: sweep.keep is {keep}")
 
 
 def _cores() -> int:

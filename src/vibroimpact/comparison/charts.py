@@ -15,6 +15,7 @@ from vibroimpact.charts.palette import series
 from vibroimpact.comparison.comparison import Comparison
 from vibroimpact.dynamics.columns import HISTORY_COLUMNS
 from vibroimpact.results.result import Result
+from vibroimpact.runs.below import level_below
 from vibroimpact.runs.chart_data import MARGIN, contact_history, contacts_with_duration, drawn_history, touch_height
 
 _HEIGHT = 3.6
@@ -67,8 +68,9 @@ def _position_chart(results: Mapping[str, Result], roles: Mapping[str, str]) -> 
         lines.append(Line(time, height, name, roles[name]))
     views = _first_contact(results)
     time_axis = Axis("Time", "s", views=views)
-    panel = Panel(time_axis, Axis("Height above the plate", HISTORY_COLUMNS["position_m"].unit), tuple(lines))
-    caption = "Height of the sphere's centre above the plate with each law."
+    level = level_below(next(iter(results.values())))
+    panel = Panel(time_axis, Axis(f"Height above {level}", HISTORY_COLUMNS["position_m"].unit), tuple(lines))
+    caption = f"Height of the sphere's centre above {level} with each law."
     if views:
         caption = f"{caption} The first impact, which begins at the same time for all, is shown enlarged."
     return Chart("position", "Height of the sphere's centre", ((panel,),), caption, _HEIGHT)
@@ -118,8 +120,8 @@ def _restitution_chart(comparison: Comparison, roles: Mapping[str, str]) -> Char
     speed = Axis("Approach speed", "m/s", log=True)
     panel = Panel(speed, Axis("Separation speed over approach speed", range=(0.0, _TOP)), tuple(marks))
     caption = (
-        "Lines: each law with the parameters of its first impact, on undeformed surfaces and without gravity. Symbols: the impacts of the "
-        "run; with a law that leaves a dent, those after the first may lie above its line."
+        "Lines: each law with the parameters of its first impact, between rigid bodies with undeformed surfaces and without gravity. "
+        "Symbols: the impacts of the run; with a law that leaves a dent, those after the first may lie above its line."
     )
     if asked:
         caption = f"{caption} Dotted: the restitution asked of a law."

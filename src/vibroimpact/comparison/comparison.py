@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from vibroimpact.arrays import Floats
 from vibroimpact.cases.case import Case
-from vibroimpact.cases.pair import contact_pair
+from vibroimpact.cases.pair import contact_pair, sphere_density
 from vibroimpact.cases.rigid import contact_laws_of, touch_speed
 from vibroimpact.comparison.laws import cases_under
 from vibroimpact.contact.law import ContactLaw
@@ -76,7 +77,7 @@ def compare_laws(
         one of the same name and unit.
     achieving : float, optional
         Give each law the value of its free parameter with which it achieves this restitution [-] at the speed of the first impact, without
-        gravity.
+        gravity, and without the losses in a liquid.
     progress : callable, optional
         Called with the fraction done, in [0, 1].
 
@@ -99,10 +100,16 @@ def compare_laws(
     for number, (name, one) in enumerate(cases.items()):
         results[name] = result_of(simulate(one))
         first[name] = contact_laws_of(one)[0]
-        restitutions[name] = achieved_restitution(first[name], mass, speeds)
+        restitutions[name] = achieved_restitution(_around(one, first[name], speeds), mass, speeds)
         if progress is not None:
             progress((number + 1) / len(cases))
     return Comparison(case.name or "a drop", results, first, speeds, restitutions)
+
+
+def _around(case: Case, law: ContactLaw, speeds: Floats) -> ContactLaw:
+    """Return a law with the restitution that the liquid of a case, if there is one, leaves it at each approach speed [m/s]."""
+    table = case.contact.local.liquid
+    return law if table is None else table.liquid().around(law, speeds, case.sphere.radius, sphere_density(case.sphere))
 
 
 _COLUMNS = ("max_indentation_m", "max_force_N", "duration_s", "rebound_height_m", "energy_lost_J")

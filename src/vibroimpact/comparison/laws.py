@@ -9,6 +9,7 @@ from typing import Any
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.fields.contact import in_table
+from vibroimpact.cases.fields.local import LocalSection
 from vibroimpact.cases.pair import contact_pair
 from vibroimpact.cases.reader import read_case
 from vibroimpact.cases.rigid import contact_laws_of, touch_speed
@@ -19,12 +20,15 @@ from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.ranges import Range
 from vibroimpact.shown import shown
 
+_BESIDE_THE_LAW = (*LocalSection.model_fields, "friction")
+"""Keys of the [contact] section that stay under each law: the liquid, friction, and how the law is combined with elastic bodies."""
+
 
 def cases_under(case: Case, laws: Iterable[str], given: Mapping[str, Any] | None = None, achieving: float | None = None) -> dict[str, Case]:
     """Return a case under each of several contact laws.
 
     A law takes each parameter from `given`, or else from the law of the case where that has one of the same name and unit, or else
-    from the bodies.
+    from the bodies. Friction, a liquid and the treatment of local indentation are those of the case.
 
     Parameters
     ----------
@@ -36,7 +40,7 @@ def cases_under(case: Case, laws: Iterable[str], given: Mapping[str, Any] | None
         Parameters, as a case file would hold them: "KEY" for every law that has it, "LAW.KEY" for one.
     achieving : float, optional
         Give each law the value of its free parameter with which it achieves this restitution [-] at the speed of the first impact, without
-        gravity.
+        gravity, and without the losses in a liquid.
 
     Returns
     -------
@@ -86,12 +90,14 @@ def _case_under(case: Case, law: type[ContactLaw], given: Mapping[str, Any], ach
             placeholders.append(key)
     own_name = case.name or "a drop"  # it may mention the law of the case
     named = own_name if law.name == case.contact.law else f"{law.name} on the drop of: {own_name}"
-    table = {**resolved_case(case), "name": named, "contact": contact}
+    of_case = resolved_case(case)
+    beside = {key: of_case["contact"][key] for key in _BESIDE_THE_LAW if key in of_case["contact"]}
+    table: dict[str, Any] = {**of_case, "name": named, "contact": {**contact, **beside}}
     try:
         found = read_case(table)
         tuned = contact_laws_of(found)[0].free_parameter
         if any(key != tuned for key in placeholders):  # placeholders of other parameters are dropped, so that these are reported as missing
-            table["contact"] = {key: value for key, value in contact.items() if key not in placeholders or key == tuned}
+            table["contact"] = {key: value for key, value in table["contact"].items() if key not in placeholders or key == tuned}
             found = read_case(table)
         if achieving is None or tuned is None:
             return found

@@ -150,7 +150,7 @@ def adams_contact(drop: Drop) -> AdamsContact:
         damping, meaning = adams_number(dampings[0]), "the same in every impact"
     for one in laws[1:]:
         if _stiffness_terms(one) != _stiffness_terms(law):
-            raise InputError("Adams' contact can change its damping from impact to impact, and nothing else", "laws")
+            raise InputError("Adams' contact can change its damping from impact to impact, and nothing else", "contact")
     stiffness, exponent, penetration = _stiffness_terms(law)
     # from SI to mm, N and s
     return AdamsContact(
@@ -225,7 +225,7 @@ def _by_steps(dampings: Sequence[float], speeds: Sequence[float], *, impact_law:
             raise InputError(
                 f"impact {impact + 1} is not slower than impact {impact}, so that Adams can't select their dampings by the "
                 f"approach speed; give one damping for all{by_function}",
-                "laws",
+                "contact",
             )
     steps = adams_number(dampings[-1])
     for damping, (fast, slow) in reversed(list(zip(dampings[:-1], pairwise(speeds), strict=False))):

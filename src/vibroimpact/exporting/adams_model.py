@@ -142,7 +142,7 @@ def remarks(model: AdamsModel) -> list[str]:
         "the plate is part of the ground; both bodies are rigid, and do not use the materials",
         f"stiffness in N/mm^n = that in N/m^n over 1000^n, n = {contact.exponent:g}",
         ("largest damping C [N s/mm]: " if contact.penetration is not None else "hysteretic damping factor D [-]: ") + contact.meaning,
-        f"the longest step is 1/{_STEPS} of the first contact, the output step 1/{_OUTPUTS}: with steps as long as the contact "
+        f"the longest step is about 1/{_STEPS} of the first contact, the output step about 1/{_OUTPUTS}: with steps as long as the contact "
         "it gets one output or none, and the largest force is missed",
     ]
     if contact.holds_speed:

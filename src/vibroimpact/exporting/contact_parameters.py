@@ -40,7 +40,7 @@ def approach_speeds(drop: Drop) -> list[float]:
         raise InputError("there is no gravity in this run; a drop that is written for another program needs it, to come back")
     speeds = [float(speed) for speed in drop.impacts["approach_speed_m_s"]]
     if not speeds:
-        raise InputError("the sphere does not reach the plate in this run; an export needs at least one impact")
+        raise InputError("the sphere does not reach the plate in this run; a drop that is written for another program needs an impact")
     return speeds
 
 
@@ -106,11 +106,20 @@ def linear_or_hertzian(drop: Drop, program: str) -> tuple[float, float]:
     """
     springs = {power_law_spring(law, program) for law in laws_of_impacts(drop)}
     if len(springs) > 1:
-        raise InputError(f"the spring changes from impact to impact, which can't be written for {program}; give it one value", "stiffness")
+        raise InputError(
+            f"the spring changes from impact to impact, which can't be written for {program}; give it one value",
+            f"contact.{_spring_key(drop)}",
+        )
     stiffness, exponent = springs.pop()
     if exponent not in (1.0, 1.5):
-        raise InputError(f"{exponent:g} can't be written for {program}, whose springs have 1 or 1.5", "exponent")
+        raise InputError(f"{exponent:g} can't be written for {program}, whose springs have 1 or 1.5", "contact.exponent")
     return stiffness, exponent
+
+
+def _spring_key(drop: Drop) -> str:
+    """Return the parameter of the contact law of a drop that sets its spring, and changes from impact to impact."""
+    names = [name for name in ("penalty", "exponent", "stiffness") if hasattr(drop.laws[0], name)]
+    return next((name for name in names if len({getattr(law, name) for law in drop.laws}) > 1), names[-1])
 
 
 def first_contact(law: ContactLaw, drop: Drop) -> tuple[float, float]:
@@ -129,7 +138,9 @@ def shared_notes(drop: Drop) -> list[str]:
         speeds = function.beyond(np.array(approach_speeds(drop)))
         if speeds.size:
             fitted = f"the function of {name} was fitted over {function.slowest:.4g} to {function.fastest:.4g} m/s"
-            notes.append(f"{fitted}, and this drop has impacts at {speeds.min():.4g} to {speeds.max():.4g} m/s.")
+            slowest, fastest = f"{speeds.min():.4g}", f"{speeds.max():.4g}"
+            there = f"impacts at {slowest} to {fastest}" if slowest != fastest else f"an impact at {fastest}"
+            notes.append(f"{fitted}, and this drop has {there} m/s.")
     return notes
 
 
@@ -139,7 +150,8 @@ def _rigid_notes(drop: Drop) -> list[str]:
     if drop.elastic:
         verb = "is" if len(drop.elastic) == 1 else "are"
         lost.append(f"The {' and '.join(drop.elastic)} {verb} written as rigid, with the contact law alone, without vibration.")
-        remedy.append('model = "rigid"')
+        remedy.append('model = "rigid" and none of the keys of elastic bodies')
+        remedy += ["no [[sensors]]"] if "plate" in drop.elastic else []
     if drop.local_element:
         lost.append("The local element in series with the contact law, which stands for the sphere's deformation, is left out.")
         remedy.append("no contact.local_compliance")
@@ -154,9 +166,21 @@ def _rigid_notes(drop: Drop) -> list[str]:
         "The exported drop therefore differs from the one that was run: it is the same case between rigid bodies, with the first "
         "value of the contact law at its first impact, and so on; a parameter that depends on the approach speed has the value at its own.",
         f"Restitution from impact to impact: {written} as written, {here} in the run.",
-        f"For rigid bodies that rebound as in the run, calibrate the case with {' and '.join(remedy)} to the run's impacts.csv as "
-        "[calibrate] target, and export the calibration.",
+        _remedy(drop, remedy),
     ]
+
+
+def _remedy(drop: Drop, changes: list[str]) -> str:
+    """Return the sentence on how to get rigid bodies that rebound as in the run, with these changes of its case."""
+    if np.max(drop.original_impacts["restitution_achieved"], initial=0.0) > 1.0:
+        return "Rigid bodies can't rebound as in the run, where an impact has a restitution above 1."
+    lossless = drop.laws[0].free_parameter is None
+    *first, last = [*changes, *(["a contact law with a loss parameter, such as tsuji"] if lossless else [])]
+    with_these = f"{', '.join(first)} and {last}" if first else last
+    return (
+        f"For rigid bodies that rebound as in the run, calibrate the case with {with_these} to the run's impacts.csv as [calibrate] "
+        "target, and export the calibration."
+    )
 
 
 def _restitutions(impacts: Mapping[str, Floats]) -> str:

@@ -50,11 +50,15 @@ _OTHER_FOLDERS = {
     "restitutions": "these are restitutions of a table, not the result of a run; fit them anew with calibrate",
     "reproduction": "this is a reproduction of the paper, not the result of a run; make it anew with reproduce",
     "study": "this is a study of many drops, not the result of a run; its results are in study.nc",
+    "majority_error": "this is a bound on the error of classifiers, not the result of a run; make it anew with bound",
+    "estimates": "this is an identified impact, not the result of a run; make it anew with identify",
+    "octaves_Hz": "this is a comparison of a test with its simulation, not the result of a run; make it anew with correlate",
+    "responses": "these are modes of measured frequency responses, not the result of a run; fit them anew with modes",
     "modes": "these are modes of elastic bodies, not the result of a run; make them anew with modes",
     "recognition": "this is a recognition of signals, not the result of a run; make it anew with recognise",
     "recognised": "these are recognised signals, not the result of a run; make them anew with recognise --model",
 }
-"""Messages for folders that are not results of a run, by the key that identifies them in `summary.json`."""
+"""Messages for folders that are not results of a run, by the key that identifies them in `summary.json`; the first that it has."""
 
 
 @contextmanager
@@ -243,6 +247,7 @@ def _cause(error: Exception) -> str:
 
 def _remedy(folder: Path, name: str) -> str:
     """Return a sentence on how to restore a damaged file of a result."""
-    if name == CASE or not (folder / CASE).is_file():
+    unknown = name == SUMMARY and not (folder / NETCDF).is_file()  # it may be the folder of another command
+    if name == CASE or unknown or not (folder / CASE).is_file():
         return "make the result anew"
     return f"make it anew with: vibroimpact run {shlex.quote(str(folder / CASE))} -o {shlex.quote(str(folder))} --force"

@@ -6,6 +6,7 @@ import numpy as np
 
 from vibroimpact.dynamics.problem import STANDARD_GRAVITY
 from vibroimpact.results.result import Result
+from vibroimpact.runs.below import body_below, is_free_below, level_below
 from vibroimpact.runs.chart_data import contacts_with_duration
 from vibroimpact.runs.scene import exaggeration
 from vibroimpact.runs.sensor_charts import MOST, drawn_sensors
@@ -28,8 +29,10 @@ def left_out(result: Result) -> str:
     if len(contacts_with_duration(result)):
         return ""
     if not len(result.impacts["time_s"]):
+        below = body_below(result)
         return (
-            "The sphere does not reach the plate in this run, so that there are no charts of contact force, acceleration and indentation."
+            f"The sphere does not reach the {below} in this run, so that there are no charts of contact force, acceleration and "
+            "indentation."
         )
     return (
         "The contact law is instantaneous: the contact has no duration, force, acceleration or indentation, so that there are no charts "
@@ -39,9 +42,10 @@ def left_out(result: Result) -> str:
 
 def _position(result: Result) -> str:
     start = text(float(result.history["position_m"][0]), "m")
+    words = f"The sphere's centre starts {start} above {level_below(result)}"
     if not len(result.impacts["time_s"]):
-        return f"The sphere's centre starts {start} above the plate and has not touched it when the run ends."
-    words = f"The sphere's centre starts {start} above the plate's surface."
+        return f"{words}; the sphere has not touched the {body_below(result)} when the run ends."
+    words += "."
     deepest = int(np.argmax(result.impacts["max_indentation_m"]))
     if len(contacts_with_duration(result)):
         depth = text(float(result.impacts["max_indentation_m"][deepest]), "m")
@@ -57,21 +61,33 @@ def _force(result: Result) -> str:
     lead = float(impacts["time_of_max_indentation_s"][most] - impacts["time_of_max_force_s"][most])
     words = f"The largest force, {impact_text(result, most, 'max_force_N', 'N')}, acts in impact {most + 1}"
     if lead > 0.001 * impacts["duration_s"][most]:
-        words += f", {text(lead, 's', 3)} before the largest indentation: damping adds to the force during loading"
+        causes = ["damping adds to the force during loading"] if _loses_in_contact(result) else []
+        causes += ["the sphere vibrates"] if "sphere" in result.peaks else []
+        words += f", {text(lead, 's', 3)} before the largest indentation: {', and '.join(causes)}".removesuffix(": ")
     return f"{words}. {_in_whole_run(result)}".strip()
+
+
+def _loses_in_contact(result: Result) -> bool:
+    """Return whether an impact loses energy in its contact, apart from rounding."""
+    return bool(np.max(result.impacts["energy_lost_J"]) >= _NOTHING_LEFT * result.energy["input_J"])
 
 
 def _velocity(result: Result) -> str:
     impacts = result.impacts
     if not len(impacts["time_s"]):
-        return "The sphere does not touch the plate in this run."
-    approach, separation = float(impacts["approach_speed_m_s"][0]), float(impacts["separation_speed_m_s"][0])
+        return f"The sphere does not touch the {body_below(result)} in this run."
+    columns = {"approach_speed_m_s": "m/s", "separation_speed_m_s": "m/s", "restitution_achieved": ""}
+    approach, separation, restitution = (impact_text(result, 0, name, unit) for name, unit in columns.items())
     return (
-        f"In impact 1 the sphere arrives at {text(approach, 'm/s')} and leaves at {text(separation, 'm/s')}"
+        f"In impact 1 the sphere arrives at {approach} and leaves at {separation}"
         f"{', along the normal' if 'tangential_restitution' in impacts else ''}"
-        f"{', relative to the plate' if 'plate_velocity_m_s' in impacts else ''}: "
-        f"a restitution of {fixed(separation / approach, 4)}."
+        f"{f', relative to the {body_below(result)}' if _moves_below(result) else ''}: a restitution of {restitution}."
     )
+
+
+def _moves_below(result: Result) -> bool:
+    """Return whether what the sphere falls on is shaken or free, so that speeds are relative to it."""
+    return "plate_velocity_m_s" in result.impacts or is_free_below(result)
 
 
 def _acceleration(result: Result) -> str:
@@ -85,13 +101,16 @@ def _acceleration(result: Result) -> str:
 
 
 def _loops(result: Result) -> str:
-    found, lost = contacts_with_duration(result), result.impacts["energy_lost_J"]
+    found = contacts_with_duration(result)
     if result.impacts["separation_speed_m_s"][found[-1]] == 0.0:
-        return f"In impact {found[-1] + 1} the sphere does not leave the plate again; its curve ends where that is certain."
-    if np.max(lost) < 1e-9 * result.energy["input_J"]:
+        below = body_below(result)
+        return f"In impact {found[-1] + 1} the sphere does not leave the {below} again; its curve ends where that is certain."
+    if not _loses_in_contact(result) and "sphere" in result.peaks:
+        return "No energy is lost in contact: the area that a loop encloses is the energy that the sphere's vibration took up."
+    if not _loses_in_contact(result):
         return "Loading and unloading coincide: no energy is lost in contact."
     first, last = (impact_text(result, impact, "energy_lost_J", "J") for impact in (found[0], found[-1]))
-    also = " and the energy of the sphere's vibration. Lost" if "sphere" in result.peaks else ""
+    also = " and the energy that the sphere's vibration took up. Lost" if "sphere" in result.peaks else ""
     if result.deformation.get("treatment") == "identified":
         also = " and the energy stored in the local element at release. Lost"
     words = f"The area that a loop encloses is the energy lost in that contact{also}: {first} in impact {found[0] + 1}"
@@ -100,8 +119,12 @@ def _loops(result: Result) -> str:
 
 def _energy(result: Result) -> str:
     put_in = result.energy["input_J"]
-    words = f"Of {text(put_in, 'J')} put in, {energy_text(result, 'contact_dissipated_J', 'plastic_work_J')} is lost in contact by the end."
-    words += _vibration(result) if result.vibrates else ""
+    lost = energy_text(result, "contact_dissipated_J", "plastic_work_J")
+    words = f"Of {text(put_in, 'J')} put in, {lost} is lost in contact by the end."
+    if "friction_J" in result.energy:
+        rubbed = energy_text(result, "friction_J")
+        words = f"Of {text(put_in, 'J')} put in, {lost} is lost in contact along the normal by the end, and {rubbed} by friction."
+    words += _vibration(result)
     if result.energy.get("drive_J"):
         words += f" The moving plate {'added' if result.energy['drive_J'] < 0.0 else 'removed'} {text(abs(result.energy['drive_J']), 'J')}."
     if np.min(result.history["potential_J"]) < -0.01 * put_in:
@@ -112,13 +135,21 @@ def _energy(result: Result) -> str:
 
 
 def _vibration(result: Result) -> str:
-    """Return a sentence on the energy of vibration: the part dissipated by damping, and the part left at the end."""
-    damped = energy_text(result, "sphere_damping_J", "plate_damping_J")
-    names = [name for name in ("sphere_vibration_J", "sphere_strain_J", "plate_kinetic_J", "plate_strain_J") if name in result.energy]
+    """Return sentences on what the damping of the bodies dissipated, and on the energy left in their motion; empty if none moves."""
     least = _NOTHING_LEFT * result.energy["input_J"]
+    bodies = {"the vibration of the sphere": ["sphere_vibration_J", "sphere_strain_J"]} if "sphere" in result.peaks else {}
+    of_plate = ["plate_kinetic_J", "plate_strain_J"]
+    if "plate" in result.peaks or sum(abs(result.energy.get(name, 0.0)) for name in of_plate) > least:  # it may be free, and rigid
+        kind = "vibration" if "surface_m" in result.history else "motion"  # without that of the supports
+        bodies[f"the {kind} of the {body_below(result)}"] = of_plate
+    if not bodies:
+        return ""
+    names = [name for entries in bodies.values() for name in entries if name in result.energy]
     still = sum(abs(result.energy[name]) for name in names)
     left = energy_text(result, *names) if still > least else f"less than {text(least, 'J', 1)}"
-    return f" The damping of the bodies dissipated {damped}, and {left} remains in their motion."
+    damped = f"The damping of the bodies dissipated {energy_text(result, 'sphere_damping_J', 'plate_damping_J')}, and "
+    remains = f"{left} remains in {' and '.join(bodies)}."
+    return f" {damped}{remains}" if result.peaks else f" At the end {remains}"
 
 
 def _in_whole_run(result: Result) -> str:
@@ -154,7 +185,7 @@ def plate_motion_caption(result: Result) -> str:
     words = f"The plate's centre of mass moves by up to {most[0]}, with up to {most[1]} and {most[2]}; the contact point by up to {there}."
     lowest = result.frequencies("plate")[0]
     periods = lowest * float(result.impacts["duration_s"][0])
-    return f"{words} The first contact lasts {digits(periods, 2)} periods of the lowest mode, of {digits(lowest)}\u00a0Hz."
+    return f"{words} The first impact lasts {digits(periods, 2)} periods of the lowest mode, of {digits(lowest)}\u00a0Hz."
 
 
 def plate_energy_caption(result: Result) -> str:
@@ -234,7 +265,9 @@ def _part(value: float, whole: float) -> str:
 
 def _along_plate(result: Result) -> str:
     friction = result.case.get("contact", {}).get("friction")
-    words = "Along the plate the sphere moves freely between impacts"
+    drag = [what for what, entry in (("air", "air_J"), ("the liquid", "liquid_J")) if entry in result.energy]
+    words = f"Along the plate the drag of {drag[0]} slows the sphere between impacts" if drag else ""
+    words = words or "Along the plate the sphere moves freely between impacts"
     if friction is None:
         return f"{words}; there is no friction."
     words += f"; in contact, friction ({friction['law']}, coefficient {float(friction['coefficient']):g}) acts on it."

@@ -28,6 +28,7 @@ from vibroimpact.cases.rigid import (
     impact_limit,
     mass_of_sphere,
     rigid_problem,
+    run_duration,
     touch_speed,
 )
 from vibroimpact.cases.schema import SensorSection
@@ -95,10 +96,7 @@ def case_explained(case: Case, aside: Container[str] = ()) -> RenderableType:
     if (friction := friction_law_of(case)) is not None:
         rows.append(("friction law", f"{friction.name}: {friction.equation}"))
         rows += [(f"  {item.name}", f"{getattr(friction, item.name):.9g} {item.metadata['unit']}".rstrip()) for item in fields(friction)]
-    number = impact_limit(case)
-    stop = ["at rest"] + ([f"after {number} impact{'' if number == 1 else 's'}"] if number else [])
-    stop += [f"at {case.run.duration:g} s"] if case.run.duration else []
-    rows += [("stops", " or ".join(stop)), ("tolerance", f"{case.run.tolerance:g}")]
+    rows += [("stops", " or ".join(_ends_of_a_run(case))), ("tolerance", f"{case.run.tolerance:g}")]
     if case.calibrate is not None:
         named = case.calibrate.parameter
         tuned = ", ".join(named) if isinstance(named, tuple) else named or "loss parameter of the law"
@@ -117,6 +115,15 @@ def case_explained(case: Case, aside: Container[str] = ()) -> RenderableType:
     rows += [("" if number else "cost", line) for number, line in enumerate(describe_costs(case))]
     found = doubts(resolved_case(case), expected, aside)
     return Group(Text(case.name or "a drop", style="bold"), facts(rows), *doubt_lines(found))
+
+
+def _ends_of_a_run(case: Case) -> list[str]:
+    """Return what ends a run of a case, whichever comes first."""
+    number, duration = impact_limit(case), run_duration(case)
+    ends = ["at rest"] if case.drop.gravity else ["when it flies off for good"]
+    ends += [f"after {number} impact{'' if number == 1 else 's'}"] if number else []
+    ends += [f"at {duration:g} s"] if duration else []
+    return [*ends, *(["when it falls off the edge of the plate"] if is_oblique(case) and case.plate.size else [])]
 
 
 def _ball_rows(case: Case) -> list[tuple[str, str]]:

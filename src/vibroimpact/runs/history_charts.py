@@ -13,6 +13,7 @@ from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.marks import Line, Mark, Points
 from vibroimpact.dynamics.columns import HISTORY_COLUMNS
 from vibroimpact.results.result import Result
+from vibroimpact.runs.below import level_below
 from vibroimpact.runs.chart_data import gravity_of, spans_of_contact, time_axis, touch_height, views_of_contacts
 from vibroimpact.runs.tables import impact_text
 
@@ -71,7 +72,8 @@ def history_chart(result: Result, history: Mapping[str, Floats], quantity: Plott
         if len(times):
             marks.append(Points(times, values, name, role, _names(result, times)))
     value = Axis(quantity.label, HISTORY_COLUMNS[quantity.column].unit)
-    return Chart(quantity.column.split("_")[0], quantity.title, ((Panel(time, value, tuple(marks)),),), caption)
+    title = f"{quantity.title} above {level_below(result)}" if quantity is POSITION else quantity.title
+    return Chart(quantity.column.split("_")[0], title, ((Panel(time, value, tuple(marks)),),), caption)
 
 
 def _names(result: Result, times: Floats) -> tuple[str, ...]:
@@ -132,7 +134,7 @@ def _touch_and_release(result: Result) -> tuple[Floats, Floats]:
 
 POSITION = PlottedQuantity(
     column="position_m",
-    title="Height of the sphere's centre above the plate",
+    title="Height of the sphere's centre",
     label="Height of centre",
     marks=(("top of a rebound", tops_of_rebounds), ("largest indentation", _largest_indentations)),
     headline=lambda result, impact: f"largest indentation {impact_text(result, impact, 'max_indentation_m', 'm')}",

@@ -11,6 +11,7 @@ from vibroimpact.dynamics.energy import CLOSURE_LIMIT
 from vibroimpact.report.page import render_page
 from vibroimpact.resolved_case import ResolvedCase
 from vibroimpact.results.result import Result
+from vibroimpact.runs.below import level_below
 from vibroimpact.runs.captions import left_out, scene_caption, sensors_left_out
 from vibroimpact.runs.charts import run_charts
 from vibroimpact.runs.deformation import deformation_rows, treatment_sentence
@@ -55,6 +56,8 @@ def run_page(result: Result) -> str:
         failed=result.status.startswith("Failed"),
         setup=setup_rows(result),
         impacts=impact_table(result),
+        level=level_below(result),
+        rubs="friction_J" in result.energy,
         ledger_unit=unit,
         ledger=[(row.title, row.energy, row.part) for row in ledger],
         sum=SUM,

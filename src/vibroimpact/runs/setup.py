@@ -17,6 +17,7 @@ from vibroimpact.contact.law import unit_of
 from vibroimpact.contact.registry import contact_laws, friction_laws
 from vibroimpact.contact.speed_function import of_table
 from vibroimpact.results.result import Result
+from vibroimpact.runs.below import body_below, level_below
 from vibroimpact.runs.chart_data import touch_height
 from vibroimpact.runs.deflection_chart import sensor_marks
 from vibroimpact.runs.supports import Extent, plate_extent, support_outlines, support_words, supports_from_the_side
@@ -40,9 +41,24 @@ def setup_chart(result: Result) -> Chart:
     """
     extent = plate_extent(result)
     panels = [_from_the_side(result, extent)] + ([_from_above(result, extent)] if extent else [])
-    caption = "To scale but for the height of the drop"
-    caption += " and the depth of the supports." if extent else "."
-    return Chart("setup", "Set-up", (tuple(panels),), caption, height=2.9)
+    return Chart("setup", "Set-up", (tuple(panels),), f"To scale but for {_listed(_not_to_scale(result, extent))}.", height=2.9)
+
+
+def _listed(things: Sequence[str]) -> str:
+    """Return things in a sentence."""
+    *first, last = things
+    return f"{', '.join(first)} and {last}" if first else last
+
+
+def _not_to_scale(result: Result, extent: Extent | None) -> list[str]:
+    """Return what is not drawn to scale: the height of the drop, and what is not known."""
+    if result.case.get("plate", {}).get("radius") is not None:
+        return ["the height of the drop"]
+    of_sphere = [] if _knows_radius(result) else ["the sphere, whose radius is not given"]
+    if extent is None:
+        return ["the height of the drop", *of_sphere, "the plate, whose size is not given"]
+    thickness = [] if np.isfinite(extent.thickness) else ["the thickness of the plate, which is not given"]
+    return ["the height of the drop", *of_sphere, "the depth of the supports", *thickness]
 
 
 def drawn_radius(result: Result) -> float:
@@ -50,6 +66,11 @@ def drawn_radius(result: Result) -> float:
     given = result.case.get("sphere", {}).get("radius")
     radius = float(given) if given is not None else touch_height(result)
     return radius if np.isfinite(radius) and radius > 0.0 else _USUAL_RADIUS
+
+
+def _knows_radius(result: Result) -> bool:
+    """Return whether the drawn radius of the sphere is its own; one made in Python that touches nothing is drawn with a usual one."""
+    return result.case.get("sphere", {}).get("radius") is not None or touch_height(result) > 0.0
 
 
 def _contact_point(result: Result) -> tuple[float, float]:
@@ -72,7 +93,7 @@ def _from_the_side(result: Result, extent: Extent | None) -> Panel:
     marks += [
         Line(np.array([at, at]), np.array([0.0, high - radius]), role="dotted"),
         Outline(at + radius * np.cos(_TURN), high + radius * np.sin(_TURN), role="ball"),
-        Label(at - radius, high, f"radius {as_given(radius, 'm')}", "right"),
+        *([Label(at - radius, high, f"radius {as_given(radius, 'm')}", "right")] if _knows_radius(result) else []),
     ]
     beside = at + 1.8 * radius + 0.02 * half
     marks += dimension((beside, 0.0), (beside, high), _drop_words(result), "left")
@@ -112,8 +133,7 @@ def _drop_words(result: Result) -> str:
         down, speed = parts[0], float(np.linalg.norm(parts))
         angle = f" at {np.degrees(np.arccos(down / speed)):.4g}° from the normal" if down < speed else ""
         return f"arrives at {as_given(speed, 'm/s')}{angle}"
-    below = "lower sphere" if result.case.get("plate", {}).get("radius") is not None else "plate"
-    return f"{as_given(start, 'm')} above the {below}"
+    return f"{as_given(start, 'm')} above {level_below(result)}"
 
 
 def _from_above(result: Result, extent: Extent) -> Panel:
@@ -155,8 +175,10 @@ def setup_rows(result: Result) -> list[tuple[str, str]]:
     case = result.case
     if not case:
         return []
-    below = "Plate" if case["plate"].get("radius") is None else "Lower sphere"
-    rows = [("Sphere", _body_words(case["sphere"])), (below, f"{_body_words(case['plate'])}, {support_words(result)}")]
+    rows = [
+        ("Sphere", _body_words(case["sphere"])),
+        (body_below(result).capitalize(), f"{_body_words(case['plate'])}, {support_words(result)}"),
+    ]
     rows.append(("Drop", f"{_drop_words(result)}, gravity {as_given(float(case['drop'].get('gravity', 0.0)), 'm/s2')}"))
     plate: Mapping[str, Any] = case["plate"]
     if (inclination := plate.get("inclination")) is not None:

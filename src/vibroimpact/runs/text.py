@@ -50,7 +50,8 @@ def impact_table_for_terminal(result: Result, width: int) -> RenderableType:
     table = TerminalTable(with_gap(tuple(columns.values()), _FIRST_ROWS) if len(rows) < number else tuple(columns.values()))
     notes = []
     if "energy_lost_J" in columns and "energy_to_vibration_J" in impacts:
-        notes.append(" Energy lost is the energy dissipated in the contact, without the energy of vibration.")
+        friction = "friction and " if "friction_J" in result.energy else ""
+        notes.append(f" Energy lost is the energy dissipated in the contact, without {friction}the energy of vibration.")
     if len(columns) < len(cells):
         notes.append(" A wider terminal shows more columns; impacts.csv has all, in SI units.")
     return Group(table, *(Text(note, style="dim") for note in notes))

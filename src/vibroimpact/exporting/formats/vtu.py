@@ -142,8 +142,8 @@ def _notes(drop: Drop) -> list[str]:
     if drop.oblique is not None:
         notes.append("It moves along the plate, and does not turn; its spin is in the history.")
     if drop.surface:
-        notes.append("The frames are those of the result folder, from the first touch on; plate.pvd is drawn flat: apply Warp By Vector")
-        notes[-1] += " to displacement_m, which is small."
+        notes.append("The frames are those of the result folder, from shortly before the first touch on; plate.pvd is drawn flat:")
+        notes[-1] += " apply Warp By Vector to displacement_m, which is small."
     elif drop.plate_size is None:
         notes.append("The case gives no size of the plate, so the sphere is written alone.")
     elif "plate" in drop.elastic:

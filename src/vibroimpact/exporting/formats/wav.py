@@ -27,7 +27,9 @@ def write(drop: Drop) -> dict[str, bytes]:
         If there is no sensor, or WAV can't represent its rate or its length.
     """
     if not drop.signals:
-        raise InputError(f'"{one_line(drop.name)}" has no sensors, and a WAV file holds the signal of one; add [[sensors]] to the case')
+        elastic = "" if "plate" in drop.elastic else 'an elastic plate (plate.model = "elastic") and '
+        remedy = f"give the case {elastic}[[sensors]]"
+        raise InputError(f'"{one_line(drop.name)}" has no sensors, and a WAV file holds the signal of one; {remedy}')
     return {f"{plain}.wav": _file(drop.signals[name]) for name, plain in plain_names(list(drop.signals)).items()}
 
 

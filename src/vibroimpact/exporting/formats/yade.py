@@ -191,11 +191,13 @@ def _notes(drop: Drop) -> list[str]:
         return notes
     name = "Law2_ScGeom_ViscElPhys_Basic" if _linear(drop) else "Law2_ScGeom_MindlinPhys_Mindlin"
     own = isinstance(law, (Tsuji, KelvinVoigtLaw))
+    several = len(laws_of_impacts(drop)) > 1
+    where = "the speed of each impact of this drop" if several else "the first impact's speed"
     notes.append(
         f"YADE's {name} stands for {law.name}; it {'differs in that it never pulls' if own else 'has another damping'}, so forces within "
-        "the contact differ. Its restitution is the law's at the first impact's speed, and does not depend on the speed."
+        f"the contact differ. Its restitution is the law's at {where}, and with a given damping does not depend on the speed."
     )
-    if len(laws_of_impacts(drop)) > 1:
+    if several:
         notes.append("The damping changes from impact to impact in this script; YADE's laws have one value for all contacts of a material.")
     return notes
 
