@@ -179,6 +179,8 @@ if TYPE_CHECKING:
     from vibroimpact.signals.registry import find_feature as find_feature
     from vibroimpact.structures.mesh import Mesh as Mesh
     from vibroimpact.structures.modal_model import ModalBasis as ModalBasis
+    from vibroimpact.studies.read_sweep import load_sweep as load_sweep
+    from vibroimpact.studies.read_sweep import read_sweep as read_sweep
     from vibroimpact.studies.report.charts import study_charts as study_charts
     from vibroimpact.studies.report.notebook import plot_study as plot_study
     from vibroimpact.studies.report.notebook import study_html as study_html
@@ -186,8 +188,6 @@ if TYPE_CHECKING:
     from vibroimpact.studies.study import Study as Study
     from vibroimpact.studies.study import read_study as read_study
     from vibroimpact.studies.sweep import Sweep as Sweep
-    from vibroimpact.studies.sweep import load_sweep as load_sweep
-    from vibroimpact.studies.sweep import read_sweep as read_sweep
     from vibroimpact.units.reading import convert_units as convert_units
     from vibroimpact.units.reading import to_si as to_si
 
@@ -304,7 +304,7 @@ _HOME = {
     "load_calibration": "calibration.calibrate_case",
     "load_case": "cases.reader",
     "load_recogniser": "recognition.recogniser",
-    "load_sweep": "studies.sweep",
+    "load_sweep": "studies.read_sweep",
     "local_element_deviations": "dynamics.local_element",
     "material_library": "materials",
     "matplotlib_figure": "charts.matplotlib",
@@ -327,7 +327,7 @@ _HOME = {
     "read_restitutions": "calibration.restitutions.restitutions",
     "read_result": "results.folder",
     "read_study": "studies.study",
-    "read_sweep": "studies.sweep",
+    "read_sweep": "studies.read_sweep",
     "rebounds_of": "calibration.bounces.rebounds",
     "recognise": "recognition.recognise",
     "recognition_charts": "recognition.charts",

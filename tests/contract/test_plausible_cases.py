@@ -20,7 +20,7 @@ from vibroimpact.cases.pair import contact_pair
 from vibroimpact.cases.reader import load_table, shipped_cases
 from vibroimpact.cases.slips.find import slips, swept_slips
 from vibroimpact.cases.slips.hertz_estimate import HertzEstimate
-from vibroimpact.studies.sweep import read_sweep
+from vibroimpact.studies.read_sweep import read_sweep
 
 ROOT = Path(__file__).parents[2]
 
@@ -50,7 +50,7 @@ def written_in(source: str) -> Iterator[dict[str, Any]]:
 def said_of(table: dict[str, Any]) -> list[str]:
     """What is taken for a slip in a case, and in the values of a study."""
     alone = {key: value for key, value in table.items() if key != "sweep"}
-    case, given = read_calibration(alone) if "calibrate" in alone else (vi.read_case(alone), True)
+    case, given, *_ = read_calibration(alone) if "calibrate" in alone else (vi.read_case(alone), True)
     found = slips(resolved_case(case), () if given else ("contact.damping_max",))
     if "sweep" in table:
         study = read_sweep(table)

@@ -20,7 +20,7 @@ from vibroimpact.calibration.calibrate_case import read_calibration
 from vibroimpact.calibration.targets import target_of
 from vibroimpact.cases.build import problem_of
 from vibroimpact.measurements.table_file import read_table_file
-from vibroimpact.studies.sweep import read_sweep
+from vibroimpact.studies.read_sweep import read_sweep
 
 HEIGHTS = "impact,rebound_height [mm]\n1,310\n2,190\n3,130\n"
 IMPACTS = "approach_speed_m_s,restitution,restitution_standard_deviation\n1,0.7,0.01\n2,0.65,0.02\n3,0.6,0.02\n"

@@ -277,7 +277,8 @@ class TestExudyn:
             law = find_friction_law("coulomb")(coefficient=0.3, rolling_coefficient=rolling)
             notes = exudyn.FORMAT.notes(told(Hertz(stiffness=STIFFNESS), oblique=Oblique(friction=law)))
             assert (
-                "The input of EXUDYN has no rolling resistance: contact.friction.rolling_coefficient, 0.02, is left out." in notes
+                "This input of EXUDYN is written without rolling resistance: contact.friction.rolling_coefficient, 0.02, is left out."
+                in notes
             ) == said
 
     def test_refuses_friction_that_reverses_the_slip(self) -> None:

@@ -194,8 +194,11 @@ def test_decimal_commas_between_quotes(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("time [s];force [N]\n0,5;1.234\n0,6;1,2\n", 'line 2: "1.234" has a point, and line 2 a decimal comma: the point may group digits'),
-        ("time [s];force [N]\n0,5;1,2\n0,6;1,2\n0,7;1.234\n", 'line 4: "1.234" has a point, and line 2 a decimal comma'),
+        (
+            "time [s];force [N]\n0,5;1.234\n0,6;1,2\n",
+            'line 2: "1.234" has a point, and a number in line 2 a comma: either may group digits',
+        ),
+        ("time [s];force [N]\n0,5;1,2\n0,6;1,2\n0,7;1.234\n", 'line 4: "1.234" has a point, and a number in line 2 a comma'),
         ('time [s],force [N]\n0,"1,234"\n1,"1,2"\n', '"1,234" is not a number; a comma is the decimal point or groups digits there'),
     ],
 )

@@ -146,7 +146,7 @@ def test_a_population_is_computed_and_read(tmp_path: Path) -> None:
     ("change", "words"),
     [
         ({"classes": {"coal": {"over": {"sphere.radius": [0.01]}}}}, "sweep.classes: there is only one class"),
-        ({"classes": {"a": {"over": {"sphere.radius": [0.01]}}, "b": {"over": {"sphere.density": [1.0]}}}}, "unknown key"),
+        ({"classes": {"a": {"over": {"sphere.radius": [0.01]}}, "b": {"over": {"sphere.density": [1.0]}}}}, "no such key is swept"),
         ({"design": "grid", "samples": None}, 'sweep.design: grid has no classes; give design = "population"'),
         ({"classes": None}, "sweep.classes: they are missing; a population has classes"),
         (

@@ -175,6 +175,18 @@ def test_signals_that_are_filled_at_their_ends(tmp_path: Path) -> None:
     np.testing.assert_array_equal(cut.value, signals[1, :30])
 
 
+def test_a_channel_that_is_filled_at_its_end(tmp_path: Path) -> None:
+    """Channels of different lengths share one time."""
+    with h5py.File(tmp_path / "channels.nc", "w") as file:
+        time = file.create_dataset("time", data=np.arange(50) / 1e3)
+        time.attrs["units"] = "s"
+        time.make_scale("time")
+        for name, length in (("long", 50), ("short", 30)):
+            data = file.create_dataset(name, data=np.where(np.arange(50) < length, SIGNAL, np.nan))
+            data.dims[0].attach_scale(time)
+    assert {one.name: len(one.value) for one in vi.read_records(tmp_path / "channels.nc")} == {"long": 50, "short": 30}
+
+
 def test_netcdf_by_xarray(tmp_path: Path) -> None:
     xarray = pytest.importorskip("xarray")
     time = ("time", 0.5 + np.arange(50) / 1e3, {"units": "s"})

@@ -85,7 +85,7 @@ def test_a_description_says_what_follows_what() -> None:
     ("wrong", "words"),
     [
         (table({"drop.speed": SPEED}), r'sweep.over."drop.speed".of: sphere.radius is not swept here'),
-        (table({"drop.speed": {**SPEED, "of": "sphere.radus"}}), "unknown key"),
+        (table({"drop.speed": {**SPEED, "of": "sphere.radus"}}), "no such key is swept"),
         (table({"drop.speed": SPEED, "sphere.radius": RADIUS}, design="grid", samples=None), "in a grid no key follows another"),
         (table({"drop.speed": SPEED, "sphere.radius": RADIUS}, design="saltelli", samples=8), "in a saltelli no key follows another"),
         (table({"drop.speed": {**SPEED, "of": "drop.speed", "at": "1 m/s"}}), "drop.speed follows another key itself"),

@@ -768,5 +768,5 @@ def test_charts_of_a_shaken_plate(law: str) -> None:
 
 
 def test_no_law_is_calibrated_on_a_plate_that_moves() -> None:
-    with pytest.raises(vi.InputError, match=r"plate\.motion: .* rebound from a plate at rest"):
+    with pytest.raises(vi.InputError, match=r"plate\.motion: only impacts on a plate at rest"):
         vi.calibrate_case(vi.read_calibration({**CASE, "calibrate": {"target": {"restitution": 0.7}}}))

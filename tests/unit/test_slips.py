@@ -20,9 +20,9 @@ from vibroimpact.cases.slips.hertz_estimate import HertzEstimate
 from vibroimpact.cli import app
 from vibroimpact.results.result import result_of
 from vibroimpact.studies.compute_study import compute_study
+from vibroimpact.studies.read_sweep import read_sweep
 from vibroimpact.studies.report.tables import doubt_sentences
 from vibroimpact.studies.study import read_study
-from vibroimpact.studies.sweep import read_sweep
 from vibroimpact.studies.unit_slips import axis_slips
 
 STEEL = {"density": 7850, "youngs_modulus": "210 GPa", "poissons_ratio": 0.3}

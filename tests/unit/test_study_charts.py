@@ -29,12 +29,12 @@ from vibroimpact.report.page import palette
 from vibroimpact.studies import compute_study as computing
 from vibroimpact.studies.chunk_file import ChunkResult
 from vibroimpact.studies.drop_variables import OUTCOME
+from vibroimpact.studies.read_sweep import read_sweep
 from vibroimpact.studies.report.charts import study_charts
 from vibroimpact.studies.report.outputs import study_outputs
 from vibroimpact.studies.report.sensitivity import sensitivity_of
 from vibroimpact.studies.run_sweep import run_sweep
 from vibroimpact.studies.study import Study, read_study
-from vibroimpact.studies.sweep import read_sweep
 
 LOSSY = {"law": "lankarani-nikravesh", "restitution": 0.7}
 RADII = {"from": "5 mm", "to": "50 mm", "scale": "log"}

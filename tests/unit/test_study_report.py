@@ -22,6 +22,7 @@ from vibroimpact.remake import remake_report
 from vibroimpact.studies import compute_study as computing
 from vibroimpact.studies.chunk_file import ChunkResult
 from vibroimpact.studies.drop_variables import OUTCOME
+from vibroimpact.studies.read_sweep import read_sweep
 from vibroimpact.studies.report.axes import study_axes
 from vibroimpact.studies.report.outputs import drawn_outputs, output_names, sampled_output, study_outputs
 from vibroimpact.studies.report.scales import key_axis, places
@@ -30,7 +31,6 @@ from vibroimpact.studies.report.tables import percentiles_table, sensitivity_tab
 from vibroimpact.studies.report.text import study_summary
 from vibroimpact.studies.run_sweep import run_sweep
 from vibroimpact.studies.study import Study, read_study
-from vibroimpact.studies.sweep import read_sweep
 
 LOSSY = {"law": "lankarani-nikravesh", "restitution": 0.7}
 RADII = {"from": "5 mm", "to": "50 mm", "scale": "log"}

@@ -82,7 +82,7 @@ def test_a_sensor_is_mounted_once_on_a_plate() -> None:
     [
         ({"sensors.a2.rate": [1e3]}, 'there is no sensor called "a2"; there are a1, g.2.'),
         ({"sensors.a1.positoin.x": [0.1]}, 'such as "sensors.a1.position". Did you mean "sensors.a1.position.x"?'),
-        ({"sensors.a1.name": ["b"]}, 'sweep.over."sensors.a1.name": unknown key'),
+        ({"sensors.a1.name": ["b"]}, 'sweep.over."sensors.a1.name": no such key is swept'),
         (
             {"sensors.a1.rate": [20e3, 10e3]},
             r"sensors.a1: it would give voltage \[V\] at 10000 Hz, and voltage \[V\] at 20000 Hz by the case",

@@ -46,8 +46,8 @@ from vibroimpact.runs.case_explained import case_explained
 from vibroimpact.runs.text import result_summary, versions_table
 from vibroimpact.studies.compute_study import compute_study
 from vibroimpact.studies.explain_sweep import explain_sweep
+from vibroimpact.studies.read_sweep import read_sweep
 from vibroimpact.studies.report.text import study_summary
-from vibroimpact.studies.sweep import read_sweep
 
 _NUMBER = re.compile(r"(?<![\w.])[-\u2212+]?\d+(?:\.\d+)?(?:·10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+|e[-+]?\d+)?(?![\w.]*\d)")
 _WIDTHS = (60, 80, 120, 160)

@@ -157,5 +157,5 @@ def test_what_can_not_be_recorded() -> None:
     with pytest.raises(vi.InputError, match="lower rate"):
         response.signals(Sensor("a", rate=1e12))
     rigid = vi.simulate(drop_on(HERTZ, sphere=plate, duration=0.02))
-    with pytest.raises(vi.InputError, match="rigid"):
+    with pytest.raises(vi.InputError, match="neither modes nor supports that move"):
         rigid.signals(Sensor("a"))

@@ -27,7 +27,7 @@ AGAINST = Against(
     "solid elements refined at edges and rims, extrapolated",
     "consistency",
     "plates, spheres and modes",
-    "default meshes against refined meshes of another element of this package; no external reference",
+    "default meshes against meshes of bricks refined at edges and rims; no external reference",
 )
 
 

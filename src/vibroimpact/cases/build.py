@@ -72,7 +72,8 @@ def check_case(case: CaseTable) -> None:
     if case.sensors and case.plate.model == "rigid" and case.plate.motion is None:
         if case.plate.radius is not None:
             raise InputError("sensors are on a plate, and a sphere takes its place; leave out the sensors, or plate.radius", "sensors")
-        remedy = 'give it model = "elastic" or motion, or leave out the sensors'
+        movable = not any(sensor.instrument in AT_REST for sensor in case.sensors)
+        remedy = f'give it model = "elastic"{" or motion" if movable else ""}, or leave out the sensors'
         raise InputError(f"the plate is rigid and at rest, so that its points do not move; {remedy}", "sensors")
     for number, sensor in enumerate(case.sensors):
         if case.plate.motion is not None and sensor.instrument in AT_REST:

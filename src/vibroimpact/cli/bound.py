@@ -41,8 +41,8 @@ def bound(
     from vibroimpact.bounds.text import bound_summary
     from vibroimpact.report.progress import patient_progress
     from vibroimpact.results.folder import check_free
+    from vibroimpact.studies.read_sweep import load_sweep
     from vibroimpact.studies.study import read_study
-    from vibroimpact.studies.sweep import load_sweep
 
     target = Path(f"{stem(population)}-bound") if output is None else output
     check_free(target, force=force)

@@ -43,7 +43,7 @@ def compare(
         typer.Option(
             "--achieving",
             metavar="E",
-            help="Tune each law to this restitution at the speed of the first impact, without gravity and losses in a liquid.",
+            help="Tune each law to this restitution between rigid bodies, at the first speed, without gravity and losses in a liquid.",
         ),
     ] = None,
     output: Annotated[

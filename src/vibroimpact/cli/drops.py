@@ -76,7 +76,7 @@ def check(case: CaseArgument, changes: Changes = None, as_json: Json = False) ->
     from vibroimpact.runs.case_document import case_document
     from vibroimpact.runs.case_explained import case_explained
     from vibroimpact.studies.explain_sweep import explain_sweep, sweep_document
-    from vibroimpact.studies.sweep import read_sweep
+    from vibroimpact.studies.read_sweep import read_sweep
 
     others = settings_of(changes)
     table = prefix_errors(case, lambda: load_table(case, others))

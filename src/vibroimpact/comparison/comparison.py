@@ -76,8 +76,8 @@ def compare_laws(
         Parameters: "KEY" for every law that has it, "LAW.KEY" for one; the others come from the case where its law has
         one of the same name and unit.
     achieving : float, optional
-        Give each law the value of its free parameter with which it achieves this restitution [-] at the speed of the first impact, without
-        gravity, and without the losses in a liquid.
+        Give each law the value of its free parameter with which it achieves this restitution [-] at the speed of the first impact, between
+        rigid bodies, without gravity, and without the losses in a liquid.
     progress : callable, optional
         Called with the fraction done, in [0, 1].
 

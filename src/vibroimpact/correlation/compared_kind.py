@@ -77,7 +77,8 @@ def _remark(path: str | Path, contents: Contents, kind: str) -> str:
     records = _counted(len(contents.records), "record over time", "records over time")
     responses = _counted(contents.responses, "frequency response", "frequency responses")
     other = KINDS[1 - KINDS.index(kind)]
-    return f"{path} has {records} and {responses}: the {kind} are compared, and the {other} by --compare {other}"
+    how = f"by --compare {other}, without --window and without files of {kind} alone"
+    return f"{path} has {records} and {responses}: the {kind} are compared, and the {other} {how}"
 
 
 def _counted(number: int, one: str, several: str) -> str:

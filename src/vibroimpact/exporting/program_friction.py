@@ -51,7 +51,10 @@ def friction_in(drop: Drop, program: str, stands_for: Mapping[str, str]) -> Fric
     if law is None:
         return None
     if law.name not in stands_for:
-        raise InputError(f"{law.name} can't be written for {program}; {', '.join(stands_for)} can", "contact.friction.law")
+        elastic = all(issubclass(find_friction_law(name), CompliantFriction) for name in stands_for.values())
+        of_spring = ", with a contact law whose spring has the exponent 1.5" if elastic else ""
+        others = f"{', '.join(stands_for)} can{of_spring}"
+        raise InputError(f"{law.name} can't be written for {program}; {others}", "contact.friction.law")
     kind = find_friction_law(stands_for[law.name])
     return kind(**{item.name: getattr(law, item.name) for item in fields(kind)})
 
@@ -97,7 +100,7 @@ def friction_notes(drop: Drop, program: str, written: FrictionLaw | None) -> lis
         )
     if law.rolling_coefficient:
         given = f"contact.friction.rolling_coefficient, {law.rolling_coefficient:g},"
-        notes.append(f"The input of {program} has no rolling resistance: {given} is left out.")
+        notes.append(f"This input of {program} is written without rolling resistance: {given} is left out.")
     if isinstance(law, CompliantFriction) and drop.oblique.spin[2]:
         notes.append(f"{program} leaves the spin about the normal as it is.")
     return notes

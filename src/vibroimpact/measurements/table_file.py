@@ -208,7 +208,7 @@ class _DecimalPoint:
             self.either = next(((number, cell) for cell in cells if "." in cell and is_either(cell)), self.either)
         if self.comma and self.either[0]:
             at, cell = self.either
-            words = f"{shown(cell.strip())} has a point, and line {self.comma} a decimal comma: the point may group digits"
+            words = f"{shown(cell.strip())} has a point, and a number in line {self.comma} a comma: either may group digits"
             raise InputError(f"line {at}: {words}; write all numbers with the same decimal sign, and do not group digits")
 
 

@@ -45,7 +45,7 @@ class Factors:
         permuted = _without_rounding(matrix)[order][:, order].tocsc()
         if permuted.nnz > _MAX_ENTRIES:
             raise InputError(
-                f"the matrix of {len(order)} degrees of freedom has more entries than the solver can number; use larger elements"
+                f"the factors for {len(order)} degrees of freedom may have more entries than the solver can number; use larger elements"
             )
         try:
             self._factors = splu(permuted, permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True})

@@ -8,7 +8,7 @@ from typing import Any
 
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.reader import load_table, prefix_errors
-from vibroimpact.studies.sweep import read_sweep
+from vibroimpact.studies.read_sweep import read_sweep
 
 
 def load_drop(source: str | PathLike[str], drop: int, changes: Mapping[str, Any] | None = None) -> Case:

@@ -18,7 +18,7 @@ from vibroimpact.calibration.single_impacts import AT_ONCE, oblique_impacts
 from vibroimpact.calibration.tunables import law_parameter
 from vibroimpact.calibration.uncertainty import with_nearest_bound
 from vibroimpact.contact.friction.law import FrictionLaw
-from vibroimpact.contact.law import ContactLaw
+from vibroimpact.contact.law import ContactLaw, InstantaneousLaw
 from vibroimpact.dynamics.oblique.statement import Oblique
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.errors import InputError, choices
@@ -107,7 +107,8 @@ def friction_parameters(problem: Problem, names: Sequence[str]) -> FrictionParam
     """
     law = None if problem.oblique is None else problem.oblique.friction
     if law is None:
-        raise InputError('the case has no friction; give contact.friction a law, such as { law = "mdr" }', "parameter")
+        example = "coulomb" if isinstance(problem.laws[0], InstantaneousLaw) else "mdr"
+        raise InputError(f'the case has no friction; give contact.friction a law, such as {{ law = "{example}" }}', "parameter")
     known = [f"{FRICTION}{item.name}" for item in fields(law)]
     for name in names:
         if name not in known:

@@ -15,7 +15,7 @@ class Flores(HystereticLaw):
 
     .. math:: F = K \delta^n \left[1 + \frac{8 (1 - e)}{5 e}\, \dot\delta / \dot\delta_0\right]
 
-    with :math:`\dot\delta_0` the speed at the first touch of this impact.
+    with :math:`\dot\delta_0` the closing speed at touch; each further contact of an impact has its own.
 
     Notes
     -----

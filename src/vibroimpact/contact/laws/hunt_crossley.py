@@ -21,7 +21,7 @@ class HuntCrossley(HystereticLaw):
 
     .. math:: F = K \delta^n (1 + d\, \dot\delta)
 
-    with :math:`\dot\delta_0` the speed at the first touch of this impact.
+    with :math:`\dot\delta_0` the closing speed at touch; each further contact of an impact has its own.
 
     Raises
     ------

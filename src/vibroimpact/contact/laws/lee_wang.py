@@ -14,7 +14,7 @@ class LeeWang(HystereticLaw):
 
     .. math:: F = K \delta^n \left[1 + \tfrac34 (1 - e)\, \dot\delta / \dot\delta_0\right]
 
-    with :math:`\dot\delta_0` the speed at the first touch of this impact.
+    with :math:`\dot\delta_0` the closing speed at touch; each further contact of an impact has its own.
 
     Notes
     -----

@@ -15,7 +15,7 @@ class Safaeifar(HystereticLaw):
 
     .. math:: F = K \delta^n \left[1 + \frac{5 (1 - e)}{4 e}\, \dot\delta / \dot\delta_0\right]
 
-    with :math:`\dot\delta_0` the speed at the first touch of this impact.
+    with :math:`\dot\delta_0` the closing speed at touch; each further contact of an impact has its own.
 
     Notes
     -----

@@ -10,6 +10,7 @@ from typing import Any
 import h5py
 import numpy as np
 
+from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError
 from vibroimpact.files.check_sums import DamageError, recorded_digest
 from vibroimpact.files.damaged_part import check_hdf5
@@ -100,14 +101,18 @@ def _records(data: h5py.Dataset, rate: float, start: float) -> Iterator[Record]:
     *outer, samples = data.shape
     check_memory(_COPIES * 8.0 * max(samples * prod(outer[1:]), 1), f"the signals of variable {name} need", NETCDF.smaller)
     if not outer:
-        yield Record(name, factor * read_array(data), rate, unit, start)
+        yield Record(name, _to_its_end(factor * read_array(data).astype(float)), rate, unit, start)
         return
     step = max(1, _AT_ONCE // max(1, samples * prod(outer[1:])))
     for first in range(0, outer[0], step):
         for value in factor * read_array(data, slice(first, first + step)).astype(float).reshape(-1, samples):
-            # shorter signals of a table are filled with NaN at their ends
-            number = samples - int(np.argmin(np.isnan(value[::-1]))) if not np.isnan(value).all() else 0
-            yield Record(name, value[:number], rate, unit, start)
+            yield Record(name, _to_its_end(value), rate, unit, start)
+
+
+def _to_its_end(value: Floats) -> Floats:
+    """Return a signal without what fills the place of a shorter one: NaN at its end."""
+    known = np.flatnonzero(~np.isnan(value))
+    return value[: known[-1] + 1 if known.size else 0]
 
 
 def _text(value: Any) -> str:
