@@ -88,7 +88,7 @@ def test_a_window_after_the_last_impact_asks_for_more_impacts() -> None:
     sweep = {"over": {"drop.height": [0.1]}, "keep": ["signals"], "window": {"length": 0.25}}
     study = vi.read_sweep({**case, "sweep": sweep})
     failures = compute_points(study.table, ("signals",), 0, study.plan.points(0, 1), study.window).failures
-    assert "as the run ended before run.duration; allow more run.impacts" in failures[0]
+    assert "as the run ended before run.duration; where run.impacts ended it, allow more" in failures[0]
 
 
 def table(**sweep: Any) -> dict[str, Any]:

@@ -338,7 +338,9 @@ def test_a_second_sweep_in_a_folder_is_refused(tmp_path: Path) -> None:
         for options in ({"resume": True}, {"force": True}, {}):
             with pytest.raises(vi.InputError, match="another sweep is at work in this folder"):
                 compute_study(sweep, folder, **options)  # type: ignore[arg-type]
-    with pytest.raises(vi.InputError, match=r"a study is there already; continue it with --resume, replace it with --force"):
+    with pytest.raises(
+        vi.InputError, match=r"a study is there already; continue it with --resume if it is this one, replace it with --force"
+    ):
         compute_study(sweep, folder)
     compute_study(sweep, folder, resume=True)
 

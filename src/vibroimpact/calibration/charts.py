@@ -74,7 +74,9 @@ def _parameter_chart(found: Calibration) -> Chart:
             marks.append(Band(smooth, low, high, f"{100.0 * found.confidence:g} % {of_what}", "band"))
         name = ("constant", "line")[function.degree] if function.degree < 2 else f"polynomial of degree {function.degree}"
         marks.append(Line(smooth, fitted, name, "fit"))
-        fitted_too = f", and the {name} fitted to them"
+        of_impacts = np.allclose([function.slowest, function.fastest], [speeds.min(), speeds.max()])
+        fitted_to = "them" if of_impacts else "the exact values at calibrate.speeds"
+        fitted_too = f", and the {name} fitted to {fitted_to}"
     if found.curve is not None:
         marks.append(Line(*found.curve, "exact at each speed"))
     low, high = (None, None) if found.intervals is None else found.intervals.T

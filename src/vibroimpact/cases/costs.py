@@ -131,7 +131,10 @@ def _restitution(case: Case) -> float:
 
 def _impact_costs(case: Case) -> Iterator[Cost]:
     number = impacts_expected(case)
-    vibrate = deforms(case)  # energy lost to vibration only reduces the number of impacts
+    vibrate = deforms(case)
+    # energy lost to vibration reduces the number of impacts until the sphere is at rest, and shortens the flights within a duration
+    most = "up to " if vibrate and case.run.duration is None else ""
+    more = ", or more as vibration shortens the flights" if vibrate and case.run.duration is not None else ""
     points = min(_POINTS * number, MOST_POINTS)
     less = "give fewer run.impacts"
     if case.run.duration is not None:
@@ -142,7 +145,7 @@ def _impact_costs(case: Case) -> Iterator[Cost]:
         (_VIBRATING_SECONDS if vibrate else _IMPACT_SECONDS) * number,
         _IMPACT_BYTES * number + _POINT_BYTES * points,
         _IMPACT_ON_DISK * number + _POINT_ON_DISK * points,
-        f"{'up to ' if vibrate else ''}about {float(f'{number:.2g}'):,.0f} impact{'s' if number > 1 else ''}",
+        f"{most}about {float(f'{number:.2g}'):,.0f} impact{'s' if number > 1 else ''}{more}",
         less,
     )
 

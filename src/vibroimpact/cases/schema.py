@@ -267,7 +267,7 @@ class SensorSection(Section):
     @model_validator(mode="after")
     def _check_sensor(self) -> SensorSection:
         if not isinstance(self.direction, str) and not any(self.direction):
-            raise InputError("it has no length; give x, y and z of the direction, such as [0, 0, 1]", "direction")
+            raise InputError("it has no length; give x, y and z of the direction, such as [1, 0, 0]", "direction")
         instrument = self._instrument()
         if isinstance(instrument, StrainGauge):
             self._lay_in_face()

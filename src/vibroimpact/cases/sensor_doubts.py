@@ -21,7 +21,13 @@ _LOW = 0.05  # part of the power of a microphone at frequencies that need a baff
 _ENOUGH = 1.2  # recommended range over the peak magnitude
 
 
-def sensor_doubts(case: ResolvedCase, signals: Mapping[str, Signal], highest: float, duration: float) -> list[str]:
+def sensor_doubts(
+    case: ResolvedCase,
+    signals: Mapping[str, Signal],
+    highest: float,
+    duration: float,
+    first_contact: tuple[float, float] | None = None,
+) -> list[str]:
     """Return a sentence for each doubt about the signals of sensors.
 
     Parameters
@@ -34,6 +40,8 @@ def sensor_doubts(case: ResolvedCase, signals: Mapping[str, Signal], highest: fl
         Frequency of the highest mode of the plate [Hz].
     duration : float
         Duration of the first contact [s]; NaN if there is none.
+    first_contact : tuple of two floats, optional
+        Its x and y on the plate [m]; by default `drop.position`.
 
     Examples
     --------
@@ -51,7 +59,7 @@ def sensor_doubts(case: ResolvedCase, signals: Mapping[str, Signal], highest: fl
         tuple[str, str], dict[str, float]
     ] = {}  # sensors with the same cause and remedy share a sentence: relative errors by their names
     for name, signal in signals.items():
-        apart = _distance_in_thicknesses(case, places.get(name))
+        apart = _distance_in_thicknesses(case, places.get(name), first_contact)
         if apart < _NEAR:
             part = _finite_or_zero(signal.uncertainty) + _thickness_error(case, signal, duration)
             cause = f"{apart:.2g} thicknesses from the contact, the motion through the thickness and the modes left out"
@@ -129,7 +137,7 @@ def _remedy(case: ResolvedCase, signal: Signal, highest: float) -> str:
     return f'ask for plate.max_frequency = "{float(f"{wanted / 1e3:.3g}"):g} kHz" or so{instead}, or for a lower rate'
 
 
-def _distance_in_thicknesses(case: ResolvedCase, place: Any) -> float:
+def _distance_in_thicknesses(case: ResolvedCase, place: Any, contact: tuple[float, float] | None) -> float:
     """Return the in-plane distance of a sensor from the contact over the plate thickness; infinite if not known, or without plate elements.
 
     A rigid plate does not deform, and solid elements have the motion through the thickness.
@@ -145,7 +153,7 @@ def _distance_in_thicknesses(case: ResolvedCase, place: Any) -> float:
         or "file" in mesh
     ):
         return math.inf
-    return math.dist(place, case["drop"]["position"]) / float(size[2])
+    return math.dist(place, case["drop"]["position"] if contact is None else contact) / float(size[2])
 
 
 def _thickness_error(case: ResolvedCase, signal: Signal, duration: float) -> float:

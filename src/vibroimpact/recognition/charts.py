@@ -67,7 +67,8 @@ def _scores_chart(found: Recognition) -> Chart:
         bound = f" Line: the Bayes error {counted}; a lower error means further information, a leak, or chance."
     caption = (
         f"Error on test signals: with all signals of a {found.group} in either the training or the test data, and with signals split at "
-        f"random. The difference is the optimistic bias of the random split. Thin lines: 95 % intervals, by draws of {found.group}s."
+        f"random. The difference is the optimistic bias of the random split. Thin lines: 95 % intervals, which count {found.group}s, not "
+        "signals."
         f"{bound}"
     )
     return Chart("scores", "Classification errors and optimism", ((panel,),), caption, 0.9 + 0.36 * len(names))

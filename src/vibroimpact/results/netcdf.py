@@ -147,7 +147,11 @@ def write_deflection(file: h5py.File, deflection: Deflection | None) -> None:
         dimension.attach_scale(scale)
     for name, values, meaning in (
         ("sphere_position_m", deflection.sphere_position, "height of the sphere's centre above the plate's upper surface at rest"),
-        ("contact_deflection_m", deflection.contact_deflection, "displacement of the plate at the contact point, upwards"),
+        (
+            "contact_deflection_m",
+            deflection.contact_deflection,
+            "displacement of the plate where the sphere touches it, or will touch it next, upwards",
+        ),
     ):
         data = new_array(group, name, values, **PACKED)
         data.dims[0].attach_scale(scales[0])

@@ -113,7 +113,15 @@ class Result:
         found = doubts(self.case, self._seen, aside)
         found += str(self.deformation.get("doubts", "")).splitlines()  # about the meshes
         highest = max(self.frequencies("plate"), default=math.nan)
-        return found + sensor_doubts(self.case, self.signals, highest, float(self._seen.duration))
+        return found + sensor_doubts(self.case, self.signals, highest, float(self._seen.duration), self._first_contact())
+
+    def _first_contact(self) -> tuple[float, float] | None:
+        """Return x and y of the first contact on the plate [m], of a sphere that moves along it."""
+        for columns in (("place_on_plate_x_m", "place_on_plate_y_m"), ("position_x_m", "position_y_m")):
+            if columns[0] in self.impacts and len(self.impacts[columns[0]]):
+                x, y = (float(self.impacts[column][0]) for column in columns)
+                return x, y
+        return None
 
     @property
     def _seen(self) -> DropSummary:

@@ -123,8 +123,8 @@ def support_at(structure: Structure, supports: Sequence[Support], spot: Spot) ->
     if len(near) > 1:
         both = " and ".join(supports[number].description for number in near)
         raise InputError(
-            f"the held node next to ({place[0]:g}, {place[1]:g}) m belongs to {both}; "
-            "give a place that is an element or more away from where they meet"
+            f"({place[0]:g}, {place[1]:g}) m is as near to a node that is held by one as to that of another of {both}; "
+            "give a place that is nearer to one of them by an element or more"
         )
     return near[0]
 

@@ -117,7 +117,8 @@ def _create(folder: Path, sweep: Sweep, memory: float, *, force: bool) -> None:
     if is_held(folder):
         raise InputError(busy(folder))
     if is_study(folder) and not force:
-        raise InputError(f"{folder}: a study is there already; continue it with --resume, replace it with --force, or name another folder")
+        remedy = "continue it with --resume if it is this one, replace it with --force, or name another folder"
+        raise InputError(f"{folder}: a study is there already; {remedy}")
     with new_folder(folder, force=force) as working:
         (working / STUDY).write_text(study_toml(sweep.whole_table), encoding="utf-8")
         (working / FOLDER).mkdir()
@@ -150,10 +151,12 @@ def _check_same(ledger: Ledger, folder: Path, sweep: Sweep) -> None:
     for key, name in (("version", "vibroimpact"), ("numpy", "NumPy")):
         if facts.get(key) != now[key]:
             words = f"this study was begun with {name} {facts.get(key)}, and this is {now[key]}"
-            raise InputError(f"{folder}: {words}; go on with that version, or begin anew with --force")
+            raise InputError(f"{folder}: {words}; go on with that version, or begin anew with --force in place of --resume")
     if facts.get("digest") != now["digest"]:
         words = "the study has changed since it was begun here: its case, its points, its files or what is kept"
-        raise InputError(f"{folder}: {words}; {STUDY} in it is what was begun; begin anew with --force, or in another folder")
+        raise InputError(
+            f"{folder}: {words}; {STUDY} in it is what was begun; begin anew with --force in place of --resume, or in another folder"
+        )
 
 
 def _invalidate_damaged(ledger: Ledger, folder: Path, tell: Tell | None) -> None:

@@ -64,6 +64,8 @@ class Window:
         if begin + length > count:
             words = f"the signal ends at {count / rate:.4g} s, before the window does, at {(begin + length) / rate:.4g} s"
             if ended:
-                raise ComputationError(f"{words}, as the run ended before run.duration; allow more run.impacts, or keep a shorter part")
+                raise ComputationError(
+                    f"{words}, as the run ended before run.duration; where run.impacts ended it, allow more; else keep a shorter part"
+                )
             raise ComputationError(f"{words}; give a longer run.duration")
         return begin, begin + length

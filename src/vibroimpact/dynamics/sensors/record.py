@@ -104,7 +104,7 @@ def _check(problem: Problem, sensors: Sequence[Sensor], end: float) -> None:
             whose, remedy = "of all sensors", "ask for a lower rate or a shorter run"
             if rate != sensor.rate:
                 whose = f'by which the clipping of the sensor "{sensor.name}" is followed'
-                remedy = "ask for a shorter run or a lower rate, or leave out its range"
+                remedy = "ask for a shorter run, or leave out its range or its resonance"
             raise InputError(f"{count:.3g} samples, {whose}, are more than {MOST_SAMPLES:.0e}; {remedy}", "sensors")
 
 
