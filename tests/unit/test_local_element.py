@@ -72,6 +72,7 @@ def test_contacts_that_end_a_step_at_the_penetration_depth_go_on_from_it(heights
         assert len(vi.simulate(vi.read_case(case)).impacts["time_s"]) == 4
 
 
+@pytest.mark.slow  # soft elements ring for long
 def test_a_reading_in_the_wrong_unit_is_not_said_to_leave_a_range_of_nan(problem: vi.Problem) -> None:
     with pytest.raises(
         vi.InputError, match=r"no local element was found that gives both a largest force of 0\.001 N and a rebound of 0\.2 m"
