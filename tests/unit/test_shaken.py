@@ -148,6 +148,7 @@ def test_a_run_that_ends_in_a_ride_ends_on_time() -> None:
     assert response.end_time[0] == 0.121
     last = response.at(0.121)
     assert last["position_m"] - 0.01 == pytest.approx(last["surface_m"], abs=1e-15)
+    assert last["indentation_m"] == 0.0
     touch = float(response.impacts["time_s"][-1])
     assert response.impacts["rebound_height_m"][-1] == pytest.approx(0.01 + response.problem.surface(touch)[0], abs=1e-12)
 
@@ -160,6 +161,7 @@ def test_a_hard_ball_rides_on_a_tabulated_motion(tmp_path: Path) -> None:
     assert response.outcomes == (vi.Outcome.REST_SPEED,)
     assert response.end_time[0] == pytest.approx(2.0)
     assert response.energy["closure_relative"] <= 1e-9
+    assert not np.any(response.at(np.linspace(1.5, 2.0, 50))["indentation_m"])
 
 
 def test_without_gravity_a_sphere_leaves_a_plate_that_moves() -> None:

@@ -30,14 +30,15 @@ def rigid_history(problem: Problem, segments: Timeline, number: int, times: Floa
     segment, mass, gravity = segments[number], float(problem.sphere.mass), float(problem.net_gravity)
     gap, velocity, force, stored, lost, plastic = segment.at(times)
     lost_before, plastic_before, drive_before = segments.spent[number]
-    resting, flying = isinstance(segment, RestSegment), isinstance(segment, FlightSegment)
+    resting = isinstance(segment, RestSegment)
+    indents = not isinstance(segment, FlightSegment | RideSegment)  # a hard sphere that rides does not, and the plate moves under it
     found = {
         "time_s": segment.start + times,
         "position_m": float(problem.sphere.contact_offset) + gap,
         "velocity_m_s": velocity,
         "acceleration_m_s2": np.zeros_like(times) if resting else force / mass - gravity,
         "force_N": force,
-        "indentation_m": np.zeros_like(times) if flying else -gap,
+        "indentation_m": -gap if indents else np.zeros_like(times),
         "kinetic_J": 0.5 * mass * velocity**2,
         "potential_J": mass * gravity * gap,
         "contact_elastic_J": stored,
