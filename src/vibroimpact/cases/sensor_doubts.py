@@ -133,8 +133,8 @@ def _remedy(case: ResolvedCase, signal: Signal, highest: float) -> str:
     if signal.sensor.filter == "none":
         return 'take filter = "sigma-delta", or more modes'
     wanted = max(signal.sensor.rate, 2.0 * highest if signal.sensor.rate <= highest else 0.0)
-    instead = ", in place of plate.modes" if "modes" in case.get("plate", {}) else ""
-    return f'ask for plate.max_frequency = "{float(f"{wanted / 1e3:.3g}"):g} kHz" or so{instead}, or for a lower rate'
+    change = "replace plate.modes by" if "modes" in case.get("plate", {}) else "give"
+    return f'{change} plate.max_frequency = "{float(f"{wanted / 1e3:.3g}"):g} kHz" or so, or a lower rate'
 
 
 def _distance_in_thicknesses(case: ResolvedCase, place: Any, contact: tuple[float, float] | None) -> float:

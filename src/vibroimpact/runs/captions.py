@@ -144,11 +144,12 @@ def _vibration(result: Result) -> str:
         bodies[f"the {kind} of the {body_below(result)}"] = of_plate
     if not bodies:
         return ""
+    where = f"the {kind} of both" if len(bodies) > 1 else next(iter(bodies))
     names = [name for entries in bodies.values() for name in entries if name in result.energy]
     still = sum(abs(result.energy[name]) for name in names)
     left = energy_text(result, *names) if still > least else f"less than {text(least, 'J', 1)}"
     damped = f"The damping of the bodies dissipated {energy_text(result, 'sphere_damping_J', 'plate_damping_J')}, and "
-    remains = f"{left} remains in {' and '.join(bodies)}."
+    remains = f"{left} remains in {where}."
     return f" {damped}{remains}" if result.peaks else f" At the end {remains}"
 
 
