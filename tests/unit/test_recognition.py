@@ -443,7 +443,7 @@ def test_plates_that_were_never_trained_on(folder: Path) -> None:
     assert found.groups == 3
     assert {one.key for one in found.unseen} >= {"drop.height"}
     with pytest.raises(
-        vi.InputError, match="coal is in 3 plates, too few for 5 folds; give signals of 5 plates or more, or ask for 3 folds"
+        vi.InputError, match="coal is in 3 plates, too few for 5 folds; give signals of it from 5 plates or more, or ask for 3 folds"
     ):
         vi.recognise(folder, group="plate", folds=5)
 
