@@ -130,20 +130,20 @@ class Session:
     async def _compute(self, message: Message) -> None:
         loop, told = asyncio.get_running_loop(), [0.0]
 
+        def show(what: str, part: float = 0.0) -> None:
+            asked = self._wanted or message  # modes and compiled code are also for the case that was asked for last
+            asyncio.run_coroutine_threadsafe(self._tell("progress", asked.number, {"what": what, "part": part}), loop)
+
         def tell(what: str, part: float) -> None:
             if self._stop.is_set():
                 raise GivenUp
             self._stage = what
             if loop.time() - told[0] > _SECONDS_BETWEEN:
                 told[0] = loop.time()
-                asked = self._wanted or message  # modes are computed for the case that was asked for last
-                asyncio.run_coroutine_threadsafe(self._tell("progress", asked.number, {"what": what, "part": part}), loop)
-
-        def tell_compiling(sentence: str) -> None:
-            asyncio.run_coroutine_threadsafe(self._tell("progress", message.number, {"what": sentence, "part": 0.0}), loop)
+                show(what, part)
 
         told[0] = loop.time() + _SECONDS_BETWEEN  # what is done at once needs no progress
-        with heard_by(tell_compiling):
+        with heard_by(show):
             state, answer = await asyncio.to_thread(_answered, message, tell)
         if message.content["detail"] == "full":
             self._last = state

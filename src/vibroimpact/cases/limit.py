@@ -80,6 +80,17 @@ def two_digits(value: float) -> str:
     return f"{float(f'{value:.2g}'):g}"
 
 
+def in_kilohertz(frequency: float) -> str:
+    """Return a frequency [Hz] in kHz, in three significant digits, as a case takes it.
+
+    Examples
+    --------
+    >>> in_kilohertz(16420.0), in_kilohertz(1.2e6)
+    ('16.4 kHz', '1200 kHz')
+    """
+    return f"{float(f'{frequency / 1e3:.3g}'):g} kHz"
+
+
 def percent_less(part: float) -> str:
     """Return an estimated relative loss in per cent, with two significant digits: 0.135 is -14 %.
 

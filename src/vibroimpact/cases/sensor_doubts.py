@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from vibroimpact.cases.limit import two_digits
+from vibroimpact.cases.limit import in_kilohertz, two_digits
 from vibroimpact.dynamics.sensors.electronics import Converter
 from vibroimpact.dynamics.sensors.recording import Signal
 from vibroimpact.resolved_case import ResolvedCase
@@ -134,7 +134,7 @@ def _remedy(case: ResolvedCase, signal: Signal, highest: float) -> str:
         return 'take filter = "sigma-delta", or more modes'
     wanted = max(signal.sensor.rate, 2.0 * highest if signal.sensor.rate <= highest else 0.0)
     change = "replace plate.modes by" if "modes" in case.get("plate", {}) else "give"
-    return f'{change} plate.max_frequency = "{float(f"{wanted / 1e3:.3g}"):g} kHz" or so, or a lower rate'
+    return f'{change} plate.max_frequency = "{in_kilohertz(wanted)}" or so, or a lower rate'
 
 
 def _distance_in_thicknesses(case: ResolvedCase, place: Any, contact: tuple[float, float] | None) -> float:

@@ -47,4 +47,4 @@ def are_linked(called: list[tuple[str, Any]]) -> bool:
     """Make functions ready that code calls by their symbols; are they now where the linker finds them? If not, it would end the process."""
     for _, function in called:
         function.ready()
-    return all(_FUNCTIONS.get(symbol) is not None for symbol, _ in called)
+    return all(symbol in _FUNCTIONS for symbol, _ in called)

@@ -9,7 +9,7 @@ import numpy as np
 
 from vibroimpact.arrays import Array
 from vibroimpact.cases.conditions import Conditions
-from vibroimpact.cases.limit import Limit, two_digits
+from vibroimpact.cases.limit import Limit, in_kilohertz, two_digits
 from vibroimpact.units.display import text
 
 _TRUNCATED = 0.05  # allowed relative change of the largest force by truncated modes
@@ -31,7 +31,7 @@ def _sentence(body: str, drop: Conditions, _: float) -> str:
     return (
         f"the modes of the {body} end at {text(highest, 'Hz')}, and the contact lasts {text(duration, 's', 3)}: the modes left out may "
         f"change the largest force by up to {two_digits(100.0 * part)} %, and rebound and vibration by more; ask for "
-        f'{body}.max_frequency = "{float(f"{wanted / 1e3:.3g}"):g} kHz" or so{instead}'
+        f'{body}.max_frequency = "{in_kilohertz(wanted)}" or so{instead}'
     )
 
 
