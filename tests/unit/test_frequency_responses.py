@@ -502,10 +502,10 @@ def test_of_a_file_with_both_either_is_compared(tmp_path: Path, monkeypatch: pyt
         found[name] = json.loads(Path(name, "summary.json").read_text())
     has = "both.uff has 3 records over time and 2 frequency responses: "
     for name, kind, remark in (
-        ("plain", "responses", "the responses are compared, and the records by --compare records"),
-        ("node", "responses", "the responses are compared, and the records by --compare records"),
-        ("of hammer", "records", "the records are compared, and the responses by --compare responses"),
-        ("asked", "records", "the records are compared, and the responses by --compare responses"),
+        ("plain", "responses", "the responses are compared, and the records by --compare records, without --window and without files of responses alone"),
+        ("node", "responses", "the responses are compared, and the records by --compare records, without --window and without files of responses alone"),
+        ("of hammer", "records", "the records are compared, and the responses by --compare responses, without --window and without files of records alone"),
+        ("asked", "records", "the records are compared, and the responses by --compare responses, without --window and without files of records alone"),
     ):
         assert list(found[name][kind]) == ["12", "13"]
         assert found[name]["doubts"].count(has + remark) == 1
